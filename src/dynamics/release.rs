@@ -1,0 +1,68 @@
+//! From a release to the state that starts the flight (Eq. 18 of the paper).
+
+use super::state::{State, Triple};
+use serde::Serialize;
+
+/// How and where the ball leaves the hand: the nine parameters of Eq. 18, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Release {
+    /// Horizontal distance r0 of the ball's centre from the hoop's axis, m.
+    pub distance_m: f64,
+    /// Court angle theta0: 0 straight in front of the board, positive towards +y, rad.
+    pub court_angle_rad: f64,
+    /// Height z0 of the ball's centre above the plane of the hoop (negative below), m.
+    pub height_above_hoop_m: f64,
+    /// Speed v0, m/s.
+    pub speed_m_s: f64,
+    /// Pitch angle alpha0 above the horizontal, rad.
+    pub pitch_rad: f64,
+    /// Polar angle beta0 of the flight's plane: equal to the court angle when aimed at the hoop's
+    /// axis, rad.
+    pub polar_rad: f64,
+    /// Backspin omega_beta0, about the horizontal axis across the flight; positive is back, rad/s.
+    pub backspin_rad_s: f64,
+    /// Rifle spin omega_r0, about the horizontal flight direction, rad/s.
+    pub rifle_spin_rad_s: f64,
+    /// Side spin omega_z0, about the vertical, rad/s.
+    pub side_spin_rad_s: f64,
+}
+
+impl Release {
+    /// The nine state variables at the release (Eq. 18).
+    #[must_use]
+    pub fn state(&self) -> State {
+        let (sin_pitch, cos_pitch) = libm::sincos(self.pitch_rad);
+        let (sin_polar, cos_polar) = libm::sincos(self.polar_rad);
+        let (sin_court, cos_court) = libm::sincos(self.court_angle_rad);
+        let level = self.speed_m_s * cos_pitch;
+        State {
+            position_m: Triple(
+                self.distance_m * cos_court,
+                self.distance_m * sin_court,
+                self.height_above_hoop_m,
+            ),
+            velocity_m_s: Triple(
+                -level * cos_polar,
+                -level * sin_polar,
+                self.speed_m_s * sin_pitch,
+            ),
+            spin_rad_s: Triple(
+                self.rifle_spin_rad_s * cos_polar - self.backspin_rad_s * sin_polar,
+                self.rifle_spin_rad_s * sin_polar + self.backspin_rad_s * cos_polar,
+                self.side_spin_rad_s,
+            ),
+        }
+    }
+
+    /// The same release mirrored in the plane of symmetry (y -> -y).
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            court_angle_rad: -self.court_angle_rad,
+            polar_rad: -self.polar_rad,
+            rifle_spin_rad_s: -self.rifle_spin_rad_s,
+            side_spin_rad_s: -self.side_spin_rad_s,
+            ..*self
+        }
+    }
+}

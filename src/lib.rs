@@ -1,0 +1,3 @@
+pub mod dynamics;
+mod lane;
+pub mod physics;
