@@ -1,1 +1,7 @@
-fn main(){}
+//! The program `bankshot`: see `bankshot --help`.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

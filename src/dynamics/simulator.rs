@@ -1,7 +1,8 @@
 //! The interface to the dynamics: physics and integrator in, outcomes out.
 
 use super::exact::{self, Rules};
-use super::outcome::{Outcome, Verdict};
+use super::flight::Arc;
+use super::outcome::{Outcome, Touched, Verdict};
 use super::paper::{self, Steps};
 use super::release::Release;
 use super::state::{Law, State};
@@ -145,6 +146,20 @@ impl Simulator {
         );
         let verdict = self.run(start, &mut watch);
         watch.1.trace(&self.law, watch.0.outcome(verdict))
+    }
+
+    /// What an error-free flight touches first, if anything.
+    #[must_use]
+    pub fn first_touch(&self, release: &Release) -> Option<Touched> {
+        let arc = Arc::from(&self.law, &release.state());
+        let until = arc.end.min(arc.beside_board);
+        if arc.ring <= until && arc.ring < arc.board {
+            Some(Touched::Ring)
+        } else if arc.board < until {
+            Some(Touched::Board)
+        } else {
+            None
+        }
     }
 
     fn run<W: Watch>(&self, start: State, watch: &mut W) -> Verdict {

@@ -1,0 +1,164 @@
+//! What can be asked of the program.
+
+use bankshot::units::System;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0   everything asked for is there
+  1   ran, but missed the standard error asked for
+  2   usage or configuration refused; nothing was written
+  3   incomplete: some rows failed, the others are done
+  70  a bug
+  74  input or output failed
+  130 stopped by Ctrl-C; no file is left half written
+
+Examples:
+  bankshot best configs/free_throw.toml
+  bankshot plan configs/three_pointer.toml
+  bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg'
+  bankshot simulate releases.csv --output outcomes.csv";
+
+/// How to shoot a basketball, given your own errors: a parallel batch probability engine.
+#[derive(Debug, Parser)]
+#[command(version, about, after_help = EXIT_CODES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Threads to use [default: all]; the results do not depend on it.
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// No progress bar and no remarks.
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Find the best direct and the best bank shot from the profile's place.
+    Best(BestOptions),
+    /// Check a profile and say what is wrong with it, all faults at once.
+    Check(CheckOptions),
+    /// Say what `best` would simulate, how long it takes and how much memory it needs, and show that
+    /// the bracket loses nothing.
+    Plan(PlanOptions),
+    /// Simulate the releases of a CSV file.
+    Simulate(SimulateOptions),
+    /// Follow one shot and say what happens.
+    Trace(TraceOptions),
+    /// Print a completion script for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page.
+    Man,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bankshot best configs/free_throw.toml
+  bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
+  bankshot best configs/bank_wing.toml --units metric --out /tmp/runs
+
+Writes OUT/<name>-<hash>/ with best_shots.csv, best_shots.json, plan.json and provenance.json.")]
+pub(crate) struct BestOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    /// Folder in which the run's folder is made [default: the profile's, else results].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON object instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Units of the results [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<System>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct PlanOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Shots drawn to check the bracket; 0 for none.
+    #[arg(long, value_name = "N", default_value_t = 200_000)]
+    pub(crate) wide_sample: u64,
+}
+
+/// The integrators by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IntegratorName {
+    /// Closed-form flight, contacts in steps that end on the events of friction.
+    Exact,
+    /// The paper's variable-step Runge-Kutta method at the paper's steps.
+    Paper,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Columns, by name and in any order: distance_ft, court_angle_deg, release_height_ft, speed_ft_s,
+pitch_deg, polar_deg; optional backspin_rev_s, rifle_spin_rev_s, side_spin_rev_s. The suffixes _m,
+_m_s, _rad and _rad_s are accepted in their place. Other columns are carried through. Added are
+made, kind, contacts, n_board, n_ring, flight_time_s and entry_angle_deg. A row that cannot be
+simulated is named, keeps its place with empty results, and makes the exit code 3.
+
+Examples:
+  bankshot simulate releases.csv --output outcomes.csv
+  bankshot simulate - --output - --integrator paper <releases.csv >outcomes.csv")]
+pub(crate) struct SimulateOptions {
+    /// The releases, a CSV file; - for standard input.
+    pub(crate) releases: PathBuf,
+    /// Where the outcomes go; - for standard output.
+    #[arg(long, short, value_name = "OUT.csv")]
+    pub(crate) output: PathBuf,
+    /// The preset `paper`, or a TOML file with a [physics] table.
+    #[arg(long, default_value = "paper", value_name = "PRESET|FILE")]
+    pub(crate) physics: String,
+    /// The integrator [default: exact, or the file's].
+    #[arg(long)]
+    pub(crate) integrator: Option<IntegratorName>,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Every quantity carries its unit.
+
+Examples:
+  bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg' --backspin '3 rev/s'
+  bankshot trace configs/bank_wing.toml --speed '7.4 m/s' --pitch '52 deg' --polar '40 deg' --output shot.csv")]
+pub(crate) struct TraceOptions {
+    /// The shooter's profile (for the place, the height and the physics).
+    pub(crate) profile: PathBuf,
+    /// Speed of the release, such as '23.5 ft/s'.
+    #[arg(long)]
+    pub(crate) speed: String,
+    /// Pitch angle of the release, such as '52 deg'.
+    #[arg(long)]
+    pub(crate) pitch: String,
+    /// Polar angle of the release [default: towards the hoop's centre].
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) polar: Option<String>,
+    /// Backspin [default: none].
+    #[arg(long, allow_hyphen_values = true)]
+    pub(crate) backspin: Option<String>,
+    /// Writes the trajectory as CSV; - for standard output (then nothing else is printed there).
+    #[arg(long, short, value_name = "T.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Units of the answer [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<System>,
+    /// Print one JSON object instead of words.
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -1,0 +1,55 @@
+//! A progress bar on standard error; none where there is no terminal.
+
+use bankshot::probability::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::Mutex;
+
+/// Shows each stage as a bar.
+pub(crate) struct Bars {
+    quiet: bool,
+    bar: Mutex<Option<ProgressBar>>,
+}
+
+impl Bars {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self { quiet, bar: Mutex::new(None) }
+    }
+
+    fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
+        if let Ok(mut bar) = self.bar.lock() {
+            act(&mut bar);
+        }
+    }
+}
+
+impl Progress for Bars {
+    fn begin(&self, stage: &str, total: u64) {
+        let target =
+            if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(8) };
+        let style = "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
+        let bar = ProgressBar::with_draw_target(Some(total), target)
+            .with_style(
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar())
+                    .progress_chars("=> "),
+            )
+            .with_message(stage.to_owned());
+        self.with(|slot| *slot = Some(bar));
+    }
+
+    fn advance(&self, shots: u64) {
+        self.with(|bar| {
+            if let Some(bar) = bar {
+                bar.inc(shots);
+            }
+        });
+    }
+
+    fn end(&self) {
+        self.with(|bar| {
+            if let Some(bar) = bar.take() {
+                bar.finish_and_clear();
+            }
+        });
+    }
+}

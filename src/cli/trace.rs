@@ -1,0 +1,214 @@
+//! `bankshot trace`: one shot, its events and its trajectory, in words.
+
+use super::arguments::TraceOptions;
+use super::failure::Failure;
+use super::plan::load;
+use super::terminal::{answer, answer_bytes, tell};
+use bankshot::dynamics::{Ending, EventKind, Kind, Outcome, Simulator, Touched, Trace, Triple};
+use bankshot::output::{self, files, number};
+use bankshot::profile::{Nominal, Profile};
+use bankshot::units::{self, DEGREE_RAD, Dimension, REV_RAD, System};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Spacing of the trajectory in flight, s.
+const INTERVAL_S: f64 = 0.005;
+
+pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
+    let profile = load(&options.profile)?;
+    let system = options.units.unwrap_or(profile.output.units);
+    let nominal = nominal(options, &profile)?;
+    let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)
+        .map_err(Failure::usage)?;
+    let trace = simulator.trace(&profile.release(&nominal), INTERVAL_S);
+    if let Some(path) = &options.output {
+        let bytes = trajectory(&trace, system);
+        if path == Path::new("-") {
+            return answer_bytes(&bytes);
+        }
+        files::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+    }
+    let text = if options.json {
+        format!("{:#}\n", json(&trace, system))
+    } else {
+        words(&trace, system)
+    };
+    answer(&text)?;
+    if let Some(path) = &options.output {
+        tell(&format!("trajectory written to {}", path.display()));
+    }
+    Ok(0)
+}
+
+fn nominal(options: &TraceOptions, profile: &Profile) -> Result<Nominal, Failure> {
+    let mut faults = Vec::new();
+    let mut read = |name: &str, text: &str, dimension| {
+        units::parse(text, dimension).unwrap_or_else(|error| {
+            faults.push(format!("--{name}: {error}"));
+            0.0
+        })
+    };
+    let speed_m_s = read("speed", &options.speed, Dimension::Speed);
+    let pitch_rad = read("pitch", &options.pitch, Dimension::Angle);
+    let polar_rad = options
+        .polar
+        .as_ref()
+        .map_or(profile.place.angle_rad, |text| read("polar", text, Dimension::Angle));
+    let backspin_rad_s =
+        options.backspin.as_ref().map_or(0.0, |text| read("backspin", text, Dimension::Spin));
+    if !(0.0..=1000.0).contains(&speed_m_s) {
+        faults.push("--speed: must be from 0 to 1000 m/s".to_owned());
+    }
+    if faults.is_empty() {
+        Ok(Nominal { speed_m_s, pitch_rad, polar_rad, backspin_rad_s })
+    } else {
+        Err(Failure::usage(faults.join("\n")))
+    }
+}
+
+fn surface(touched: Touched) -> &'static str {
+    match touched {
+        Touched::Board => "board",
+        Touched::Ring => "ring",
+    }
+}
+
+fn verdict(outcome: &Outcome) -> &'static str {
+    match outcome.kind {
+        Kind::Swish => "made: a swish",
+        Kind::RimIn => "made off the ring",
+        Kind::BankIn => "made off the board",
+        Kind::BankRimIn => "made off board and ring",
+        Kind::InAndOut => "missed: in and out",
+        Kind::Short => "missed: short",
+        Kind::Long => "missed: long",
+        Kind::Wide => "missed: wide",
+        Kind::OverBoard => "missed: behind the board",
+        Kind::Lodged => "missed: lodged between ring and board",
+        Kind::Airball => "missed: touched nothing",
+        Kind::Unresolved => "the numerics gave up",
+    }
+}
+
+fn words(trace: &Trace, system: System) -> String {
+    let (long, metre) = system.length();
+    let outcome = &trace.outcome;
+    let mut text = String::new();
+    // Writing to a String does not fail.
+    let _ = writeln!(
+        text,
+        "The shot is {}, after {:.3} s; the ball's centre rose to {:.2} {long} above the ring.",
+        verdict(outcome),
+        outcome.verdict.time_s,
+        outcome.apex_m / metre
+    );
+    if let Some(entry) = outcome.entry {
+        let (x, y) = entry.offset_m;
+        let (short, inch) = system.short_length();
+        let _ = writeln!(
+            text,
+            "It last came down through the ring's plane at {:.1} deg, {:.1} {short} from the centre (x {:+.1}, y {:+.1}).",
+            entry.angle_rad / DEGREE_RAD,
+            (x * x + y * y).sqrt() / inch,
+            x / inch,
+            y / inch
+        );
+    }
+    let _ = writeln!(text, "\n   time s  event                    x, y, z {long}               speed {long}/s");
+    for event in &trace.events {
+        let Triple(x, y, z) = event.state.position_m;
+        let Triple(vx, vy, vz) = event.state.velocity_m_s;
+        let name = match event.kind {
+            EventKind::Release => "release".to_owned(),
+            EventKind::Touch(touched) => format!("touches the {}", surface(touched)),
+            EventKind::Part { surface: touched, lasted_s, .. } => {
+                format!("leaves the {} ({:.1} ms)", surface(touched), 1000.0 * lasted_s)
+            }
+            EventKind::End => ending(outcome.verdict.ending).to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "{:9.4}  {name:24} {:7.3} {:7.3} {:7.3}   {:7.2}",
+            event.time_s,
+            x / metre,
+            y / metre,
+            z / metre,
+            (vx * vx + vy * vy + vz * vz).sqrt() / metre
+        );
+    }
+    text
+}
+
+fn ending(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Fell => "below the ring",
+        Ending::NeverRose => "never reached the ring",
+        Ending::BehindBoard => "behind the board",
+        Ending::Wedged => "at rest on both",
+        Ending::TimeLimit => "time limit",
+        Ending::Unresolved => "gave up",
+    }
+}
+
+fn json(trace: &Trace, system: System) -> serde_json::Value {
+    let (long, metre) = system.length();
+    let outcome = &trace.outcome;
+    let place = |Triple(x, y, z): Triple<f64>| {
+        serde_json::Value::Array([x, y, z].map(|v| number(v / metre)).to_vec())
+    };
+    let events = trace.events.iter().map(|event| {
+        let mut record = vec![
+            ("time_s".to_owned(), number(event.time_s)),
+            (format!("position_{long}"), place(event.state.position_m)),
+            (format!("velocity_{long}_s"), place(event.state.velocity_m_s)),
+        ];
+        let name = match event.kind {
+            EventKind::Release => "release",
+            EventKind::Touch(Touched::Board) => "touch board",
+            EventKind::Touch(Touched::Ring) => "touch ring",
+            EventKind::Part { surface: touched, impulse_n_s: Triple(x, y, z), lasted_s } => {
+                record.push(("lasted_s".to_owned(), number(lasted_s)));
+                let impulse = [x, y, z].map(number).to_vec();
+                record.push(("impulse_n_s".to_owned(), impulse.into()));
+                if touched == Touched::Board { "leave board" } else { "leave ring" }
+            }
+            EventKind::End => "end",
+        };
+        record.insert(0, ("event".to_owned(), name.into()));
+        output::object(record)
+    });
+    output::object(vec![
+        ("made".to_owned(), outcome.verdict.made.into()),
+        ("kind".to_owned(), outcome.kind.name().into()),
+        ("contacts".to_owned(), outcome.verdict.contacts.to_string().into()),
+        ("flight_time_s".to_owned(), number(outcome.verdict.time_s)),
+        (format!("apex_above_ring_{long}"), number(outcome.apex_m / metre)),
+        (
+            "entry_angle_deg".to_owned(),
+            outcome.entry.map_or(serde_json::Value::Null, |e| number(e.angle_rad / DEGREE_RAD)),
+        ),
+        ("events".to_owned(), events.collect::<Vec<_>>().into()),
+    ])
+}
+
+/// The trajectory as CSV.
+fn trajectory(trace: &Trace, system: System) -> Vec<u8> {
+    let (long, metre) = system.length();
+    let mut text = format!(
+        "time_s,x_{long},y_{long},z_above_ring_{long},vx_{long}_s,vy_{long}_s,vz_{long}_s,spin_x_rev_s,spin_y_rev_s,spin_z_rev_s,on_board,on_ring\n"
+    );
+    for sample in &trace.samples {
+        let Triple(x, y, z) = sample.state.position_m;
+        let Triple(vx, vy, vz) = sample.state.velocity_m_s;
+        let Triple(wx, wy, wz) = sample.state.spin_rad_s;
+        let _ = write!(text, "{}", sample.time_s);
+        for value in [x, y, z, vx, vy, vz] {
+            let _ = write!(text, ",{}", value / metre);
+        }
+        for value in [wx, wy, wz] {
+            let _ = write!(text, ",{}", value / REV_RAD);
+        }
+        let _ = writeln!(text, ",{},{}", u8::from(sample.on_board), u8::from(sample.on_ring));
+    }
+    text.into_bytes()
+}

@@ -1,0 +1,186 @@
+//! The results of `best`: one record per shot, a table for people, and the files of the folder.
+
+use super::{Record, number, object, provenance};
+use crate::probability::best::{Best, BestShot, NoShot, ShotKind};
+use crate::profile::Profile;
+use crate::units::{DEGREE_RAD, REV_RAD, System};
+use comfy_table::{CellAlignment, Table, presets};
+use serde_json::Value;
+
+/// The record of one best shot.
+#[must_use]
+pub fn shot_record(profile: &Profile, shot: &BestShot, units: System) -> Record {
+    let (long, foot) = units.length();
+    let (short, inch) = units.short_length();
+    let nominal = &shot.nominal;
+    let estimate = &shot.estimate;
+    let outcome = &shot.outcome;
+    let hoop = profile.physics.hoop_height_m;
+    let board = outcome.board_point_m;
+    let maybe = |value: Option<f64>| value.map_or(Value::Null, number);
+    let fields: Vec<(String, Value)> = vec![
+        (format!("speed_{long}_s"), number(nominal.speed_m_s / foot)),
+        ("pitch_deg".into(), number(nominal.pitch_rad / DEGREE_RAD)),
+        ("polar_deg".into(), number(nominal.polar_rad / DEGREE_RAD)),
+        ("backspin_rev_s".into(), number(nominal.backspin_rad_s / REV_RAD)),
+        ("probability".into(), number(estimate.probability)),
+        ("standard_error".into(), number(estimate.standard_error)),
+        ("shots".into(), estimate.shots.into()),
+        ("share_swish".into(), number(estimate.shares.swish)),
+        ("share_ring".into(), number(estimate.shares.ring)),
+        ("share_board".into(), number(estimate.shares.board)),
+        ("unresolved".into(), estimate.unresolved.into()),
+        ("error_free_kind".into(), outcome.kind.name().into()),
+        ("error_free_contacts".into(), outcome.verdict.contacts.to_string().into()),
+        ("entry_angle_deg".into(), maybe(outcome.entry.map(|entry| entry.angle_rad / DEGREE_RAD))),
+        (format!("aim_past_centre_{short}"), maybe(shot.aim_past_centre_m.map(|m| m / inch))),
+        (format!("board_aim_across_{short}"), maybe(board.map(|(_, y, _)| y / inch))),
+        (format!("board_aim_above_hoop_{short}"), maybe(board.map(|(_, _, z)| z / inch))),
+        (format!("apex_above_floor_{long}"), number((outcome.apex_m + hoop) / foot)),
+        ("flight_time_s".into(), number(outcome.verdict.time_s)),
+        ("mass_outside_bracket".into(), number(shot.mass_outside)),
+        ("at_limits".into(), shot.at_limits.join(" ").into()),
+    ];
+    fields
+}
+
+/// The whole answer as one JSON object.
+#[must_use]
+pub fn json(profile: &Profile, best: &Best, units: System) -> Value {
+    let (long, foot) = units.length();
+    let mut record = vec![
+        ("shooter".to_owned(), profile.shooter.name.clone().into()),
+        (format!("distance_{long}"), number(profile.place.distance_m / foot)),
+        ("court_angle_deg".to_owned(), number(profile.place.angle_rad / DEGREE_RAD)),
+        (format!("release_height_{long}"), number(profile.shooter.release_height_m / foot)),
+    ];
+    for (kind, shot) in [(ShotKind::Direct, &best.direct), (ShotKind::Bank, &best.bank)] {
+        match shot {
+            Ok(shot) => {
+                let value = object(shot_record(profile, shot, units));
+                record.push((kind.name().to_owned(), value));
+            }
+            Err(reason) => {
+                record.push((kind.name().to_owned(), Value::Null));
+                record.push((format!("{}_reason", kind.name()), reason.to_string().into()));
+            }
+        }
+    }
+    record.extend(provenance(&profile.hash()));
+    record.push(("seed".to_owned(), profile.search.seed.into()));
+    record.push(("table_shots".to_owned(), best.plan.shots.into()));
+    object(record)
+}
+
+/// The answer as CSV, one row per kind of shot that exists.
+#[must_use]
+pub fn csv(profile: &Profile, best: &Best, units: System) -> Vec<u8> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut header_done = false;
+    for (kind, shot) in shots(best) {
+        let Ok(shot) = shot else { continue };
+        let record = shot_record(profile, shot, units);
+        if !header_done {
+            let names = record.iter().map(|(name, _)| name.as_str());
+            // Writing to memory does not fail.
+            let _ = writer.write_record(std::iter::once("kind").chain(names));
+            header_done = true;
+        }
+        let cells = record.iter().map(|(_, value)| match value {
+            Value::String(text) => text.clone(),
+            Value::Null => String::new(),
+            other => other.to_string(),
+        });
+        let _ = writer.write_record(std::iter::once(kind.name().to_owned()).chain(cells));
+    }
+    writer.into_inner().unwrap_or_default()
+}
+
+fn shots(best: &Best) -> [(ShotKind, &Result<BestShot, NoShot>); 2] {
+    [(ShotKind::Direct, &best.direct), (ShotKind::Bank, &best.bank)]
+}
+
+/// The table that `best` prints.
+#[must_use]
+pub fn table(profile: &Profile, best: &Best, units: System) -> String {
+    let (long, foot) = units.length();
+    let (short, inch) = units.short_length();
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(vec![
+        "shot".to_owned(),
+        format!("speed\n{long}/s"),
+        "pitch\ndeg".to_owned(),
+        "polar\ndeg".to_owned(),
+        "backspin\nrev/s".to_owned(),
+        "probability".to_owned(),
+        "swish / ring\n/ board".to_owned(),
+        "entry\ndeg".to_owned(),
+        "aim".to_owned(),
+    ]);
+    let mut notes = Vec::new();
+    for (kind, shot) in shots(best) {
+        let shot = match shot {
+            Ok(shot) => shot,
+            Err(reason) => {
+                notes.push(format!("{}: {reason}.", kind.name()));
+                continue;
+            }
+        };
+        let nominal = &shot.nominal;
+        let estimate = &shot.estimate;
+        let aim = match (kind, shot.outcome.board_point_m, shot.aim_past_centre_m) {
+            (ShotKind::Bank, Some((_, y, z)), _) => {
+                format!("board, {:.1} {short} above ring,\n{}", z / inch, aside(y / inch, short))
+            }
+            (_, _, Some(past)) => {
+                let side = if past < 0.0 { "short of" } else { "past" };
+                format!("{:.1} {short} {side} centre", past.abs() / inch)
+            }
+            _ => String::new(),
+        };
+        let shares = &estimate.shares;
+        table.add_row(vec![
+            kind.name().to_owned(),
+            format!("{:.2}", nominal.speed_m_s / foot),
+            format!("{:.1}", nominal.pitch_rad / DEGREE_RAD),
+            format!("{:.2}", tidy(nominal.polar_rad / DEGREE_RAD)),
+            format!("{:.1}", nominal.backspin_rad_s / REV_RAD),
+            format!("{:.4} ± {:.4}", estimate.probability, estimate.standard_error),
+            format!("{:.2} / {:.2} / {:.2}", shares.swish, shares.ring, shares.board),
+            shot.outcome
+                .entry
+                .map_or_else(String::new, |entry| format!("{:.1}", entry.angle_rad / DEGREE_RAD)),
+            aim,
+        ]);
+        if !shot.at_limits.is_empty() {
+            notes.push(format!("{}: the best lies at a limit: {}.", kind.name(), shot.at_limits.join(", ")));
+        }
+        if estimate.standard_error > profile.search.standard_error {
+            notes.push(format!("{}: the standard error asked for was not reached.", kind.name()));
+        }
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let mut text = table.trim_fmt();
+    text.push('\n');
+    for note in notes {
+        text.push_str(&note);
+        text.push('\n');
+    }
+    text
+}
+
+/// Avoids printing a negative zero.
+fn tidy(value: f64) -> f64 {
+    if value.abs() < 0.005 { 0.0 } else { value }
+}
+
+fn aside(across: f64, unit: &str) -> String {
+    if across.abs() < 0.05 {
+        "on its middle line".to_owned()
+    } else {
+        format!("{:.1} {unit} to the {}", across.abs(), if across > 0.0 { "shooter's left (+y)" } else { "shooter's right (-y)" })
+    }
+}

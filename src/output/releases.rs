@@ -1,0 +1,176 @@
+//! Releases from CSV columns and back: any number of rows, by name, in any order.
+
+use crate::dynamics::{Outcome, Release};
+use crate::physics::Physics;
+use crate::units::{DEGREE_RAD, REV_RAD};
+use crate::physics::FOOT_M;
+use csv::ByteRecord;
+
+/// One parameter of a release: its columns (name and size of the unit in SI), and whether it is
+/// needed.
+struct Parameter {
+    columns: [(&'static str, f64); 2],
+    required: bool,
+}
+
+const PARAMETERS: [Parameter; 9] = [
+    Parameter { columns: [("distance_ft", FOOT_M), ("distance_m", 1.0)], required: true },
+    Parameter {
+        columns: [("court_angle_deg", DEGREE_RAD), ("court_angle_rad", 1.0)],
+        required: true,
+    },
+    Parameter {
+        columns: [("release_height_ft", FOOT_M), ("release_height_m", 1.0)],
+        required: true,
+    },
+    Parameter { columns: [("speed_ft_s", FOOT_M), ("speed_m_s", 1.0)], required: true },
+    Parameter { columns: [("pitch_deg", DEGREE_RAD), ("pitch_rad", 1.0)], required: true },
+    Parameter { columns: [("polar_deg", DEGREE_RAD), ("polar_rad", 1.0)], required: true },
+    Parameter { columns: [("backspin_rev_s", REV_RAD), ("backspin_rad_s", 1.0)], required: false },
+    Parameter {
+        columns: [("rifle_spin_rev_s", REV_RAD), ("rifle_spin_rad_s", 1.0)],
+        required: false,
+    },
+    Parameter { columns: [("side_spin_rev_s", REV_RAD), ("side_spin_rad_s", 1.0)], required: false },
+];
+
+/// The columns that a simulation adds.
+pub const ADDED: [&str; 7] =
+    ["made", "kind", "contacts", "n_board", "n_ring", "flight_time_s", "entry_angle_deg"];
+
+/// Where each parameter stands in the rows of one file.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Column, name and unit of each parameter.
+    places: [Option<(usize, &'static str, f64)>; 9],
+}
+
+/// Why a header cannot be used: all reasons at once.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .0.join("\n"))]
+pub struct HeaderError(pub Vec<String>);
+
+/// Why a row cannot be simulated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("column {column}: {reason}")]
+pub struct RowError {
+    /// The column's name.
+    pub column: String,
+    /// What is wrong and what is allowed.
+    pub reason: String,
+}
+
+impl Layout {
+    /// Finds the parameters' columns in a header.
+    ///
+    /// # Errors
+    /// Every column that is missing, given twice or clashes with an added one.
+    pub fn new(header: &ByteRecord) -> Result<Self, HeaderError> {
+        let mut faults = Vec::new();
+        let mut places = [None; 9];
+        for (place, parameter) in places.iter_mut().zip(&PARAMETERS) {
+            let names = parameter.columns.map(|(name, _)| name);
+            let found: Vec<_> = header
+                .iter()
+                .enumerate()
+                .filter_map(|(i, cell)| {
+                    parameter
+                        .columns
+                        .iter()
+                        .find(|(name, _)| cell.trim_ascii() == name.as_bytes())
+                        .map(|&(name, unit)| (i, name, unit))
+                })
+                .collect();
+            match found.as_slice() {
+                [one] => *place = Some(*one),
+                [] if parameter.required => {
+                    faults.push(format!("column {} (or {}) is missing", names[0], names[1]));
+                }
+                [] => {}
+                _ => faults.push(format!("columns {} and {} are given more than once together; keep one", names[0], names[1])),
+            }
+        }
+        for added in ADDED {
+            if header.iter().any(|cell| cell.trim_ascii() == added.as_bytes()) {
+                faults.push(format!("column {added} is written by the simulation; rename the input's"));
+            }
+        }
+        if faults.is_empty() { Ok(Self { places }) } else { Err(HeaderError(faults)) }
+    }
+
+    /// The release of one row.
+    ///
+    /// # Errors
+    /// The first column that is not a number or not allowed.
+    pub fn release(&self, row: &ByteRecord, physics: &Physics) -> Result<Release, RowError> {
+        let mut values = [0.0; 9];
+        for (value, place) in values.iter_mut().zip(&self.places) {
+            if let Some((column, name, unit)) = *place {
+                *value = cell(row, column, name)? * unit;
+            }
+        }
+        let [distance_m, court, height, speed, pitch_rad, polar_rad, back, rifle, side] = values;
+        let name = |i: usize| self.places[i].map_or("", |(_, name, _)| name);
+        let refuse = |i: usize, reason: &str| {
+            Err(RowError { column: name(i).to_owned(), reason: reason.to_owned() })
+        };
+        let reach = physics.ring_radius_m + physics.ball_radius_m;
+        if !(distance_m > reach && distance_m < 100.0) {
+            return refuse(0, "the place is inside the ring's reach or over 100 m away");
+        }
+        if !(distance_m * libm::cos(court) > physics.ball_radius_m - physics.board_distance_m) {
+            return refuse(1, "the place is behind the board");
+        }
+        if !(height.abs() < 100.0) {
+            return refuse(2, "the height must be within 100 m");
+        }
+        if !((0.0..=1000.0).contains(&speed)) {
+            return refuse(3, "the speed must be from 0 to 1000 m/s");
+        }
+        for (i, spin) in [(6, back), (7, rifle), (8, side)] {
+            if !(spin.abs() <= 10_000.0) {
+                return refuse(i, "the spin must be within 10000 rad/s");
+            }
+        }
+        Ok(Release {
+            distance_m,
+            court_angle_rad: court,
+            height_above_hoop_m: height - physics.hoop_height_m,
+            speed_m_s: speed,
+            pitch_rad,
+            polar_rad,
+            backspin_rad_s: back,
+            rifle_spin_rad_s: rifle,
+            side_spin_rad_s: side,
+        })
+    }
+}
+
+fn cell(row: &ByteRecord, column: usize, name: &str) -> Result<f64, RowError> {
+    let refuse = |reason: String| RowError { column: name.to_owned(), reason };
+    let bytes = row.get(column).ok_or_else(|| refuse("is missing in this row".to_owned()))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| refuse("is not UTF-8".to_owned()))?;
+    let shown: String = text.chars().take(40).collect();
+    let value: f64 =
+        text.trim().parse().map_err(|_| refuse(format!("\"{shown}\" is not a number")))?;
+    if value.is_finite() && value.abs() < 1e9 {
+        Ok(value)
+    } else {
+        Err(refuse(format!("\"{shown}\" is not a finite number of use")))
+    }
+}
+
+/// The added cells of a simulated row, in the order of [`ADDED`].
+#[must_use]
+pub fn cells(outcome: &Outcome) -> [String; 7] {
+    let contacts = &outcome.verdict.contacts;
+    [
+        u8::from(outcome.verdict.made).to_string(),
+        outcome.kind.name().to_owned(),
+        contacts.to_string(),
+        contacts.boards().to_string(),
+        contacts.rings().to_string(),
+        outcome.verdict.time_s.to_string(),
+        outcome.entry.map_or_else(String::new, |entry| (entry.angle_rad / DEGREE_RAD).to_string()),
+    ]
+}

@@ -1,0 +1,315 @@
+//! The best direct and the best bank shot from one place (Eq. 26), refined off the grid.
+//!
+//! A nominal shot is *bank* when its error-free flight touches the board first, else *direct*. Of
+//! each kind the table gives a few starts far apart; from each a pattern search climbs on P itself,
+//! integrated with the same Sobol points everywhere (common random numbers). P of the winner is
+//! computed afresh with independent scrambles, so it is not the largest of many noisy values.
+
+use super::estimate::{Estimate, Sampler};
+use super::table::{Probabilities, Table};
+use super::{Progress, sobol};
+use crate::dynamics::{Outcome, Simulator, Touched};
+use crate::physics::PhysicsError;
+use crate::plan::{Plan, PlanError};
+use crate::profile::{Nominal, Profile};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Starts of the climb for each kind.
+const STARTS: usize = 3;
+/// Distance in pitch between starts, in nominal pitch angles of the table.
+const START_GAP: usize = 3;
+/// Sobol points of the climb's objective.
+const CLIMB_POINTS: u32 = 8192;
+/// Times the pattern's steps are halved.
+const HALVINGS: u32 = 3;
+/// Moves tried at most from one start.
+const MOST_MOVES: u32 = 200;
+/// First steps of the pattern: speed past the parabola through the hoop's centre (m/s), pitch (rad),
+/// polar angle (rad), backspin (rad/s).
+const FIRST_STEPS: [f64; 4] = [0.06, 0.03, 0.01, 3.0];
+
+/// Which of the two kinds a nominal shot is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShotKind {
+    /// Touches the ring first, or nothing.
+    Direct,
+    /// Touches the board first.
+    Bank,
+}
+
+impl ShotKind {
+    /// `direct` or `bank`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Bank => "bank",
+        }
+    }
+
+    /// The kind of a nominal shot.
+    #[must_use]
+    pub fn of(profile: &Profile, simulator: &Simulator, nominal: &Nominal) -> Self {
+        match simulator.first_touch(&profile.release(nominal)) {
+            Some(Touched::Board) => Self::Bank,
+            _ => Self::Direct,
+        }
+    }
+}
+
+/// The best shot of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BestShot {
+    /// What to aim for.
+    pub nominal: Nominal,
+    /// Its probability.
+    pub estimate: Estimate,
+    /// What the table said of its best nominal of this kind, before the climb.
+    pub table_probability: f64,
+    /// The error-free shot.
+    pub outcome: Outcome,
+    /// Where the error-free path, undisturbed, would pass the plane of the hoop: past the hoop's
+    /// centre along the shot's own direction, m (positive is long).
+    pub aim_past_centre_m: Option<f64>,
+    /// Upper bound of the probability that errors lead outside the table's pitch and backspin.
+    pub mass_outside: f64,
+    /// Limits of the search that the best lies at.
+    pub at_limits: Vec<&'static str>,
+}
+
+/// What was found for a place.
+#[derive(Clone, Debug)]
+pub struct Best {
+    /// The plan that was carried out.
+    pub plan: Plan,
+    /// The best direct shot, or why there is none.
+    pub direct: Result<BestShot, NoShot>,
+    /// The best bank shot, or why there is none.
+    pub bank: Result<BestShot, NoShot>,
+}
+
+/// Why there is no best shot of a kind.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no {} shot within the limits can go in from this place", .kind.name())]
+pub struct NoShot {
+    /// The kind.
+    pub kind: ShotKind,
+}
+
+/// Why the search could not start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BestError {
+    /// The physics cannot be simulated.
+    #[error(transparent)]
+    Physics(#[from] PhysicsError),
+    /// There is nothing to plan.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+/// Finds the best direct and the best bank shot of a profile on the current rayon pool.
+///
+/// # Errors
+/// When the physics cannot be simulated or the plan is refused.
+pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestError> {
+    let plan = Plan::new(profile)?;
+    let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)?;
+    let table = Table::build(profile, &plan, &simulator, progress);
+    let probabilities = table.probabilities(profile);
+    drop(table);
+    let search = Search { profile, plan: &plan, simulator: &simulator, progress };
+    let tops = search.tops(&probabilities);
+    drop(probabilities);
+    let direct = search.best(ShotKind::Direct, &tops[0]);
+    let bank = search.best(ShotKind::Bank, &tops[1]);
+    Ok(Best { plan, direct, bank })
+}
+
+/// A nominal shot of the table with its P.
+type Top = (f64, Nominal);
+
+struct Search<'a> {
+    profile: &'a Profile,
+    plan: &'a Plan,
+    simulator: &'a Simulator,
+    progress: &'a dyn Progress,
+}
+
+impl Search<'_> {
+    /// For direct and for bank: the best nominal shot at each nominal pitch angle.
+    fn tops(&self, table: &Probabilities) -> [Vec<Option<Top>>; 2] {
+        let rows: Vec<[Option<Top>; 2]> = (0..table.pitch_rad.len())
+            .into_par_iter()
+            .map(|pitch| {
+                let mut tops: [Option<Top>; 2] = [None, None];
+                for polar in 0..table.polar_rad.len() {
+                    for speed in 0..table.speed_m_s.len() {
+                        // The kind does not depend on spin: flight comes before any contact.
+                        let best = (0..table.backspin_rad_s.len())
+                            .map(|spin| table.at([pitch, polar, spin, speed]))
+                            .fold((0.0, None), |best: (f64, Option<Nominal>), (p, nominal)| {
+                                if p > best.0 { (p, Some(nominal)) } else { best }
+                            });
+                        let (p, Some(nominal)) = best else { continue };
+                        if tops.iter().all(|top| top.is_some_and(|(most, _)| most >= p)) {
+                            continue;
+                        }
+                        let kind = ShotKind::of(self.profile, self.simulator, &nominal);
+                        let top = &mut tops[kind as usize];
+                        if top.is_none_or(|(most, _)| p > most) {
+                            *top = Some((p, nominal));
+                        }
+                    }
+                }
+                tops
+            })
+            .collect();
+        [0, 1].map(|kind| rows.iter().map(|row| row[kind]).collect())
+    }
+
+    fn best(&self, kind: ShotKind, tops: &[Option<Top>]) -> Result<BestShot, NoShot> {
+        let starts = starts(tops);
+        let Some(&(table_probability, _)) = starts.first() else {
+            return Err(NoShot { kind });
+        };
+        let sampler = Sampler::new(self.profile, self.simulator);
+        let mut winner: Option<(u64, Nominal)> = None;
+        for (_, start) in starts {
+            let climbed = self.climb(kind, &sampler, start);
+            if winner.as_ref().is_none_or(|(most, _)| climbed.0 > *most) {
+                winner = Some(climbed);
+            }
+        }
+        let Some((made, nominal)) = winner.filter(|(made, _)| *made > 0) else {
+            return Err(NoShot { kind });
+        };
+        let _ = made;
+        let search = &self.profile.search;
+        let estimate =
+            sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
+        Ok(BestShot {
+            nominal,
+            estimate,
+            table_probability,
+            outcome: self.simulator.shoot(&self.profile.release(&nominal)),
+            aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
+            mass_outside: self.plan.mass_outside(self.profile, &nominal),
+            at_limits: self.limits(&nominal),
+        })
+    }
+
+    /// Climbs from a start by a pattern search; gives the made shots of the top and the top.
+    fn climb(&self, kind: ShotKind, sampler: &Sampler<'_>, start: Nominal) -> (u64, Nominal) {
+        // Scrambles of their own, so that the final estimate is independent of the climb.
+        let key = sobol::key(self.profile.search.seed, u64::MAX);
+        let value = |nominal: &Nominal| sampler.count(nominal, key, 0, CLIMB_POINTS).made();
+        let mut steps = FIRST_STEPS;
+        let mut best = (value(&start), start);
+        let mut moves = 0;
+        self.progress.begin("climbing", u64::from(HALVINGS + 1));
+        for _ in 0..=HALVINGS {
+            let mut moved = true;
+            while moved && moves < MOST_MOVES {
+                moved = false;
+                for axis in 0..4 {
+                    for sign in [1.0, -1.0] {
+                        let next = self.moved(&best.1, axis, sign * steps[axis]);
+                        if next == best.1 || ShotKind::of(self.profile, self.simulator, &next) != kind {
+                            continue;
+                        }
+                        moves += 1;
+                        let made = value(&next);
+                        if made > best.0 {
+                            best = (made, next);
+                            moved = true;
+                            break;
+                        }
+                    }
+                }
+            }
+            steps = steps.map(|step| 0.5 * step);
+            self.progress.advance(1);
+        }
+        self.progress.end();
+        best
+    }
+
+    /// The nominal shot moved along one axis and kept within the limits. A move in pitch takes the
+    /// speed along, so that the path still passes the hoop where it did.
+    fn moved(&self, from: &Nominal, axis: usize, by: f64) -> Nominal {
+        let search = &self.profile.search;
+        let mut to = *from;
+        match axis {
+            0 => to.speed_m_s += by,
+            1 => {
+                to.pitch_rad = (from.pitch_rad + by).clamp(search.pitch_min_rad, search.pitch_max_rad);
+                let before = centre_speed_m_s(self.profile, from.pitch_rad);
+                let after = centre_speed_m_s(self.profile, to.pitch_rad);
+                if let Some((before, after)) = before.zip(after) {
+                    to.speed_m_s += after - before;
+                }
+            }
+            2 => {
+                let (low, high) = self.plan.bracket.polar_rad;
+                to.polar_rad = (from.polar_rad + by).clamp(low, high);
+            }
+            _ => {
+                let most = self.profile.shooter.max_backspin_rad_s;
+                to.backspin_rad_s = (from.backspin_rad_s + by).clamp(0.0, most);
+            }
+        }
+        to.speed_m_s = to.speed_m_s.clamp(0.1, self.plan.bracket.speed_max_m_s);
+        to
+    }
+
+    fn limits(&self, nominal: &Nominal) -> Vec<&'static str> {
+        let search = &self.profile.search;
+        let most_spin = self.profile.shooter.max_backspin_rad_s;
+        [
+            ("pitch_min", nominal.pitch_rad <= search.pitch_min_rad),
+            ("pitch_max", nominal.pitch_rad >= search.pitch_max_rad),
+            ("no backspin", most_spin > 0.0 && nominal.backspin_rad_s <= 0.0),
+            ("max_backspin", most_spin > 0.0 && nominal.backspin_rad_s >= most_spin),
+            ("speed_max", nominal.speed_m_s >= self.plan.bracket.speed_max_m_s),
+        ]
+        .into_iter()
+        .filter_map(|(name, at)| at.then_some(name))
+        .collect()
+    }
+}
+
+/// The best of the tops, and others at least [`START_GAP`] pitch angles away from those before.
+fn starts(tops: &[Option<Top>]) -> Vec<Top> {
+    let mut order: Vec<(usize, Top)> =
+        tops.iter().enumerate().filter_map(|(i, top)| top.map(|top| (i, top))).collect();
+    order.sort_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)));
+    let mut chosen: Vec<(usize, Top)> = Vec::new();
+    for (i, top) in order {
+        if chosen.len() < STARTS && chosen.iter().all(|(j, _)| i.abs_diff(*j) >= START_GAP) {
+            chosen.push((i, top));
+        }
+    }
+    chosen.into_iter().map(|(_, top)| top).collect()
+}
+
+/// Speed of the parabola through the hoop's centre; none where the pitch is too low.
+fn centre_speed_m_s(profile: &Profile, pitch_rad: f64) -> Option<f64> {
+    let s = profile.place.distance_m;
+    let (sin, cos) = libm::sincos(pitch_rad);
+    let over = profile.height_above_hoop_m() + s * sin / cos;
+    (over > 0.0 && cos > 1e-6).then(|| s / cos * (0.5 * profile.physics.gravity_m_s2 / over).sqrt())
+}
+
+/// How far past the hoop's centre the undisturbed path falls through the plane of the hoop, along
+/// the path's own level direction.
+fn aim_past_centre_m(profile: &Profile, nominal: &Nominal) -> Option<f64> {
+    let (sin, cos) = libm::sincos(nominal.pitch_rad);
+    let g = profile.physics.gravity_m_s2;
+    let up = nominal.speed_m_s * sin;
+    let square = up * up + 2.0 * g * profile.height_above_hoop_m();
+    let length = nominal.speed_m_s * cos * (up + square.max(0.0).sqrt()) / g;
+    let turn = libm::cos(nominal.polar_rad - profile.place.angle_rad);
+    (square > 0.0).then_some(length - profile.place.distance_m * turn)
+}

@@ -1,0 +1,198 @@
+//! A shooter's profile: what the user wrote, checked, in SI units.
+//!
+//! `read` turns TOML into a [`Profile`] or into every fault it has, each with its line. The rest of
+//! the crate accepts only the checked form.
+
+mod fault;
+mod keys;
+mod read;
+
+pub use fault::{Fault, ProfileError};
+pub use read::{LARGEST_PROFILE_BYTES, parse, parse_physics};
+
+use crate::dynamics::{Integrator, Release};
+use crate::physics::Physics;
+use crate::units::System;
+use serde::Serialize;
+
+/// A checked profile.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Profile {
+    /// Who shoots.
+    pub shooter: Shooter,
+    /// From where.
+    pub place: Place,
+    /// The world.
+    pub physics: Physics,
+    /// How the equations are integrated.
+    pub integrator: Integrator,
+    /// Sizes of the table.
+    pub grid: Grid,
+    /// Bounds and precision of the search.
+    pub search: Search,
+    /// Where and in which units results are written.
+    #[serde(skip)]
+    pub output: Output,
+}
+
+/// The shooter: limits and release errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Shooter {
+    /// Name, for tables and the results' folder.
+    pub name: String,
+    /// Height of the ball's centre above the floor at the release, m.
+    pub release_height_m: f64,
+    /// Largest nominal backspin, rad/s.
+    pub max_backspin_rad_s: f64,
+    /// Release errors.
+    pub errors: Errors,
+}
+
+/// Standard deviations of the release errors as functions of the nominal values (Eq. 28).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// Speed: `c10 + c11 v + c12 v^2`; c10 in m/s.
+    pub c10_m_s: f64,
+    /// c11, a bare number.
+    pub c11: f64,
+    /// c12, s/m.
+    pub c12_s_m: f64,
+    /// Pitch angle, rad.
+    pub c20_rad: f64,
+    /// Polar angle, rad.
+    pub c30_rad: f64,
+    /// Backspin: `c40 + c41 w + c42 w^2`; c40 in rad/s.
+    pub c40_rad_s: f64,
+    /// c41, a bare number.
+    pub c41: f64,
+    /// c42, s/rad.
+    pub c42_s_rad: f64,
+}
+
+impl Errors {
+    /// Standard deviation of the speed at the nominal speed, m/s.
+    #[must_use]
+    pub fn speed_m_s(&self, nominal_m_s: f64) -> f64 {
+        self.c10_m_s + self.c11 * nominal_m_s + self.c12_s_m * nominal_m_s * nominal_m_s
+    }
+
+    /// Standard deviation of the backspin at the nominal backspin, rad/s.
+    #[must_use]
+    pub fn backspin_rad_s(&self, nominal_rad_s: f64) -> f64 {
+        self.c40_rad_s + self.c41 * nominal_rad_s + self.c42_s_rad * nominal_rad_s * nominal_rad_s
+    }
+}
+
+/// A place on the court, seen from the hoop's axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// Horizontal distance from the hoop's centre, m.
+    pub distance_m: f64,
+    /// Angle theta0 from the court's long axis, rad; -pi/2 to pi/2 is in front of the hoop's centre.
+    pub angle_rad: f64,
+}
+
+/// Points of the table along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Grid {
+    /// Speeds on each line.
+    pub speed: usize,
+    /// Pitch angles.
+    pub pitch: usize,
+    /// Polar angles.
+    pub polar: usize,
+    /// Backspins.
+    pub backspin: usize,
+}
+
+impl Default for Grid {
+    fn default() -> Self {
+        Self { speed: 40, pitch: 40, polar: 40, backspin: 40 }
+    }
+}
+
+/// Bounds and precision of the search for the best shot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Search {
+    /// Smallest nominal pitch angle, rad.
+    pub pitch_min_rad: f64,
+    /// Largest nominal pitch angle, rad.
+    pub pitch_max_rad: f64,
+    /// Largest speed of a release, m/s; by default 1.6 times the least speed to the hoop.
+    pub speed_max_m_s: Option<f64>,
+    /// Standard error wanted for each printed probability.
+    pub standard_error: f64,
+    /// Seed of the Sobol scrambles.
+    pub seed: u64,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            pitch_min_rad: 35.0_f64.to_radians(),
+            pitch_max_rad: 70.0_f64.to_radians(),
+            speed_max_m_s: None,
+            standard_error: 0.001,
+            seed: 1,
+        }
+    }
+}
+
+/// Where and how results are written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Output {
+    /// Folder under which a folder for the run is made.
+    pub folder: String,
+    /// Units of tables and files.
+    pub units: System,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { folder: "results".to_owned(), units: System::Imperial }
+    }
+}
+
+/// A nominal shot: what the shooter means to do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Nominal {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// Pitch angle, rad.
+    pub pitch_rad: f64,
+    /// Polar angle, rad.
+    pub polar_rad: f64,
+    /// Backspin, rad/s.
+    pub backspin_rad_s: f64,
+}
+
+impl Profile {
+    /// Height of the release above the plane of the hoop (negative below), m.
+    #[must_use]
+    pub fn height_above_hoop_m(&self) -> f64 {
+        self.shooter.release_height_m - self.physics.hoop_height_m
+    }
+
+    /// The release of a nominal shot from this place, without errors.
+    #[must_use]
+    pub fn release(&self, nominal: &Nominal) -> Release {
+        Release {
+            distance_m: self.place.distance_m,
+            court_angle_rad: self.place.angle_rad,
+            height_above_hoop_m: self.height_above_hoop_m(),
+            speed_m_s: nominal.speed_m_s,
+            pitch_rad: nominal.pitch_rad,
+            polar_rad: nominal.polar_rad,
+            backspin_rad_s: nominal.backspin_rad_s,
+            rifle_spin_rad_s: 0.0,
+            side_spin_rad_s: 0.0,
+        }
+    }
+
+    /// BLAKE3 of the checked profile in SI units: two files that mean the same have the same.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        let text = serde_json::to_string(self).unwrap_or_default();
+        blake3::hash(text.as_bytes()).to_hex().to_string()
+    }
+}

@@ -1,0 +1,355 @@
+//! From TOML text to a checked [`Profile`].
+
+use super::fault::{Fault, ProfileError};
+use super::keys::Keys;
+use super::{Errors, Grid, Output, Place, Profile, Search, Shooter};
+use crate::dynamics::Integrator;
+use crate::physics::Physics;
+use crate::units::{Dimension, System};
+use std::f64::consts::PI;
+use toml::de::DeTable;
+
+/// Largest profile that is read, in bytes.
+pub const LARGEST_PROFILE_BYTES: u64 = 16 * 1024 * 1024;
+/// Longest name of a shooter, in characters.
+const LONGEST_NAME: usize = 500;
+
+/// Reads a profile; `origin` names it in messages.
+///
+/// ```
+/// let text = r#"
+///     [shooter]
+///     release_height = "7 ft"
+///     max_backspin = "3 rev/s"
+///     [shooter.errors]
+///     c10 = "0.25 ft/s"
+///     c20 = "1.2 deg"
+///     c30 = "1.22 deg"
+///     c40 = "0.3 rev/s"
+///     [location]
+///     distance = "13.75 ft"
+///     angle = "0 deg"
+/// "#;
+/// let profile = bankshot::profile::parse(text, "example")?;
+/// assert_eq!(profile.place.distance_m, 13.75 * 0.3048);
+/// # Ok::<(), bankshot::profile::ProfileError>(())
+/// ```
+///
+/// # Errors
+/// Every fault of the profile at once.
+pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
+    with_table(text, origin, |root, faults| {
+        let mut keys = root;
+        let shooter = read_shooter(&mut keys, faults);
+        let place_at = keys.table("location", faults);
+        let (physics, integrator) = read_physics(&mut keys, faults);
+        let place = read_place(place_at, &physics, faults);
+        let grid = read_grid(&mut keys, faults);
+        let search = read_search(&mut keys, faults);
+        let output = read_output(&mut keys, faults);
+        keys.finish(faults);
+        Some(Profile { shooter: shooter?, place: place?, physics, integrator, grid, search, output })
+    })
+}
+
+/// Reads a file that holds only a `[physics]` table (or a profile, of which the rest is ignored).
+///
+/// # Errors
+/// Every fault of the table at once.
+pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), ProfileError> {
+    with_table(text, origin, |mut keys, faults| Some(read_physics(&mut keys, faults)))
+}
+
+fn with_table<T>(
+    text: &str,
+    origin: &str,
+    read: impl FnOnce(Keys<'_, '_>, &mut Vec<Fault>) -> Option<T>,
+) -> Result<T, ProfileError> {
+    let (table, errors) = DeTable::parse_recoverable(text);
+    let mut faults: Vec<Fault> = errors
+        .into_iter()
+        .map(|error| Fault {
+            span: error.span().unwrap_or(0..0),
+            key: String::new(),
+            message: format!("not TOML: {}", error.message()),
+        })
+        .collect();
+    let syntax_is_sound = faults.is_empty();
+    let result = read(Keys::root(&table), &mut faults);
+    match result {
+        Some(value) if faults.is_empty() => Ok(value),
+        _ => {
+            if !syntax_is_sound {
+                // What follows from broken syntax would only confuse.
+                faults.retain(|fault| fault.key.is_empty());
+            }
+            faults.sort_by_key(|fault| fault.span.start);
+            Err(ProfileError { origin: origin.to_owned(), text: text.to_owned(), faults })
+        }
+    }
+}
+
+fn check(
+    keys: &Keys<'_, '_>,
+    key: &str,
+    value: Option<f64>,
+    holds: impl Fn(f64) -> bool,
+    allowed: &str,
+    faults: &mut Vec<Fault>,
+) -> Option<f64> {
+    let value = value?;
+    if holds(value) {
+        return Some(value);
+    }
+    faults.push(keys.fault(key, format!("must be {allowed}")));
+    None
+}
+
+fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shooter> {
+    let mut keys = root.table("shooter", faults);
+    let name = keys.text("name", faults).unwrap_or_else(|| "shooter".to_owned());
+    if name.chars().count() > LONGEST_NAME {
+        faults.push(keys.fault("name", format!("must have at most {LONGEST_NAME} characters")));
+    }
+    let height = keys.required("release_height", Dimension::Length, faults);
+    let height = check(&keys, "release_height", height, |h| h > 0.0 && h < 10.0, "above 0 and below 10 m", faults);
+    let spin = keys.required("max_backspin", Dimension::Spin, faults);
+    let spin = check(&keys, "max_backspin", spin, |w| (0.0..=200.0).contains(&w), "0 to 31 rev/s", faults);
+    let mut table = keys.table("errors", faults);
+    let errors = read_errors(&mut table, spin.unwrap_or(0.0), faults);
+    table.finish(faults);
+    keys.finish(faults);
+    Some(Shooter { name, release_height_m: height?, max_backspin_rad_s: spin?, errors: errors? })
+}
+
+fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) -> Option<Errors> {
+    let before = faults.len();
+    let mut sigma = |key, dimension, faults: &mut Vec<Fault>| {
+        let value = keys.required(key, dimension, faults);
+        check(keys, key, value, |s| s >= 0.0, "0 or more", faults)
+    };
+    let c10 = sigma("c10", Dimension::Speed, faults);
+    let c20 = sigma("c20", Dimension::Angle, faults);
+    let c30 = sigma("c30", Dimension::Angle, faults);
+    let c40 = sigma("c40", Dimension::Spin, faults);
+    for (key, value) in [("c20", c20), ("c30", c30)] {
+        check(keys, key, value, |s| s < 0.5, "below 28 deg", faults);
+    }
+    let c11 = keys.quantity("c11", Dimension::Number, faults).unwrap_or(0.0);
+    let c12 = keys.quantity("c12", Dimension::PerSpeed, faults).unwrap_or(0.0);
+    let c41 = keys.quantity("c41", Dimension::Number, faults).unwrap_or(0.0);
+    let c42 = keys.quantity("c42", Dimension::PerSpin, faults).unwrap_or(0.0);
+    let errors = Errors {
+        c10_m_s: c10?,
+        c11,
+        c12_s_m: c12,
+        c20_rad: c20?,
+        c30_rad: c30?,
+        c40_rad_s: c40?,
+        c41,
+        c42_s_rad: c42,
+    };
+    // Eq. 28 must stay a standard deviation over everything that can be nominal.
+    let scan = |to: f64, sigma: &dyn Fn(f64) -> f64| (0..=200).all(|i| sigma(to * f64::from(i) / 200.0) >= 0.0);
+    if !scan(25.0, &|v| errors.speed_m_s(v)) {
+        faults.push(keys.fault("c10", "c10 + c11 v + c12 v^2 must be 0 or more for every speed to 25 m/s"));
+    }
+    if !scan(max_spin, &|w| errors.backspin_rad_s(w)) {
+        faults.push(keys.fault("c40", "c40 + c41 w + c42 w^2 must be 0 or more for every backspin to max_backspin"));
+    }
+    (faults.len() == before).then_some(errors)
+}
+
+fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>) -> Option<Place> {
+    let cartesian = keys.has("x") || keys.has("y");
+    let polar = keys.has("distance") || keys.has("angle");
+    let (x, y, key) = if cartesian {
+        if polar {
+            faults.push(keys.fault("x", "give either distance and angle, or x and y"));
+        }
+        keys.quantity("distance", Dimension::Length, faults);
+        keys.quantity("angle", Dimension::Angle, faults);
+        let x = keys.required("x", Dimension::Length, faults);
+        let y = keys.required("y", Dimension::Length, faults);
+        keys.finish(faults);
+        (x?, y?, "location.x")
+    } else {
+        let distance = keys.required("distance", Dimension::Length, faults);
+        let distance = check(&keys, "distance", distance, |d| d > 0.0, "above 0", faults);
+        let angle = keys.required("angle", Dimension::Angle, faults);
+        let angle = check(&keys, "angle", angle, |a| a.abs() <= PI, "between -180 and 180 deg", faults);
+        let place = distance.zip(angle);
+        let span_of = keys.fault("distance", "");
+        keys.finish(faults);
+        let (distance_m, angle_rad) = place?;
+        let place = Place { distance_m, angle_rad };
+        return check_place(place, physics, &span_of, faults);
+    };
+    let place = Place { distance_m: (x * x + y * y).sqrt(), angle_rad: libm::atan2(y, x) };
+    let at = Fault { span: 0..0, key: key.to_owned(), message: String::new() };
+    check_place(place, physics, &at, faults)
+}
+
+fn check_place(place: Place, physics: &Physics, at: &Fault, faults: &mut Vec<Fault>) -> Option<Place> {
+    let foot = crate::physics::FOOT_M;
+    let reach = physics.ring_radius_m + physics.ball_radius_m;
+    let fault = |message: String| Fault { message, ..at.clone() };
+    let x = place.distance_m * libm::cos(place.angle_rad);
+    let in_front = physics.ball_radius_m - physics.board_distance_m;
+    if !(place.distance_m > reach) {
+        faults.push(fault(format!(
+            "the place is inside the ring's reach; the distance must be more than {:.2} ft ({reach:.3} m)",
+            reach / foot
+        )));
+        return None;
+    }
+    if !(x > in_front) {
+        faults.push(fault(format!(
+            "the place is behind the board (x = {:.2} ft); x = distance cos(angle) must be more than {:.2} ft ({in_front:.3} m)",
+            x / foot,
+            in_front / foot
+        )));
+        return None;
+    }
+    if !(place.distance_m < 40.0) {
+        faults.push(fault("the distance must be below 40 m (131 ft)".to_owned()));
+        return None;
+    }
+    Some(place)
+}
+
+fn read_physics(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> (Physics, Integrator) {
+    let mut keys = root.table("physics", faults);
+    let mut physics = Physics::paper();
+    if let Some(preset) = keys.text("preset", faults) {
+        if preset != "paper" {
+            faults.push(keys.fault("preset", "must be \"paper\" (set restitution for a livelier or duller ball)"));
+        }
+    }
+    let before = faults.len();
+    {
+        let p = &mut physics;
+        let settings: [(&'static str, Dimension, &mut f64); 15] = [
+            ("ball_radius", Dimension::Length, &mut p.ball_radius_m),
+            ("ball_mass", Dimension::Mass, &mut p.ball_mass_kg),
+            ("inertia_ratio", Dimension::Number, &mut p.inertia_ratio),
+            ("ring_radius", Dimension::Length, &mut p.ring_radius_m),
+            ("board_distance", Dimension::Length, &mut p.board_distance_m),
+            ("board_width", Dimension::Length, &mut p.board_width_m),
+            ("board_height", Dimension::Length, &mut p.board_height_m),
+            ("board_centre_height", Dimension::Length, &mut p.board_centre_height_m),
+            ("hoop_height", Dimension::Length, &mut p.hoop_height_m),
+            ("gravity", Dimension::Acceleration, &mut p.gravity_m_s2),
+            ("stiffness", Dimension::Stiffness, &mut p.stiffness_n_m),
+            ("damping", Dimension::Damping, &mut p.damping_kg_s),
+            ("friction", Dimension::Number, &mut p.friction),
+            ("time_limit", Dimension::Time, &mut p.time_limit_s),
+            ("lodged_after", Dimension::Time, &mut p.lodged_after_s),
+        ];
+        for (key, dimension, place) in settings {
+            if let Some(value) = keys.quantity(key, dimension, faults) {
+                *place = value;
+            }
+        }
+    }
+    if let Some(restitution) = keys.quantity("restitution", Dimension::Number, faults) {
+        if keys.has("damping") {
+            faults.push(keys.fault("restitution", "give either restitution or damping"));
+        } else if let Err(error) = physics.set_restitution(restitution) {
+            faults.push(keys.fault("restitution", format!("must be {}", error.allowed)));
+        }
+    }
+    if faults.len() == before {
+        for error in physics.faults() {
+            faults.push(keys.fault(error.key, format!("must be {}", error.allowed)));
+        }
+    }
+    let integrator = read_integrator(&mut keys, faults);
+    keys.finish(faults);
+    (physics, integrator)
+}
+
+fn read_integrator(keys: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Integrator {
+    let name = keys.text("integrator", faults).unwrap_or_else(|| "exact".to_owned());
+    let steps = keys.count("steps_per_contact", 2..=100_000, faults).unwrap_or(8);
+    let dt_max = keys.quantity("dt_max", Dimension::Time, faults).unwrap_or(0.015);
+    let dt_min = keys.quantity("dt_min", Dimension::Time, faults).unwrap_or(0.0005);
+    for (key, value) in [("dt_max", dt_max), ("dt_min", dt_min)] {
+        check(keys, key, Some(value), |dt| (1e-7..=0.1).contains(&dt), "from 1e-7 s to 0.1 s", faults);
+    }
+    if dt_min > dt_max {
+        faults.push(keys.fault("dt_min", "must not be more than dt_max"));
+    }
+    match name.as_str() {
+        "exact" => Integrator::Exact { steps_per_contact: u32::try_from(steps).unwrap_or(8) },
+        "paper" => Integrator::Paper { dt_max_s: dt_max, dt_min_s: dt_min },
+        _ => {
+            faults.push(keys.fault("integrator", "must be \"exact\" or \"paper\""));
+            Integrator::EXACT
+        }
+    }
+}
+
+fn read_grid(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Grid {
+    let mut keys = root.table("grid", faults);
+    let mut grid = Grid::default();
+    for (key, place) in [
+        ("speed", &mut grid.speed),
+        ("pitch", &mut grid.pitch),
+        ("polar", &mut grid.polar),
+        ("backspin", &mut grid.backspin),
+    ] {
+        if let Some(count) = keys.count(key, 2..=100_000, faults) {
+            *place = usize::try_from(count).unwrap_or(usize::MAX);
+        }
+    }
+    keys.finish(faults);
+    grid
+}
+
+fn read_search(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Search {
+    let mut keys = root.table("search", faults);
+    let mut search = Search::default();
+    let deg = crate::units::DEGREE_RAD;
+    let pitch = |a: f64| (deg..=89.0 * deg).contains(&a);
+    for (key, place) in
+        [("pitch_min", &mut search.pitch_min_rad), ("pitch_max", &mut search.pitch_max_rad)]
+    {
+        let value = keys.quantity(key, Dimension::Angle, faults);
+        if let Some(value) = check(&keys, key, value, pitch, "from 1 to 89 deg", faults) {
+            *place = value;
+        }
+    }
+    if !(search.pitch_min_rad < search.pitch_max_rad) {
+        faults.push(keys.fault("pitch_min", "must be less than pitch_max"));
+    }
+    let speed = keys.quantity("speed_max", Dimension::Speed, faults);
+    search.speed_max_m_s = check(&keys, "speed_max", speed, |v| v > 0.0 && v <= 40.0, "above 0 and at most 40 m/s", faults);
+    let error = keys.quantity("standard_error", Dimension::Number, faults);
+    if let Some(error) = check(&keys, "standard_error", error, |e| (1e-5..=0.1).contains(&e), "from 0.00001 to 0.1", faults) {
+        search.standard_error = error;
+    }
+    if let Some(seed) = keys.count("seed", 0..=u64::MAX, faults) {
+        search.seed = seed;
+    }
+    keys.finish(faults);
+    search
+}
+
+fn read_output(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Output {
+    let mut keys = root.table("output", faults);
+    let mut output = Output::default();
+    if let Some(folder) = keys.text("folder", faults) {
+        if folder.is_empty() || folder.contains('\0') {
+            faults.push(keys.fault("folder", "must be the name of a folder"));
+        }
+        output.folder = folder;
+    }
+    match keys.text("units", faults).as_deref() {
+        None | Some("imperial") => {}
+        Some("metric") => output.units = System::Metric,
+        Some(_) => faults.push(keys.fault("units", "must be \"imperial\" or \"metric\"")),
+    }
+    keys.finish(faults);
+    output
+}
