@@ -17,18 +17,22 @@ const NO_SLIP_M_S: f64 = 1e-9;
 /// Part of the slip, at the start of a step meant to end it, that may be left over.
 const SLIP_LEFT: f64 = 0.05;
 /// The same as a speed: what the shortest step at the strongest friction overshoots by, m/s.
-const SLIP_ENDED_M_S: f64 = 5e-4;
+const SLIP_ENDED_M_S: f64 = 1e-5;
 /// In a step that ends the slip, stages with less than this part of it keep the direction of the
 /// start: at zero slip the sliding law has none.
 pub(crate) const SLIP_DIRECTION_LOST: f64 = 0.1;
-/// Compression at which a ball moving away has parted, m.
-pub(crate) const PARTED_M: f64 = 2e-5;
+/// Compression at which a ball moving away has parted, m: more where it moves fast, and the rest of
+/// the way takes microseconds.
+const PARTED_M: f64 = 1e-7;
+const PARTED_FAST_M: f64 = 2e-5;
+/// Speed away from the surface that counts as fast, m/s.
+const FAST_M_S: f64 = 0.1;
 /// Gap at which a surface that is being approached counts as touched, m.
 pub(crate) const REACHED_M: f64 = 1e-7;
 /// Normal acceleration that counts as zero, m/s^2.
 pub(crate) const NO_FORCE_M_S2: f64 = 1e-3;
 /// Shortest step, s.
-pub(crate) const SHORTEST_S: f64 = 1e-7;
+pub(crate) const SHORTEST_S: f64 = 1e-9;
 
 /// How friction acts at a contact, carried from step to step.
 #[derive(Clone, Copy, Debug)]
@@ -251,8 +255,7 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     other: impl FnOnce(&State<L>, Triple<L>) -> L,
 ) -> Step<L> {
     let (mut touch, frame) = surface.meet(law, state);
-    let tiny = law.zero.lit(PARTED_M);
-    let parted = touch.compression.le(tiny) & law.zero.lt(touch.v.0);
+    let parted = has_parted(law, &touch);
     if parted.all() {
         settle_parting(law, surface, state, (&touch, frame), parted);
         return Step { dt: law.zero, parted };
@@ -345,6 +348,14 @@ fn time_to_change<L: Lane>(
     first_root(law, c0, c1, c2).when(moving, law.never)
 }
 
+/// Is the compression gone, but for what the parting's own step makes up?
+#[inline(always)]
+pub(crate) fn has_parted<L: Lane>(law: &Law<L>, touch: &Touch<L>) -> L::Mask {
+    let fast = law.zero.lit(FAST_M_S).lt(touch.v.0);
+    let gone = law.zero.lit(PARTED_FAST_M).when(fast, law.zero.lit(PARTED_M));
+    law.zero.lt(touch.v.0) & touch.compression.le(gone)
+}
+
 /// Moves a ball that has parted along its last stretch to (or back to) zero compression.
 #[inline(always)]
 fn settle_parting<L: Lane, S: Surface<L>>(
@@ -354,7 +365,9 @@ fn settle_parting<L: Lane, S: Surface<L>>(
     (touch, frame): (&Touch<L>, S::Frame),
     parted: L::Mask,
 ) {
-    let dt = (touch.compression / touch.v.0.when(parted, law.one)).when(parted, law.zero);
+    let most = law.zero.lit(PARTED_FAST_M / FAST_M_S);
+    let dt = (touch.compression / touch.v.0.when(parted, law.one)).least(most).most(-most);
+    let dt = dt.when(parted, law.zero);
     let push = Triple(touch.normal(law), law.zero, law.zero);
     let last = rate(law, surface, state, (touch, frame), push);
     *state = state.advanced(&last, dt);

@@ -59,6 +59,7 @@ pub(crate) fn run<W: Watch>(law: &Law, rules: &Rules, start: State, watch: &mut 
         passage: Passage::at_release(law, &start),
         wedged_s: 0.0,
     };
+    shot.begin();
     for _ in 0..MOST_STRETCHES {
         let ending = match shot.on {
             On::Nothing => shot.fly(),
@@ -77,6 +78,23 @@ impl<W: Watch> Shot<'_, W> {
     fn verdict(&self, ending: Ending) -> Verdict {
         let made = ending == Ending::Fell && self.passage.made(self.law, &self.state);
         Verdict { made, ending, contacts: self.contacts, time_s: self.time_s }
+    }
+
+    /// A ball that is already pressed against something starts in contact.
+    fn begin(&mut self) {
+        let (board, ()) = Board.meet(self.law, &self.state);
+        let (ring, _) = Ring.meet(self.law, &self.state);
+        let on_board = board.compression > REACHED_M && flight::on_board(self.law, &self.state);
+        let on_ring = ring.compression > REACHED_M;
+        let fresh = Grip::fresh(self.law);
+        if on_board {
+            self.touch(Touched::Board);
+            self.on = On::Board(fresh);
+        }
+        if on_ring {
+            self.touch(Touched::Ring);
+            self.on = if on_board { On::Both([fresh; 2]) } else { On::Ring(fresh) };
+        }
     }
 
     /// One arc of free flight, up to its end or the next touch.

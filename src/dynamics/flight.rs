@@ -141,9 +141,10 @@ fn ring_time<L: Lane>(law: &Law<L>, state: &State<L>, horizon: L) -> (L, L::Mask
             let fall_square = law.zero.when(law.zero.lt(vzt), vzt.squared());
             let bend = (turning + law.gravity * law.radius - level_square - fall_square)
                 .most(law.zero);
-            // value + 2 half_slope s - bend s^2 >= 0 up to s.
-            let root = (half_slope.squared() + bend * value).most(law.zero).sqrt();
-            let closing = half_slope.lt(law.zero);
+            // value + 2 half_slope s - bend s^2 >= 0 up to s. What little overlap a parting leaves
+            // counts as none.
+            let root = (half_slope.squared() + bend * value.most(law.zero)).sqrt();
+            let closing = half_slope.le(law.zero);
             let away = law.zero.lt(bend);
             let s = (value / (root - half_slope).when(closing, law.one))
                 .when(closing, ((half_slope + root) / bend.when(away, law.one)).when(away, law.never));

@@ -4,7 +4,7 @@
 //! contacts roll, their frictions are coupled: four linear equations say that both slips stay zero.
 
 use super::contact::{
-    self, Grip, Hold, Load, NO_FORCE_M_S2, PARTED_M, SHORTEST_S, SLIP_DIRECTION_LOST, first_root,
+    self, Grip, Hold, Load, NO_FORCE_M_S2, SHORTEST_S, SLIP_DIRECTION_LOST, first_root,
 };
 use super::state::{Law, Rate, State, Triple};
 use super::surface::{Board, Ring, Surface, Touch};
@@ -147,7 +147,7 @@ fn direction(slip: (f64, f64), along: (f64, f64), least: f64) -> (f64, f64) {
 /// Advances a ball in contact with board and ring by one step of at most `longest`.
 pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest: f64) -> WedgeStep {
     let mut pair = Pair::meet(law, state);
-    let left = pair.touches.map(|touch| touch.compression <= PARTED_M && touch.v.0 > 0.0);
+    let left = pair.touches.map(|touch| contact::has_parted(law, &touch));
     let nothing = Triple(0.0, 0.0, 0.0);
     if left[BOARD] || left[RING] {
         return WedgeStep {

@@ -18,7 +18,7 @@ const POLAR_STEP_RAD: f64 = 0.000_5;
 /// Share of the sideways velocity that a bounce off the board keeps, with room on both sides.
 const SIDEWAYS_KEPT: (f64, f64) = (0.4, 1.1);
 /// Greatest speed considered, as a multiple of the least that reaches the hoop.
-const SPEED_ROOM: f64 = 1.6;
+const SPEED_ROOM: f64 = 2.0;
 
 /// The speeds (for each direction) and the polar angles of the releases that can go in.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -132,11 +132,16 @@ impl Bracket {
             .map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS))
             .map(|s| self.speed_through(s, -self.ball_radius_m, pitch_rad))
             .fold(f64::INFINITY, f64::min);
-        // High enough to miss: over the ball's reach at the ring's far side, and over the board.
+        // High enough to miss: over the ball's reach at the ring's far side, and over the board both
+        // where the ball would touch it (on the way up) and at its face (on the way down).
         let over_ring = self.speed_through(far, self.ball_radius_m, pitch_rad);
-        let over_board = self
-            .path_to_board(polar_rad)
-            .map_or(0.0, |s| self.speed_through(s, self.board_top_m, pitch_rad));
+        let over_board = self.path_to_board(polar_rad).map_or(0.0, |face| {
+            let touch = face - self.ball_radius_m / libm::cos(polar_rad);
+            [touch, face]
+                .map(|s| self.speed_through(s.max(1e-3), self.board_top_m, pitch_rad))
+                .into_iter()
+                .fold(0.0, f64::max)
+        });
         let most = over_ring.max(over_board).min(self.speed_max_m_s);
         (least < most).then_some((least, most))
     }

@@ -118,7 +118,7 @@ pub struct Search {
     pub pitch_min_rad: f64,
     /// Largest nominal pitch angle, rad.
     pub pitch_max_rad: f64,
-    /// Largest speed of a release, m/s; by default 1.6 times the least speed to the hoop.
+    /// Largest speed of a release, m/s; by default 2 times the least speed to the hoop.
     pub speed_max_m_s: Option<f64>,
     /// Standard error wanted for each printed probability.
     pub standard_error: f64,
@@ -126,11 +126,17 @@ pub struct Search {
     pub seed: u64,
 }
 
-impl Default for Search {
-    fn default() -> Self {
+impl Search {
+    /// The default search from a place: nominal pitch angles from 8 deg below to 14 deg above that of
+    /// the least speed to the hoop, 45 deg and half the angle at which the hoop is seen (Brancazio
+    /// 1981).
+    #[must_use]
+    pub fn around(distance_m: f64, height_above_hoop_m: f64) -> Self {
+        let deg = crate::units::DEGREE_RAD;
+        let least = 45.0 * deg + 0.5 * libm::atan2(-height_above_hoop_m, distance_m);
         Self {
-            pitch_min_rad: 35.0_f64.to_radians(),
-            pitch_max_rad: 70.0_f64.to_radians(),
+            pitch_min_rad: (least - 8.0 * deg).clamp(deg, 80.0 * deg),
+            pitch_max_rad: (least + 14.0 * deg).clamp(9.0 * deg, 85.0 * deg),
             speed_max_m_s: None,
             standard_error: 0.001,
             seed: 1,

@@ -45,7 +45,10 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
         let (physics, integrator) = read_physics(&mut keys, faults);
         let place = read_place(place_at, &physics, faults);
         let grid = read_grid(&mut keys, faults);
-        let search = read_search(&mut keys, faults);
+        let usual = place.zip(shooter.as_ref()).map(|(place, shooter)| {
+            Search::around(place.distance_m, shooter.release_height_m - physics.hoop_height_m)
+        });
+        let search = read_search(&mut keys, usual.unwrap_or_else(|| Search::around(4.0, -1.0)), faults);
         let output = read_output(&mut keys, faults);
         keys.finish(faults);
         Some(Profile { shooter: shooter?, place: place?, physics, integrator, grid, search, output })
@@ -307,9 +310,9 @@ fn read_grid(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Grid {
     grid
 }
 
-fn read_search(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Search {
+fn read_search(root: &mut Keys<'_, '_>, usual: Search, faults: &mut Vec<Fault>) -> Search {
     let mut keys = root.table("search", faults);
-    let mut search = Search::default();
+    let mut search = usual;
     let deg = crate::units::DEGREE_RAD;
     let pitch = |a: f64| (deg..=89.0 * deg).contains(&a);
     for (key, place) in
