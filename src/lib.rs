@@ -41,25 +41,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-/// Constants of ball, ring and board, in SI units.
+// Constants of ball, ring and board, in SI units.
 pub mod physics;
 
-/// Quantities with their units, at the border of the program.
+// Quantities with their units, at the border of the program.
 pub mod units;
 
 mod lane;
 
-/// The ball in flight and in contact: from a release to made or missed.
+// The ball in flight and in contact: from a release to made or missed.
 pub mod dynamics;
 
-/// A shooter's profile, checked.
+// A shooter's profile, checked.
 pub mod profile;
 
-/// Which releases are worth simulating, and the cost.
+// Which releases are worth simulating, and the cost.
 pub mod plan;
 
-/// Probabilities and best shots.
+// Probabilities and best shots.
 pub mod probability;
 
-/// Records, tables and files.
+// Records, tables and files.
 pub mod output;

@@ -46,9 +46,13 @@ impl Dimension {
     pub fn units(self) -> &'static [(&'static str, f64)] {
         match self {
             Self::Number => &[],
-            Self::Length => {
-                &[("ft", FOOT_M), ("in", INCH_M), ("m", 1.0), ("cm", 0.01), ("mm", 0.001)]
-            }
+            Self::Length => &[
+                ("ft", FOOT_M),
+                ("in", INCH_M),
+                ("m", 1.0),
+                ("cm", 0.01),
+                ("mm", 0.001),
+            ],
             Self::Speed => &[
                 ("ft/s", FOOT_M),
                 ("m/s", 1.0),
@@ -56,19 +60,28 @@ impl Dimension {
                 ("mph", 5280.0 * FOOT_M / 3600.0),
             ],
             Self::Angle => &[("deg", DEGREE_RAD), ("rad", 1.0)],
-            Self::Spin => {
-                &[("rev/s", REV_RAD), ("Hz", REV_RAD), ("rad/s", 1.0), ("deg/s", DEGREE_RAD)]
-            }
+            Self::Spin => &[
+                ("rev/s", REV_RAD),
+                ("Hz", REV_RAD),
+                ("rad/s", 1.0),
+                ("deg/s", DEGREE_RAD),
+            ],
             Self::Time => &[("s", 1.0), ("ms", 0.001)],
             Self::PerSpeed => &[("s/ft", 1.0 / FOOT_M), ("s/m", 1.0)],
             Self::PerSpin => &[("s/rev", 1.0 / REV_RAD), ("s/rad", 1.0)],
-            Self::Mass => {
-                &[("kg", 1.0), ("g", 0.001), ("lb", POUND_KG), ("oz", POUND_KG / 16.0), ("slug", SLUG_KG)]
-            }
+            Self::Mass => &[
+                ("kg", 1.0),
+                ("g", 0.001),
+                ("lb", POUND_KG),
+                ("oz", POUND_KG / 16.0),
+                ("slug", SLUG_KG),
+            ],
             Self::Stiffness => &[("lb/ft", POUND_FORCE_N / FOOT_M), ("N/m", 1.0)],
-            Self::Damping => {
-                &[("lb s/ft", POUND_FORCE_N / FOOT_M), ("N s/m", 1.0), ("kg/s", 1.0)]
-            }
+            Self::Damping => &[
+                ("lb s/ft", POUND_FORCE_N / FOOT_M),
+                ("N s/m", 1.0),
+                ("kg/s", 1.0),
+            ],
             Self::Acceleration => &[("ft/s^2", FOOT_M), ("m/s^2", 1.0)],
         }
     }
@@ -143,11 +156,15 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     if word.starts_with("nan") || word.starts_with("inf") {
         return Err(QuantityError::NotFinite { text: shown() });
     }
-    let value: f64 =
-        number.parse().map_err(|_| QuantityError::NotANumber { text: shown() })?;
+    let value: f64 = number
+        .parse()
+        .map_err(|_| QuantityError::NotANumber { text: shown() })?;
     let unit = unit.split_whitespace().collect::<Vec<_>>().join(" ");
     if unit.is_empty() && dimension != Dimension::Number {
-        return Err(QuantityError::NoUnit { text: shown(), allowed: dimension.unit_names() });
+        return Err(QuantityError::NoUnit {
+            text: shown(),
+            allowed: dimension.unit_names(),
+        });
     }
     let scale = if dimension == Dimension::Number && unit.is_empty() {
         1.0
@@ -163,7 +180,11 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
             })?
     };
     let value = value * scale;
-    if value.is_finite() { Ok(value) } else { Err(QuantityError::NotFinite { text: shown() }) }
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(QuantityError::NotFinite { text: shown() })
+    }
 }
 
 /// Digits, signs and an exponent; an `e` belongs to the number only before a digit or a sign.
@@ -172,7 +193,9 @@ fn is_number_part(text: &str, i: usize, c: char) -> bool {
         '0'..='9' | '.' => true,
         '+' | '-' => i == 0 || text[..i].ends_with(['e', 'E']),
         'e' | 'E' => {
-            i > 0 && text[i + 1..].starts_with(|next: char| next.is_ascii_digit() || "+-".contains(next))
+            i > 0
+                && text[i + 1..]
+                    .starts_with(|next: char| next.is_ascii_digit() || "+-".contains(next))
         }
         _ => false,
     }
@@ -219,21 +242,51 @@ mod tests {
         assert_eq!(parse("36 km/h", Dimension::Speed).unwrap(), 10.0);
         assert_eq!(parse("3rev/s", Dimension::Spin).unwrap(), 6.0 * PI);
         assert_eq!(parse("-1.5e1 cm", Dimension::Length).unwrap(), -0.15);
-        assert_eq!(parse("1.53 lb  s/ft", Dimension::Damping).unwrap(), 1.53 * POUND_FORCE_N / FOOT_M);
+        assert_eq!(
+            parse("1.53 lb  s/ft", Dimension::Damping).unwrap(),
+            1.53 * POUND_FORCE_N / FOOT_M
+        );
         assert_eq!(parse("180 deg", Dimension::Angle).unwrap(), PI);
     }
 
     #[test]
     fn contract_bad_quantities_are_refused_with_their_reason() {
         let length = Dimension::Length;
-        assert!(matches!(parse("", length), Err(QuantityError::NotANumber { .. })));
-        assert!(matches!(parse("ft", length), Err(QuantityError::NotANumber { .. })));
-        assert!(matches!(parse("1", length), Err(QuantityError::NoUnit { .. })));
-        assert!(matches!(parse("1 deg", length), Err(QuantityError::WrongUnit { .. })));
-        assert!(matches!(parse("1 FT", length), Err(QuantityError::WrongUnit { .. })));
-        assert!(matches!(parse("nan ft", length), Err(QuantityError::NotFinite { .. })));
-        assert!(matches!(parse("-inf m", length), Err(QuantityError::NotFinite { .. })));
-        assert!(matches!(parse("1e999 m", length), Err(QuantityError::NotFinite { .. })));
-        assert!(matches!(parse("1 2 m", length), Err(QuantityError::WrongUnit { .. })));
+        assert!(matches!(
+            parse("", length),
+            Err(QuantityError::NotANumber { .. })
+        ));
+        assert!(matches!(
+            parse("ft", length),
+            Err(QuantityError::NotANumber { .. })
+        ));
+        assert!(matches!(
+            parse("1", length),
+            Err(QuantityError::NoUnit { .. })
+        ));
+        assert!(matches!(
+            parse("1 deg", length),
+            Err(QuantityError::WrongUnit { .. })
+        ));
+        assert!(matches!(
+            parse("1 FT", length),
+            Err(QuantityError::WrongUnit { .. })
+        ));
+        assert!(matches!(
+            parse("nan ft", length),
+            Err(QuantityError::NotFinite { .. })
+        ));
+        assert!(matches!(
+            parse("-inf m", length),
+            Err(QuantityError::NotFinite { .. })
+        ));
+        assert!(matches!(
+            parse("1e999 m", length),
+            Err(QuantityError::NotFinite { .. })
+        ));
+        assert!(matches!(
+            parse("1 2 m", length),
+            Err(QuantityError::WrongUnit { .. })
+        ));
     }
 }

@@ -39,7 +39,11 @@ fn prop_energy_never_grows() {
         for sample in &trace.samples {
             let edge = (sample.state.position_m.2 - top).abs() < 0.05;
             let now = energy(&physics, &sample.state);
-            assert!(now <= last * (1.0 + 2e-6) || edge, "{release:?} at {}: {last} to {now}", sample.time_s);
+            assert!(
+                now <= last * (1.0 + 2e-6) || edge,
+                "{release:?} at {}: {last} to {now}",
+                sample.time_s
+            );
             last = now;
         }
     }
@@ -79,11 +83,19 @@ fn prop_angular_momentum_about_the_contact_is_kept() {
             dv[2] += physics.gravity_m_s2 * dt;
             let (p, q) = (arm(&physics, a), arm(&physics, b));
             let m = [0, 1, 2].map(|i| 0.5 * (p[i] + q[i]));
-            let cross = [m[1] * dv[2] - m[2] * dv[1], m[2] * dv[0] - m[0] * dv[2], m[0] * dv[1] - m[1] * dv[0]];
+            let cross = [
+                m[1] * dv[2] - m[2] * dv[1],
+                m[2] * dv[0] - m[0] * dv[2],
+                m[0] * dv[1] - m[1] * dv[0],
+            ];
             let size = dv.iter().map(|v| v * v).sum::<f64>().sqrt() * physics.ball_radius_m;
             for i in 0..3 {
                 let left = inertia * dw[i] + cross[i];
-                assert!(left.abs() < 2e-3 * size + 1e-9, "{left} of {size} at {}", a.time_s);
+                assert!(
+                    left.abs() < 2e-3 * size + 1e-9,
+                    "{left} of {size} at {}",
+                    a.time_s
+                );
             }
             checked += 1;
         }
@@ -97,7 +109,10 @@ fn prop_shots_mirrored_in_the_plane_of_symmetry_end_alike() {
     for mut release in foul(2000, 24).into_iter().chain(side(2000, 25)) {
         release.side_spin_rad_s = 3.0;
         release.rifle_spin_rad_s = -2.0;
-        let (a, b) = (simulator.shoot(&release), simulator.shoot(&release.mirrored()));
+        let (a, b) = (
+            simulator.shoot(&release),
+            simulator.shoot(&release.mirrored()),
+        );
         assert_eq!(a.verdict, b.verdict);
         assert_eq!(a.kind, b.kind);
     }
@@ -123,7 +138,10 @@ fn prop_a_scaled_world_gives_the_same_shots() {
     large.damping_kg_s /= 2.0;
     large.time_limit_s *= 2.0;
     large.lodged_after_s *= 2.0;
-    let (a, b) = (Simulator::new(&physics).unwrap(), Simulator::new(&large).unwrap());
+    let (a, b) = (
+        Simulator::new(&physics).unwrap(),
+        Simulator::new(&large).unwrap(),
+    );
     let shots = foul(2000, 26);
     let same = shots.iter().filter(|release| {
         let scaled = Release {
@@ -152,7 +170,10 @@ fn prop_outcomes_are_consistent() {
             Kind::Swish | Kind::RimIn | Kind::BankIn | Kind::BankRimIn
         );
         assert_eq!(outcome.verdict.made, made_kind);
-        assert_eq!(contacts.to_string().split_whitespace().count() as u32, contacts.count());
+        assert_eq!(
+            contacts.to_string().split_whitespace().count() as u32,
+            contacts.count()
+        );
         assert_ne!(outcome.kind, Kind::Unresolved);
         if outcome.kind == Kind::Swish || outcome.kind == Kind::Airball {
             assert_eq!(contacts.count(), 0);
@@ -162,7 +183,17 @@ fn prop_outcomes_are_consistent() {
             assert!(entry.angle_rad > 0.0);
         }
     }
-    for kind in [Kind::Swish, Kind::RimIn, Kind::BankIn, Kind::BankRimIn, Kind::InAndOut, Kind::Short, Kind::Long, Kind::OverBoard, Kind::Lodged] {
+    for kind in [
+        Kind::Swish,
+        Kind::RimIn,
+        Kind::BankIn,
+        Kind::BankRimIn,
+        Kind::InAndOut,
+        Kind::Short,
+        Kind::Long,
+        Kind::OverBoard,
+        Kind::Lodged,
+    ] {
         assert!(kinds.contains(&kind), "{kind:?} never seen");
     }
 }
@@ -185,7 +216,10 @@ fn prop_grazes_are_found() {
     for i in 0..50 {
         let pitch = 45.0 + 0.4 * f64::from(i);
         let count = |v: f64| {
-            simulator.verdict(&common::release(0.0, v, pitch, 0.3, 1.0)).contacts.count()
+            simulator
+                .verdict(&common::release(0.0, v, pitch, 0.3, 1.0))
+                .contacts
+                .count()
         };
         let swish = (2200..2700).map(|v| f64::from(v) * 0.01).find(|&v| {
             let outcome = simulator.shoot(&common::release(0.0, v, pitch, 0.3, 1.0));
@@ -195,7 +229,11 @@ fn prop_grazes_are_found() {
         let mut high = low + 2.0;
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if count(middle) == 0 { low = middle } else { high = middle }
+            if count(middle) == 0 {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         // On both sides of the edge the answer is the one for that side, down to 1e-7 ft/s.
         for k in 3..7 {

@@ -12,14 +12,22 @@ use common::{agreement, exact, foul, paper, side};
 #[test]
 fn val_exact_agrees_with_its_own_smallest_steps_on_foul() {
     let physics = Physics::paper();
-    let rate = agreement(&exact(&physics, 8), &exact(&physics, 1000), &foul(20_000, 11));
+    let rate = agreement(
+        &exact(&physics, 8),
+        &exact(&physics, 1000),
+        &foul(20_000, 11),
+    );
     assert!(rate >= 0.999, "{rate}");
 }
 
 #[test]
 fn val_exact_agrees_with_its_own_smallest_steps_from_the_side() {
     let physics = Physics::paper();
-    let rate = agreement(&exact(&physics, 8), &exact(&physics, 1000), &side(20_000, 12));
+    let rate = agreement(
+        &exact(&physics, 8),
+        &exact(&physics, 1000),
+        &side(20_000, 12),
+    );
     assert!(rate >= 0.999, "{rate}");
 }
 
@@ -56,7 +64,11 @@ fn after_bounce(simulator: &Simulator) -> [f64; 6] {
 }
 
 fn distance(a: [f64; 6], b: [f64; 6]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).powi(2))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// Mean order over several halvings of the step; single ratios scatter with where the last step of a
@@ -71,10 +83,23 @@ fn val_convergence_orders() {
     let reference = after_bounce(&exact(&physics, 1024));
     let error = |n: u32| distance(after_bounce(&exact(&physics, n)), reference);
     let exact_order = order(error(4), error(16), 2);
-    assert!(exact_order > 3.0, "exact: order {exact_order} ({} {})", error(4), error(16));
+    assert!(
+        exact_order > 3.0,
+        "exact: order {exact_order} ({} {})",
+        error(4),
+        error(16)
+    );
     // The sliding law alone chatters about the roll: first order.
     let error = |dt: f64| distance(after_bounce(&paper(&physics, 0.001, dt)), reference);
-    let mean = |dt: f64| (0..8).map(|i| error(dt * (1.0 + 0.05 * f64::from(i)))).sum::<f64>() / 8.0;
+    let mean = |dt: f64| {
+        (0..8)
+            .map(|i| error(dt * (1.0 + 0.05 * f64::from(i))))
+            .sum::<f64>()
+            / 8.0
+    };
     let paper_order = order(mean(1e-4), mean(1.25e-5), 3);
-    assert!((0.6..1.6).contains(&paper_order), "paper: order {paper_order}");
+    assert!(
+        (0.6..1.6).contains(&paper_order),
+        "paper: order {paper_order}"
+    );
 }

@@ -17,7 +17,9 @@ fn bands(physics: &Physics, (court, polar, spin): (f64, f64, f64)) -> (Vec<(f64,
     let mut inside = false;
     for i in 0..3000 {
         let speed = 21.0 + 0.002 * f64::from(i);
-        let made = simulator.verdict(&release(court, speed, 52.0, polar, spin)).made;
+        let made = simulator
+            .verdict(&release(court, speed, 52.0, polar, spin))
+            .made;
         if made {
             total += 0.002;
             if !inside {
@@ -35,7 +37,9 @@ fn check(physics: &Physics, case: (f64, f64, f64), expected: &[(f64, f64)], tota
     let (found, sum) = bands(physics, case);
     for &(start, width) in expected {
         assert!(
-            found.iter().any(|b| (b.0 - start).abs() <= 0.006 && (b.1 - width).abs() <= 0.006),
+            found
+                .iter()
+                .any(|b| (b.0 - start).abs() <= 0.006 && (b.1 - width).abs() <= 0.006),
             "band {start} {width} not among {found:?}"
         );
     }
@@ -52,15 +56,25 @@ fn val_paper_fig_12_no_spin() {
     // The last band begins at 25.086 (width 0.058) in a scan with steps of 5e-6 s, because a single
     // sample at 25.084 is missed there after eight contacts. Every other step size and both
     // integrators make it and begin the band at 25.078: the gap, if any, is thinner than the scan.
-    let bands =
-        [(23.316, 0.534), (24.134, 0.032), (24.500, 0.424), (24.942, 0.050), (25.078, 0.066)];
+    let bands = [
+        (23.316, 0.534),
+        (24.134, 0.032),
+        (24.500, 0.424),
+        (24.942, 0.050),
+        (25.078, 0.066),
+    ];
     check(&Physics::paper(), FIG_12, &bands, 1.314);
 }
 
 #[test]
 fn val_paper_fig_13_backspin() {
-    let bands =
-        [(23.174, 0.068), (23.244, 0.046), (23.312, 0.578), (24.574, 0.630), (25.224, 0.048)];
+    let bands = [
+        (23.174, 0.068),
+        (23.244, 0.046),
+        (23.312, 0.578),
+        (24.574, 0.630),
+        (25.224, 0.048),
+    ];
     check(&Physics::paper(), FIG_13, &bands, 1.602);
 }
 
@@ -77,7 +91,12 @@ fn val_paper_fig_15_bank_from_the_side() {
 #[test]
 fn val_paper_figs_12_to_15_at_the_restitution_of_appendix_1() {
     let physics = Physics::with_restitution(0.8457).unwrap();
-    check(&physics, FIG_12, &[(23.322, 0.524), (24.304, 0.052), (24.472, 0.362)], 1.058);
+    check(
+        &physics,
+        FIG_12,
+        &[(23.322, 0.524), (24.304, 0.052), (24.472, 0.362)],
+        1.058,
+    );
     check(&physics, FIG_13, &[(23.314, 0.574), (24.560, 0.528)], 1.318);
     check(&physics, FIG_14, &[(23.314, 0.574)], 0.610);
     check(&physics, FIG_15, &[(23.970, 0.802)], 0.810);
@@ -137,10 +156,14 @@ fn val_closed_form_speed_through_the_hoops_centre() {
     let (sin, cos) = 52.0_f64.to_radians().sin_cos();
     let speed = (32.2 * 13.75_f64.powi(2) / (2.0 * cos * cos * (13.75 * sin / cos - 3.0))).sqrt();
     assert!((speed - 23.4536).abs() < 5e-5);
-    let outcome =
-        Simulator::new(&Physics::paper()).unwrap().shoot(&release(0.0, speed, 52.0, 0.0, 0.0));
+    let outcome = Simulator::new(&Physics::paper())
+        .unwrap()
+        .shoot(&release(0.0, speed, 52.0, 0.0, 0.0));
     let (x, y) = outcome.entry.unwrap().offset_m;
-    assert!(outcome.verdict.made && x.abs() < 1e-9 && y.abs() < 1e-9, "{outcome:?}");
+    assert!(
+        outcome.verdict.made && x.abs() < 1e-9 && y.abs() < 1e-9,
+        "{outcome:?}"
+    );
 }
 
 /// The swirl of Fig. 11 with the given spin about the vertical; the turns until the ball has left
@@ -148,11 +171,11 @@ fn val_closed_form_speed_through_the_hoops_centre() {
 fn swirl_turns(spin_z_rad_s: impl Fn(f64, f64) -> f64) -> (f64, f64) {
     let physics = Physics::paper();
     let delta = 87.5_f64.to_radians();
-    let (sin, cos) = delta.sin_cos();
+    let (sin, cos) = libm::sincos(delta);
     let weight = physics.ball_mass_kg * physics.gravity_m_s2;
     let lever = physics.ball_radius_m - weight / (physics.stiffness_n_m * cos);
     let circle = physics.ring_radius_m - lever * sin;
-    let speed = -(physics.gravity_m_s2 * delta.tan() * circle).sqrt();
+    let speed = -(physics.gravity_m_s2 * (sin / cos) * circle).sqrt();
     let spin = spin_z_rad_s(speed, lever * sin);
     let start = State {
         position_m: Triple(0.0, circle, lever * cos),
@@ -179,10 +202,13 @@ fn val_paper_fig_11_swirl_holds_with_the_corrected_spin() {
         spin
     });
     assert!((period - 0.1458).abs() < 1e-4, "{period}");
-    assert!(turns > 2.0 && turns.is_finite(), "holds for several turns, then drops: {turns}");
+    assert!(
+        turns > 2.0 && turns.is_finite(),
+        "holds for several turns, then drops: {turns}"
+    );
     // The spin as printed, with the other sign and seen from the turning frame.
     let (_, turns) = swirl_turns(|speed, arm| {
-        let lever = arm / 87.5_f64.to_radians().sin();
+        let lever = arm / libm::sin(87.5_f64.to_radians());
         let spin = -speed * physics.ring_radius_m / ((physics.ring_radius_m - arm) * lever);
         assert!((spin - 88.14).abs() < 0.05, "{spin}");
         spin

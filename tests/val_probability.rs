@@ -37,7 +37,10 @@ fn val_sobol_agrees_with_plain_monte_carlo() {
         let sobol = sampler.estimate(&shot, 0.001, 5, &Silent);
         let (p, error) = monte_carlo::estimate(&profile, &simulator, &shot, 200_000, 6);
         let sigma = (error * error + sobol.standard_error.powi(2)).sqrt();
-        assert!((p - sobol.probability).abs() < 4.5 * sigma, "{shot:?}: {p} {sobol:?}");
+        assert!(
+            (p - sobol.probability).abs() < 4.5 * sigma,
+            "{shot:?}: {p} {sobol:?}"
+        );
         assert!(sobol.standard_error <= 0.001);
         let shares = sobol.shares;
         assert!((shares.swish + shares.ring + shares.board - sobol.probability).abs() < 1e-12);
@@ -53,9 +56,15 @@ fn val_table_agrees_with_sobol_at_its_nominals() {
     let table = Table::build(&profile, &plan, &simulator, &Silent).probabilities(&profile);
     let sampler = Sampler::new(&profile, &simulator);
     let nearest = |values: &[f64], x: f64| {
-        (0..values.len()).min_by(|&a, &b| (values[a] - x).abs().total_cmp(&(values[b] - x).abs())).unwrap()
+        (0..values.len())
+            .min_by(|&a, &b| (values[a] - x).abs().total_cmp(&(values[b] - x).abs()))
+            .unwrap()
     };
-    for shot in [nominal(23.6, 53.5, 0.0, 3.0), nominal(24.95, 54.5, 0.0, 2.0), nominal(23.5, 50.0, 0.8, 1.0)] {
+    for shot in [
+        nominal(23.6, 53.5, 0.0, 3.0),
+        nominal(24.95, 54.5, 0.0, 2.0),
+        nominal(23.5, 50.0, 0.8, 1.0),
+    ] {
         let index = [
             nearest(&table.pitch_rad, shot.pitch_rad),
             nearest(&table.polar_rad, shot.polar_rad),
@@ -64,7 +73,10 @@ fn val_table_agrees_with_sobol_at_its_nominals() {
         ];
         let (p, at) = table.at(index);
         let sobol = sampler.estimate(&at, 0.0004, 9, &Silent);
-        assert!((p - sobol.probability).abs() < 0.004, "{at:?}: {p} {sobol:?}");
+        assert!(
+            (p - sobol.probability).abs() < 0.004,
+            "{at:?}: {p} {sobol:?}"
+        );
         assert_eq!(sobol.unresolved, 0);
     }
 }
@@ -73,10 +85,18 @@ fn val_table_agrees_with_sobol_at_its_nominals() {
 fn val_without_errors_the_probability_is_the_one_shots_outcome() {
     let mut profile = load("free_throw");
     let errors = &mut profile.shooter.errors;
-    (errors.c10_m_s, errors.c20_rad, errors.c30_rad, errors.c40_rad_s) = (0.0, 0.0, 0.0, 0.0);
+    (
+        errors.c10_m_s,
+        errors.c20_rad,
+        errors.c30_rad,
+        errors.c40_rad_s,
+    ) = (0.0, 0.0, 0.0, 0.0);
     let simulator = Simulator::new(&profile.physics).unwrap();
     let sampler = Sampler::new(&profile, &simulator);
-    for (shot, p) in [(nominal(23.6, 52.0, 0.0, 0.0), 1.0), (nominal(23.0, 52.0, 0.0, 0.0), 0.0)] {
+    for (shot, p) in [
+        (nominal(23.6, 52.0, 0.0, 0.0), 1.0),
+        (nominal(23.0, 52.0, 0.0, 0.0), 0.0),
+    ] {
         let estimate = sampler.estimate(&shot, 0.001, 1, &Silent);
         assert_eq!((estimate.probability, estimate.standard_error), (p, 0.0));
     }
@@ -96,7 +116,12 @@ fn prop_no_made_shot_lies_outside_the_bracket() {
 
 fn small(name: &str) -> Profile {
     let mut profile = load(name);
-    profile.grid = profile::Grid { speed: 24, pitch: 16, polar: 16, backspin: 6 };
+    profile.grid = profile::Grid {
+        speed: 24,
+        pitch: 16,
+        polar: 16,
+        backspin: 6,
+    };
     profile.search.standard_error = 0.004;
     profile
 }
@@ -105,7 +130,10 @@ fn small(name: &str) -> Profile {
 fn contract_the_thread_count_changes_no_bit() {
     let profile = small("free_throw");
     let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         let best = pool.install(|| best::find(&profile, &Silent)).unwrap();
         bankshot::output::best::json(&profile, &best, Default::default()).to_string()
     };
@@ -120,7 +148,10 @@ fn prop_best_shots_are_of_their_kind_and_mirror() {
     let mut mirrored = profile.clone();
     mirrored.place.angle_rad = -profile.place.angle_rad;
     let simulator = Simulator::new(&profile.physics).unwrap();
-    let (a, b) = (best::find(&profile, &Silent).unwrap(), best::find(&mirrored, &Silent).unwrap());
+    let (a, b) = (
+        best::find(&profile, &Silent).unwrap(),
+        best::find(&mirrored, &Silent).unwrap(),
+    );
     for (kind, one, two) in [
         (ShotKind::Direct, a.direct.unwrap(), b.direct.unwrap()),
         (ShotKind::Bank, a.bank.unwrap(), b.bank.unwrap()),
@@ -139,6 +170,9 @@ fn prop_best_is_not_below_its_own_table() {
     let best = best::find(&profile, &Silent).unwrap();
     for shot in [best.direct.unwrap(), best.bank.unwrap()] {
         // The small table's own error is about 0.01; its best entry is picked for being high.
-        assert!(shot.estimate.probability > shot.table_probability - 0.03, "{shot:?}");
+        assert!(
+            shot.estimate.probability > shot.table_probability - 0.03,
+            "{shot:?}"
+        );
     }
 }

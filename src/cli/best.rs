@@ -14,7 +14,10 @@ use std::path::{Path, PathBuf};
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
     let units = options.units.unwrap_or(profile.output.units);
-    let parent = options.out.clone().unwrap_or_else(|| PathBuf::from(&profile.output.folder));
+    let parent = options
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(&profile.output.folder));
     let folder = parent.join(folder_name(&profile));
     prepare(&folder)?;
     let best = best::find(&profile, &Bars::new(quiet))?;
@@ -46,7 +49,13 @@ fn folder_name(profile: &Profile) -> String {
         .shooter
         .name
         .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' })
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '-'
+            }
+        })
         .take(40)
         .collect();
     while name.contains("--") {
@@ -75,7 +84,10 @@ fn write(folder: &Path, profile: &Profile, best: &Best, units: System) -> Result
     provenance.push(("configuration_si".to_owned(), configuration));
     let contents = [
         ("best_shots.csv", output::best::csv(profile, best, units)),
-        ("best_shots.json", json(&output::best::json(profile, best, units))),
+        (
+            "best_shots.json",
+            json(&output::best::json(profile, best, units)),
+        ),
         ("plan.json", json(&plan)),
         ("provenance.json", json(&output::object(provenance))),
     ];

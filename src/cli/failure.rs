@@ -30,11 +30,17 @@ pub(crate) struct Failure {
 
 impl Failure {
     pub(crate) fn usage(message: impl Display) -> Self {
-        Self { code: code::USAGE, message: message.to_string() }
+        Self {
+            code: code::USAGE,
+            message: message.to_string(),
+        }
     }
 
     pub(crate) fn io(place: impl Display, error: &std::io::Error) -> Self {
-        Self { code: code::IO, message: format!("{place}: {error}") }
+        Self {
+            code: code::IO,
+            message: format!("{place}: {error}"),
+        }
     }
 }
 

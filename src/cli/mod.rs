@@ -20,7 +20,11 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             let _ = error.print();
-            return ExitCode::from(if error.use_stderr() { code::USAGE } else { code::WHOLE });
+            return ExitCode::from(if error.use_stderr() {
+                code::USAGE
+            } else {
+                code::WHOLE
+            });
         }
     };
     let result = std::panic::catch_unwind(|| run(&arguments));
@@ -31,7 +35,9 @@ pub(crate) fn main() -> ExitCode {
             ExitCode::from(failure.code)
         }
         Err(_) => {
-            terminal::complain("this is a bug in bankshot; please report it with the command and its input");
+            terminal::complain(
+                "this is a bug in bankshot; please report it with the command and its input",
+            );
             ExitCode::from(code::BUG)
         }
     }
@@ -64,5 +70,8 @@ fn thread_pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.map_or(0, usize::from))
         .build()
-        .map_err(|error| Failure { code: code::IO, message: format!("threads cannot be started: {error}") })
+        .map_err(|error| Failure {
+            code: code::IO,
+            message: format!("threads cannot be started: {error}"),
+        })
 }

@@ -15,9 +15,12 @@ use std::time::Instant;
 /// Reads a text file of at most 16 MiB.
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let shown = path.display();
-    let about = std::fs::metadata(path).map_err(|error| Failure::usage(format!("{shown}: {error}")))?;
+    let about =
+        std::fs::metadata(path).map_err(|error| Failure::usage(format!("{shown}: {error}")))?;
     if !about.is_file() {
-        return Err(Failure::usage(format!("{shown}: is not a file; give a TOML file")));
+        return Err(Failure::usage(format!(
+            "{shown}: is not a file; give a TOML file"
+        )));
     }
     if about.len() > LARGEST_PROFILE_BYTES {
         return Err(Failure::usage(format!(
@@ -31,7 +34,9 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
         .map_err(|error| Failure::usage(format!("{shown}: {error}")))?;
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
-        Failure::usage(format!("{shown}: is not UTF-8 text (byte {place}); save it as UTF-8"))
+        Failure::usage(format!(
+            "{shown}: is not UTF-8 text (byte {place}); save it as UTF-8"
+        ))
     })
 }
 
@@ -56,8 +61,8 @@ pub(crate) fn check(options: &CheckOptions) -> Result<u8, Failure> {
 pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
     let plan = Plan::new(&profile)?;
-    let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)
-        .map_err(Failure::usage)?;
+    let simulator =
+        Simulator::with_integrator(&profile.physics, profile.integrator).map_err(Failure::usage)?;
     let seconds = forecast_s(&profile, &plan, &simulator);
     let wide = (options.wide_sample > 0)
         .then(|| plan.wide_sample(&profile, &simulator, options.wide_sample));
@@ -67,20 +72,38 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         polar_rad: profile.place.angle_rad,
         backspin_rad_s: 0.5 * profile.shooter.max_backspin_rad_s,
     };
-    let edge = Nominal { pitch_rad: profile.search.pitch_min_rad, backspin_rad_s: 0.0, ..middle };
-    let mass = (plan.mass_outside(&profile, &middle), plan.mass_outside(&profile, &edge));
+    let edge = Nominal {
+        pitch_rad: profile.search.pitch_min_rad,
+        backspin_rad_s: 0.0,
+        ..middle
+    };
+    let mass = (
+        plan.mass_outside(&profile, &middle),
+        plan.mass_outside(&profile, &edge),
+    );
     if options.json {
         let mut record = output::provenance(&profile.hash());
-        record.push(("plan".to_owned(), serde_json::to_value(&plan).unwrap_or_default()));
+        record.push((
+            "plan".to_owned(),
+            serde_json::to_value(&plan).unwrap_or_default(),
+        ));
         record.push(("forecast_s".to_owned(), output::number(seconds)));
-        record.push(("wide_sample".to_owned(), serde_json::to_value(wide).unwrap_or_default()));
+        record.push((
+            "wide_sample".to_owned(),
+            serde_json::to_value(wide).unwrap_or_default(),
+        ));
         record.push(("mass_outside_middle".to_owned(), output::number(mass.0)));
         record.push(("mass_outside_edge".to_owned(), output::number(mass.1)));
         return answer(&format!("{:#}\n", output::object(record)));
     }
     let foot = bankshot::physics::FOOT_M;
     let deg = |axis: bankshot::plan::Axis| {
-        format!("{:.1} to {:.1} deg, {} points", axis.low / DEGREE_RAD, axis.high / DEGREE_RAD, axis.count)
+        format!(
+            "{:.1} to {:.1} deg, {} points",
+            axis.low / DEGREE_RAD,
+            axis.high / DEGREE_RAD,
+            axis.count
+        )
     };
     let mut text = format!(
         "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} ft/s\nshots       {}\nmemory      {:.0} MiB\ntime        about {:.1} s for the table on {} threads\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
@@ -119,7 +142,9 @@ fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
         let part = |step: f64| (f64::from(i) * step).fract();
         let pitch_rad = plan.pitch.low + part(0.754_877_666) * (plan.pitch.high - plan.pitch.low);
         let polar_rad = plan.polar.low + part(0.569_840_291) * (plan.polar.high - plan.polar.low);
-        let Some((least, most)) = plan.bracket.speeds_m_s(pitch_rad, polar_rad) else { continue };
+        let Some((least, most)) = plan.bracket.speeds_m_s(pitch_rad, polar_rad) else {
+            continue;
+        };
         let nominal = Nominal {
             speed_m_s: least + part(0.323_447_311) * (most - least),
             pitch_rad,

@@ -12,7 +12,10 @@ pub(crate) struct Bars {
 
 impl Bars {
     pub(crate) fn new(quiet: bool) -> Self {
-        Self { quiet, bar: Mutex::new(None) }
+        Self {
+            quiet,
+            bar: Mutex::new(None),
+        }
     }
 
     fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
@@ -24,9 +27,13 @@ impl Bars {
 
 impl Progress for Bars {
     fn begin(&self, stage: &str, total: u64) {
-        let target =
-            if self.quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr_with_hz(8) };
-        let style = "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
+        let target = if self.quiet {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr_with_hz(8)
+        };
+        let style =
+            "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
         let bar = ProgressBar::with_draw_target(Some(total), target)
             .with_style(
                 ProgressStyle::with_template(style)

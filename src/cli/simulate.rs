@@ -25,13 +25,24 @@ const NAMED: u64 = 20;
 pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure> {
     let (physics, simulator) = simulator(options)?;
     let mut reader = open(&options.releases)?;
-    let header = reader.byte_headers().map_err(|error| input_failure(options, &error))?.clone();
+    let header = reader
+        .byte_headers()
+        .map_err(|error| input_failure(options, &error))?
+        .clone();
     let layout = Layout::new(&header)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
     let bars = Bars::new(quiet);
     let total = std::fs::metadata(&options.releases).map_or(0, |about| about.len());
     bars.begin("simulating", total);
-    let mut stream = Stream { options, physics, simulator, layout, bars, bad: 0, rows: 0 };
+    let mut stream = Stream {
+        options,
+        physics,
+        simulator,
+        layout,
+        bars,
+        bad: 0,
+        rows: 0,
+    };
     if options.output == Path::new("-") {
         let out = BufWriter::new(io::stdout().lock());
         match stream.run(&mut reader, &header, out) {
@@ -44,8 +55,13 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
         let refuse = |error: io::Error| Failure::io(options.output.display(), &error);
         let pending = Pending::new(&options.output).map_err(refuse)?;
         let out = BufWriter::new(pending);
-        let out = stream.run(&mut reader, &header, out).map_err(|stop| stop.failure(options))?;
-        out.into_inner().map_err(|error| refuse(error.into_error()))?.finish().map_err(refuse)?;
+        let out = stream
+            .run(&mut reader, &header, out)
+            .map_err(|stop| stop.failure(options))?;
+        out.into_inner()
+            .map_err(|error| refuse(error.into_error()))?
+            .finish()
+            .map_err(refuse)?;
     }
     stream.bars.end();
     stream.conclude(quiet)
@@ -86,11 +102,17 @@ fn open(path: &Path) -> Result<Reader<Box<dyn Read>>, Failure> {
         }
         Box::new(file)
     };
-    Ok(csv::ReaderBuilder::new().flexible(true).buffer_capacity(1 << 18).from_reader(input))
+    Ok(csv::ReaderBuilder::new()
+        .flexible(true)
+        .buffer_capacity(1 << 18)
+        .from_reader(input))
 }
 
 fn input_failure(options: &SimulateOptions, error: &csv::Error) -> Failure {
-    Failure { code: code::IO, message: format!("{}: {error}", options.releases.display()) }
+    Failure {
+        code: code::IO,
+        message: format!("{}: {error}", options.releases.display()),
+    }
 }
 
 /// Why a stream stopped before its end.
@@ -134,13 +156,17 @@ impl Stream<'_> {
     ) -> Result<W, Stop> {
         let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
         let added = releases::ADDED.iter().map(|name| name.as_bytes());
-        writer.write_record(header.iter().chain(added)).map_err(output)?;
+        writer
+            .write_record(header.iter().chain(added))
+            .map_err(output)?;
         let mut batch: Vec<(u64, ByteRecord)> = Vec::with_capacity(BATCH);
         loop {
             batch.clear();
             let mut record = ByteRecord::new();
             let mut bytes = 0;
-            while batch.len() < BATCH && reader.read_byte_record(&mut record).map_err(Stop::Input)? {
+            while batch.len() < BATCH
+                && reader.read_byte_record(&mut record).map_err(Stop::Input)?
+            {
                 let line = record.position().map_or(0, csv::Position::line);
                 bytes += record.as_slice().len() as u64 + record.len() as u64;
                 batch.push((line, std::mem::take(&mut record)));
@@ -152,7 +178,9 @@ impl Stream<'_> {
             self.bars.advance(bytes);
         }
         writer.flush().map_err(Stop::Output)?;
-        writer.into_inner().map_err(|error| Stop::Output(io::Error::other(error.to_string())))
+        writer
+            .into_inner()
+            .map_err(|error| Stop::Output(io::Error::other(error.to_string())))
     }
 
     fn write<W: Write>(
@@ -173,14 +201,19 @@ impl Stream<'_> {
             let cells = outcome.unwrap_or_else(|error| {
                 self.bad += 1;
                 if self.bad <= NAMED {
-                    tell(&format!("{}: line {line}: {error}", self.options.releases.display()));
+                    tell(&format!(
+                        "{}: line {line}: {error}",
+                        self.options.releases.display()
+                    ));
                 }
                 Default::default()
             });
             // A short row keeps the added columns in their place.
             let fill = std::iter::repeat_n(&b""[..], columns.saturating_sub(row.len()));
             let added = cells.iter().map(String::as_bytes);
-            writer.write_record(row.iter().take(columns).chain(fill).chain(added)).map_err(output)?;
+            writer
+                .write_record(row.iter().take(columns).chain(fill).chain(added))
+                .map_err(output)?;
         }
         Ok(())
     }
@@ -190,12 +223,21 @@ impl Stream<'_> {
             tell(&format!("... and {} more", self.bad - NAMED));
         }
         if self.bad > 0 {
-            let message =
-                format!("{} of {} rows could not be simulated; the others are done", self.bad, self.rows);
-            return Err(Failure { code: code::INCOMPLETE, message });
+            let message = format!(
+                "{} of {} rows could not be simulated; the others are done",
+                self.bad, self.rows
+            );
+            return Err(Failure {
+                code: code::INCOMPLETE,
+                message,
+            });
         }
         if !quiet && self.options.output != Path::new("-") {
-            tell(&format!("{} shots written to {}", self.rows, self.options.output.display()));
+            tell(&format!(
+                "{} shots written to {}",
+                self.rows,
+                self.options.output.display()
+            ));
         }
         Ok(code::WHOLE)
     }

@@ -25,6 +25,10 @@ pub(crate) fn tell(text: &str) {
 
 /// Tells of an error on standard error.
 pub(crate) fn complain(text: &str) {
-    let prefix = if text.starts_with("error") { "" } else { "error: " };
+    let prefix = if text.starts_with("error") {
+        ""
+    } else {
+        "error: "
+    };
     tell(&format!("{prefix}{text}"));
 }

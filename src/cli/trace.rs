@@ -18,8 +18,8 @@ pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
     let system = options.units.unwrap_or(profile.output.units);
     let nominal = nominal(options, &profile)?;
-    let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)
-        .map_err(Failure::usage)?;
+    let simulator =
+        Simulator::with_integrator(&profile.physics, profile.integrator).map_err(Failure::usage)?;
     let trace = simulator.trace(&profile.release(&nominal), INTERVAL_S);
     if let Some(path) = &options.output {
         let bytes = trajectory(&trace, system);
@@ -53,14 +53,23 @@ fn nominal(options: &TraceOptions, profile: &Profile) -> Result<Nominal, Failure
     let polar_rad = options
         .polar
         .as_ref()
-        .map_or(profile.place.angle_rad, |text| read("polar", text, Dimension::Angle));
-    let backspin_rad_s =
-        options.backspin.as_ref().map_or(0.0, |text| read("backspin", text, Dimension::Spin));
+        .map_or(profile.place.angle_rad, |text| {
+            read("polar", text, Dimension::Angle)
+        });
+    let backspin_rad_s = options
+        .backspin
+        .as_ref()
+        .map_or(0.0, |text| read("backspin", text, Dimension::Spin));
     if !(0.0..=1000.0).contains(&speed_m_s) {
         faults.push("--speed: must be from 0 to 1000 m/s".to_owned());
     }
     if faults.is_empty() {
-        Ok(Nominal { speed_m_s, pitch_rad, polar_rad, backspin_rad_s })
+        Ok(Nominal {
+            speed_m_s,
+            pitch_rad,
+            polar_rad,
+            backspin_rad_s,
+        })
     } else {
         Err(Failure::usage(faults.join("\n")))
     }
@@ -114,15 +123,26 @@ fn words(trace: &Trace, system: System) -> String {
             y / inch
         );
     }
-    let _ = writeln!(text, "\n   time s  event                    x, y, z {long}               speed {long}/s");
+    let _ = writeln!(
+        text,
+        "\n   time s  event                    x, y, z {long}               speed {long}/s"
+    );
     for event in &trace.events {
         let Triple(x, y, z) = event.state.position_m;
         let Triple(vx, vy, vz) = event.state.velocity_m_s;
         let name = match event.kind {
             EventKind::Release => "release".to_owned(),
             EventKind::Touch(touched) => format!("touches the {}", surface(touched)),
-            EventKind::Part { surface: touched, lasted_s, .. } => {
-                format!("leaves the {} ({:.1} ms)", surface(touched), 1000.0 * lasted_s)
+            EventKind::Part {
+                surface: touched,
+                lasted_s,
+                ..
+            } => {
+                format!(
+                    "leaves the {} ({:.1} ms)",
+                    surface(touched),
+                    1000.0 * lasted_s
+                )
             }
             EventKind::End => ending(outcome.verdict.ending).to_owned(),
         };
@@ -160,17 +180,28 @@ fn json(trace: &Trace, system: System) -> serde_json::Value {
         let mut record = vec![
             ("time_s".to_owned(), number(event.time_s)),
             (format!("position_{long}"), place(event.state.position_m)),
-            (format!("velocity_{long}_s"), place(event.state.velocity_m_s)),
+            (
+                format!("velocity_{long}_s"),
+                place(event.state.velocity_m_s),
+            ),
         ];
         let name = match event.kind {
             EventKind::Release => "release",
             EventKind::Touch(Touched::Board) => "touch board",
             EventKind::Touch(Touched::Ring) => "touch ring",
-            EventKind::Part { surface: touched, impulse_n_s: Triple(x, y, z), lasted_s } => {
+            EventKind::Part {
+                surface: touched,
+                impulse_n_s: Triple(x, y, z),
+                lasted_s,
+            } => {
                 record.push(("lasted_s".to_owned(), number(lasted_s)));
                 let impulse = [x, y, z].map(number).to_vec();
                 record.push(("impulse_n_s".to_owned(), impulse.into()));
-                if touched == Touched::Board { "leave board" } else { "leave ring" }
+                if touched == Touched::Board {
+                    "leave board"
+                } else {
+                    "leave ring"
+                }
             }
             EventKind::End => "end",
         };
@@ -180,12 +211,20 @@ fn json(trace: &Trace, system: System) -> serde_json::Value {
     output::object(vec![
         ("made".to_owned(), outcome.verdict.made.into()),
         ("kind".to_owned(), outcome.kind.name().into()),
-        ("contacts".to_owned(), outcome.verdict.contacts.to_string().into()),
+        (
+            "contacts".to_owned(),
+            outcome.verdict.contacts.to_string().into(),
+        ),
         ("flight_time_s".to_owned(), number(outcome.verdict.time_s)),
-        (format!("apex_above_ring_{long}"), number(outcome.apex_m / metre)),
+        (
+            format!("apex_above_ring_{long}"),
+            number(outcome.apex_m / metre),
+        ),
         (
             "entry_angle_deg".to_owned(),
-            outcome.entry.map_or(serde_json::Value::Null, |e| number(e.angle_rad / DEGREE_RAD)),
+            outcome.entry.map_or(serde_json::Value::Null, |e| {
+                number(e.angle_rad / DEGREE_RAD)
+            }),
         ),
         ("events".to_owned(), events.collect::<Vec<_>>().into()),
     ])
@@ -208,7 +247,12 @@ fn trajectory(trace: &Trace, system: System) -> Vec<u8> {
         for value in [wx, wy, wz] {
             let _ = write!(text, ",{}", value / REV_RAD);
         }
-        let _ = writeln!(text, ",{},{}", u8::from(sample.on_board), u8::from(sample.on_ring));
+        let _ = writeln!(
+            text,
+            ",{},{}",
+            u8::from(sample.on_board),
+            u8::from(sample.on_ring)
+        );
     }
     text.into_bytes()
 }

@@ -51,7 +51,11 @@ impl<L: Lane> Grip<L> {
     #[inline(always)]
     pub(crate) fn fresh(law: &Law<L>) -> Self {
         let no = law.zero.mask(false);
-        Self { rolling: no, spent: no, no_slip: law.zero.lit(NO_SLIP_M_S) }
+        Self {
+            rolling: no,
+            spent: no,
+            no_slip: law.zero.lit(NO_SLIP_M_S),
+        }
     }
 }
 
@@ -82,13 +86,22 @@ impl<L: Lane> Load<L> {
         let squeeze_rate = -acceleration;
         let normal_rate = law.damping * squeeze_rate - law.stiffness * touch.v.0;
         let normal_curve = law.stiffness * squeeze_rate - law.damping * normal_rate;
-        Self { normal, normal_rate, normal_curve, squeeze_rate }
+        Self {
+            normal,
+            normal_rate,
+            normal_curve,
+            squeeze_rate,
+        }
     }
 
     /// Time until the compression is gone.
     #[inline(always)]
     pub(crate) fn time_to_part(&self, law: &Law<L>, touch: &Touch<L>) -> L {
-        let (u, du, ddu) = (touch.compression.most(law.zero), -touch.v.0, self.squeeze_rate);
+        let (u, du, ddu) = (
+            touch.compression.most(law.zero),
+            -touch.v.0,
+            self.squeeze_rate,
+        );
         let guess = first_root(law, u, du, ddu);
         let found = guess.lt(law.never);
         // One Newton step on the Taylor polynomial with u''' = -N' and u'''' = -N''.
@@ -107,8 +120,7 @@ impl<L: Lane> Load<L> {
     #[inline(always)]
     pub(crate) fn time_to_release(&self, law: &Law<L>) -> L {
         let pressing = law.zero.lit(NO_FORCE_M_S2).lt(self.normal);
-        first_root(law, self.normal, self.normal_rate, self.normal_curve)
-            .when(pressing, law.never)
+        first_root(law, self.normal, self.normal_rate, self.normal_curve).when(pressing, law.never)
     }
 }
 
@@ -132,7 +144,12 @@ impl<L: Lane> Hold<L> {
         let drive = (push.0 + drift.0, push.1 + drift.1);
         let need = (-(yielding * drive.0), -(yielding * drive.1));
         let need_size = (need.0.squared() + need.1.squared()).sqrt();
-        Self { drive, need, need_size, yielding }
+        Self {
+            drive,
+            need,
+            need_size,
+            yielding,
+        }
     }
 }
 
@@ -214,7 +231,13 @@ fn stage<L: Lane, S: Surface<L>>(
             (-(yielding * (touch.g.2 + drift.1))).when(rolling, friction.1),
         );
     }
-    rate(law, surface, state, (&touch, frame), Triple(normal, friction.0, friction.1))
+    rate(
+        law,
+        surface,
+        state,
+        (&touch, frame),
+        Triple(normal, friction.0, friction.1),
+    )
 }
 
 /// Takes the slip out by friction's own impulse (angular momentum about the contact is kept).
@@ -237,7 +260,9 @@ fn stop_slip<L: Lane, S: Surface<L>>(
     let dw = Triple(law.zero, twist * kick.1, -(twist * kick.0));
     touch.v = touch.v.plus(dv, law.one);
     touch.w = touch.w.plus(dw, law.one);
-    state.velocity_m_s = state.velocity_m_s.plus(surface.to_space(frame, dv), law.one);
+    state.velocity_m_s = state
+        .velocity_m_s
+        .plus(surface.to_space(frame, dv), law.one);
     state.spin_rad_s = state.spin_rad_s.plus(surface.to_space(frame, dw), law.one);
 }
 
@@ -258,7 +283,10 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     let parted = has_parted(law, &touch);
     if parted.all() {
         settle_parting(law, surface, state, (&touch, frame), parted);
-        return Step { dt: law.zero, parted };
+        return Step {
+            dt: law.zero,
+            parted,
+        };
     }
 
     // 1. Where friction stands now.
@@ -287,7 +315,10 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     let some = law.zero.lt(size);
     let per_size = law.one / size.when(some, law.one);
     let along = (from.0 * per_size, from.1 * per_size);
-    let heading = Heading { along, least: speed * SLIP_DIRECTION_LOST };
+    let heading = Heading {
+        along,
+        least: speed * SLIP_DIRECTION_LOST,
+    };
     let friction = (
         hold.need.0.when(rolling, -(limit * along.0)),
         hold.need.1.when(rolling, -(limit * along.1)),
@@ -296,9 +327,18 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     // 3. The step ends at the first event.
     let to_part = load.time_to_part(law, &touch);
     let to_release = load.time_to_release(law);
-    let give = (touch.bend_1 * touch.v.1 + touch.w.2, touch.bend_2 * touch.v.2 - touch.w.1);
+    let give = (
+        touch.bend_1 * touch.v.1 + touch.w.2,
+        touch.bend_2 * touch.v.2 - touch.w.1,
+    );
     let to_change = time_to_change(law, &hold, &load, (rolling, speed, limit), along, give);
-    let k1 = rate(law, surface, state, (&touch, frame), Triple(normal, friction.0, friction.1));
+    let k1 = rate(
+        law,
+        surface,
+        state,
+        (&touch, frame),
+        Triple(normal, friction.0, friction.1),
+    );
     let to_other = other(state, k1.acceleration_m_s2);
     let until = to_part.least(to_release).least(to_other).least(longest);
     let dt = until.least(to_change).most(law.zero.lit(SHORTEST_S));
@@ -316,8 +356,15 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
         settle_parting(law, surface, state, (&touch, frame), parted);
     }
     *state = state.when(parted, next);
-    *grip = Grip { rolling, spent, no_slip };
-    Step { dt: law.zero.when(parted, dt), parted }
+    *grip = Grip {
+        rolling,
+        spent,
+        no_slip,
+    };
+    Step {
+        dt: law.zero.when(parted, dt),
+        parted,
+    }
 }
 
 /// Time until friction changes its law: the slip reaches zero, or rolling needs more than mu N.
@@ -331,8 +378,7 @@ fn time_to_change<L: Lane>(
     give: (L, L),
 ) -> L {
     let per_yielding = law.one / hold.yielding;
-    let slip_rate =
-        hold.drive.0 * along.0 + hold.drive.1 * along.1 - limit * per_yielding;
+    let slip_rate = hold.drive.0 * along.0 + hold.drive.1 * along.1 - limit * per_yielding;
     let slip_curve = -(law.friction * load.normal_rate * per_yielding);
     // While rolling, what is needed changes mainly because the normal velocity does.
     let some = law.zero.lt(hold.need_size);
@@ -352,7 +398,10 @@ fn time_to_change<L: Lane>(
 #[inline(always)]
 pub(crate) fn has_parted<L: Lane>(law: &Law<L>, touch: &Touch<L>) -> L::Mask {
     let fast = law.zero.lit(FAST_M_S).lt(touch.v.0);
-    let gone = law.zero.lit(PARTED_FAST_M).when(fast, law.zero.lit(PARTED_M));
+    let gone = law
+        .zero
+        .lit(PARTED_FAST_M)
+        .when(fast, law.zero.lit(PARTED_M));
     law.zero.lt(touch.v.0) & touch.compression.le(gone)
 }
 
@@ -366,7 +415,9 @@ fn settle_parting<L: Lane, S: Surface<L>>(
     parted: L::Mask,
 ) {
     let most = law.zero.lit(PARTED_FAST_M / FAST_M_S);
-    let dt = (touch.compression / touch.v.0.when(parted, law.one)).least(most).most(-most);
+    let dt = (touch.compression / touch.v.0.when(parted, law.one))
+        .least(most)
+        .most(-most);
     let dt = dt.when(parted, law.zero);
     let push = Triple(touch.normal(law), law.zero, law.zero);
     let last = rate(law, surface, state, (touch, frame), push);

@@ -77,7 +77,12 @@ pub(crate) fn run<W: Watch>(law: &Law, rules: &Rules, start: State, watch: &mut 
 impl<W: Watch> Shot<'_, W> {
     fn verdict(&self, ending: Ending) -> Verdict {
         let made = ending == Ending::Fell && self.passage.made(self.law, &self.state);
-        Verdict { made, ending, contacts: self.contacts, time_s: self.time_s }
+        Verdict {
+            made,
+            ending,
+            contacts: self.contacts,
+            time_s: self.time_s,
+        }
     }
 
     /// A ball that is already pressed against something starts in contact.
@@ -93,7 +98,11 @@ impl<W: Watch> Shot<'_, W> {
         }
         if on_ring {
             self.touch(Touched::Ring);
-            self.on = if on_board { On::Both([fresh; 2]) } else { On::Ring(fresh) };
+            self.on = if on_board {
+                On::Both([fresh; 2])
+            } else {
+                On::Ring(fresh)
+            };
         }
     }
 
@@ -126,7 +135,11 @@ impl<W: Watch> Shot<'_, W> {
             return Some(Ending::BehindBoard);
         } else {
             let rose = self.state.position_m.2 > -law.radius - REACHED_M;
-            return Some(if rose { Ending::Fell } else { Ending::NeverRose });
+            return Some(if rose {
+                Ending::Fell
+            } else {
+                Ending::NeverRose
+            });
         }
         None
     }
@@ -230,8 +243,7 @@ impl<W: Watch> Shot<'_, W> {
         let law = self.law;
         loop {
             let before = self.state;
-            let step =
-                wedge::step(law, &mut self.state, &mut grips, self.rules.longest_step_s);
+            let step = wedge::step(law, &mut self.state, &mut grips, self.rules.longest_step_s);
             let off_board = step.left_board || !flight::on_board(law, &self.state);
             if off_board {
                 self.part(Touched::Board);
@@ -276,7 +288,8 @@ impl<W: Watch> Shot<'_, W> {
         before: &State,
         impulses: [Triple<f64>; 2],
     ) -> Option<Ending> {
-        self.watch.step(self.time_s, dt, (before, &self.state), impulses);
+        self.watch
+            .step(self.time_s, dt, (before, &self.state), impulses);
         self.time_s += dt;
         self.passage.step(self.law, before, &self.state);
         let law = self.law;

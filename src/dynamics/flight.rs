@@ -47,7 +47,13 @@ impl<L: Lane> Arc<L> {
         let (board, beside_board) = board_times(law, state, end);
         let horizon = end.least(board).least(beside_board);
         let (ring, unresolved) = ring_time(law, state, horizon);
-        Self { end, board, beside_board, ring, unresolved }
+        Self {
+            end,
+            board,
+            beside_board,
+            ring,
+            unresolved,
+        }
     }
 }
 
@@ -83,7 +89,10 @@ fn board_times<L: Lane>(law: &Law<L>, state: &State<L>, end: L) -> (L, L) {
         & z_there.lt(law.board_top_z)
         & !overlapping;
     let comes = approaching & t.lt(end);
-    (t.when(comes & on, law.never), t.when(comes & !on, law.never))
+    (
+        t.when(comes & on, law.never),
+        t.when(comes & !on, law.never),
+    )
 }
 
 /// Time of the first touch of the ring before `horizon`.
@@ -107,7 +116,8 @@ fn ring_time<L: Lane>(law: &Law<L>, state: &State<L>, horizon: L) -> (L, L::Mask
     let half_chord = outer_square.most(law.zero).sqrt();
     let enters = closest_time - half_chord;
     let leaves = (closest_time + half_chord).when(!still, law.never);
-    let out_of_reach = !still & outer_square.lt(law.zero) | still & outer.squared().lt(distance_square);
+    let out_of_reach =
+        !still & outer_square.lt(law.zero) | still & outer.squared().lt(distance_square);
     let stop = horizon.least(leaves);
     let sinks = falling_time(law, z, vz, law.radius);
     let mut t = enters.when(!still, law.zero).most(law.zero);
@@ -120,14 +130,15 @@ fn ring_time<L: Lane>(law: &Law<L>, state: &State<L>, horizon: L) -> (L, L::Mask
     let mut found = law.never;
     let mut passes = 0;
     if searching.any() {
-        let inner_chord = ((inner.squared() - closest_square) * per_square).most(law.zero).sqrt();
+        let inner_chord = ((inner.squared() - closest_square) * per_square)
+            .most(law.zero)
+            .sqrt();
         let inner_leave = (closest_time + inner_chord).when(!still, law.never);
         let inner_enter = (closest_time - inner_chord).when(!still, -law.never);
         let rises = rising_time(law, z, vz, -law.radius);
         let rises_over = rising_time(law, z, vz, law.radius);
         let nearest = inner.squared().most(closest_square);
-        let turning = law.ring_radius * moment.squared()
-            / (nearest * nearest.sqrt());
+        let turning = law.ring_radius * moment.squared() / (nearest * nearest.sqrt());
         let touched = law.radius.squared() * TOUCHED;
         while searching.any() && passes < MOST_PASSES {
             passes += 1;
@@ -136,18 +147,20 @@ fn ring_time<L: Lane>(law: &Law<L>, state: &State<L>, horizon: L) -> (L, L::Mask
             let dist = ((level_square * t + along * 2.0) * t + distance_square).sqrt();
             let off = law.ring_radius - dist;
             let value = off.squared() + zt.squared() - law.radius.squared();
-            let half_slope = zt * vzt - off * (level_square * t + along)
-                / dist.most(law.radius * 1e-3);
+            let half_slope =
+                zt * vzt - off * (level_square * t + along) / dist.most(law.radius * 1e-3);
             let fall_square = law.zero.when(law.zero.lt(vzt), vzt.squared());
-            let bend = (turning + law.gravity * law.radius - level_square - fall_square)
-                .most(law.zero);
+            let bend =
+                (turning + law.gravity * law.radius - level_square - fall_square).most(law.zero);
             // value + 2 half_slope s - bend s^2 >= 0 up to s. What little overlap a parting leaves
             // counts as none.
             let root = (half_slope.squared() + bend * value.most(law.zero)).sqrt();
             let closing = half_slope.le(law.zero);
             let away = law.zero.lt(bend);
-            let s = (value / (root - half_slope).when(closing, law.one))
-                .when(closing, ((half_slope + root) / bend.when(away, law.one)).when(away, law.never));
+            let s = (value / (root - half_slope).when(closing, law.one)).when(
+                closing,
+                ((half_slope + root) / bend.when(away, law.one)).when(away, law.never),
+            );
             let touch = closing & value.le(touched) & searching;
             found = t.when(touch, found);
             // Jumps over stretches where no touch is possible.

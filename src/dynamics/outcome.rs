@@ -65,8 +65,13 @@ impl Contacts {
     /// The contacts in order (the first [`Contacts::KEPT`]).
     pub fn iter(&self) -> impl Iterator<Item = Touched> + use<> {
         let bits = self.board_bits;
-        (0..self.count().min(Self::KEPT))
-            .map(move |i| if bits >> i & 1 == 1 { Touched::Board } else { Touched::Ring })
+        (0..self.count().min(Self::KEPT)).map(move |i| {
+            if bits >> i & 1 == 1 {
+                Touched::Board
+            } else {
+                Touched::Ring
+            }
+        })
     }
 }
 

@@ -135,22 +135,38 @@ pub(crate) fn run<W: Watch>(
         }
         if state.position_m.2 < -law.radius && state.velocity_m_s.2 < 0.0 && below {
             // Where the last step crossed z = -R, by the parabola of that step.
-            let fall = flight::falling_time(law, before.position_m.2, before.velocity_m_s.2, -law.radius);
+            let fall =
+                flight::falling_time(law, before.position_m.2, before.velocity_m_s.2, -law.radius);
             let rose = before.position_m.2 > -law.radius
-                || before.velocity_m_s.2.powi(2) + 2.0 * law.gravity * (before.position_m.2 + law.radius) > 0.0;
+                || before.velocity_m_s.2.powi(2)
+                    + 2.0 * law.gravity * (before.position_m.2 + law.radius)
+                    > 0.0;
             if !pressed.any() && fall <= dt {
                 state = before.flown(law, fall);
                 time_s += fall - dt;
             }
-            break if rose { Ending::Fell } else { Ending::NeverRose };
+            break if rose {
+                Ending::Fell
+            } else {
+                Ending::NeverRose
+            };
         }
         if time_s > rules.time_limit_s {
             break Ending::TimeLimit;
         }
-        dt = if pressed.any() { steps.dt_min_s } else { (2.0 * dt).min(steps.dt_max_s) };
+        dt = if pressed.any() {
+            steps.dt_min_s
+        } else {
+            (2.0 * dt).min(steps.dt_max_s)
+        };
     };
     let made = ending == Ending::Fell && passage.made(law, &state);
-    Verdict { made, ending, contacts, time_s }
+    Verdict {
+        made,
+        ending,
+        contacts,
+        time_s,
+    }
 }
 
 fn note_changes<W: Watch>(
@@ -160,9 +176,10 @@ fn note_changes<W: Watch>(
     (was, now): (Pressed, Pressed),
     state: &State,
 ) {
-    for (before, after, surface) in
-        [(was.board, now.board, Touched::Board), (was.ring, now.ring, Touched::Ring)]
-    {
+    for (before, after, surface) in [
+        (was.board, now.board, Touched::Board),
+        (was.ring, now.ring, Touched::Ring),
+    ] {
         if after && !before {
             contacts.push(surface);
             watch.touch(time_s, surface, state);

@@ -20,7 +20,10 @@ impl<L: Lane> Passage<L> {
     /// At the release.
     #[inline(always)]
     pub(crate) fn at_release(law: &Law<L>, state: &State<L>) -> Self {
-        Self { above: law.zero.le(state.position_m.2), rose_through: law.zero.mask(false) }
+        Self {
+            above: law.zero.le(state.position_m.2),
+            rose_through: law.zero.mask(false),
+        }
     }
 
     /// After flight for `dt` from `start`.

@@ -31,9 +31,14 @@ pub enum Integrator {
 
 impl Integrator {
     /// The default integrator at its default step.
-    pub const EXACT: Self = Self::Exact { steps_per_contact: 8 };
+    pub const EXACT: Self = Self::Exact {
+        steps_per_contact: 8,
+    };
     /// The paper's method at the paper's steps.
-    pub const PAPER: Self = Self::Paper { dt_max_s: 0.015, dt_min_s: 0.0005 };
+    pub const PAPER: Self = Self::Paper {
+        dt_max_s: 0.015,
+        dt_min_s: 0.0005,
+    };
 }
 
 impl Default for Integrator {

@@ -10,12 +10,20 @@ pub struct Triple<L>(pub L, pub L, pub L);
 impl<L: Lane> Triple<L> {
     #[inline(always)]
     pub(crate) fn plus(self, other: Self, times: L) -> Self {
-        Self(self.0 + other.0 * times, self.1 + other.1 * times, self.2 + other.2 * times)
+        Self(
+            self.0 + other.0 * times,
+            self.1 + other.1 * times,
+            self.2 + other.2 * times,
+        )
     }
 
     #[inline(always)]
     pub(crate) fn when(self, mask: L::Mask, other: Self) -> Self {
-        Self(self.0.when(mask, other.0), self.1.when(mask, other.1), self.2.when(mask, other.2))
+        Self(
+            self.0.when(mask, other.0),
+            self.1.when(mask, other.1),
+            self.2.when(mask, other.2),
+        )
     }
 }
 
@@ -57,7 +65,10 @@ impl<L: Lane> State<L> {
         let [k1, k2, k3, k4] = rates;
         let sixth = dt * (1.0 / 6.0);
         let third = dt * (1.0 / 3.0);
-        self.advanced(k1, sixth).advanced(k2, third).advanced(k3, third).advanced(k4, sixth)
+        self.advanced(k1, sixth)
+            .advanced(k2, third)
+            .advanced(k3, third)
+            .advanced(k4, sixth)
     }
 
     /// The state after `dt` of free flight.

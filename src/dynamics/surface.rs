@@ -30,7 +30,10 @@ impl<L: Lane> Touch<L> {
     /// Velocity of the contact point along the surface (Eqs. 4 and 14).
     #[inline(always)]
     pub(crate) fn slip(&self) -> (L, L) {
-        (self.v.1 - self.lever * self.w.2, self.v.2 + self.lever * self.w.1)
+        (
+            self.v.1 - self.lever * self.w.2,
+            self.v.2 + self.lever * self.w.1,
+        )
     }
 
     /// Normal acceleration k u + c u' of the ball (Eqs. 2 and 12); negative just before parting.
@@ -144,7 +147,11 @@ impl<L: Lane> Surface<L> for Ring {
             lever,
             v: frame.to_hoop(state.velocity_m_s),
             w: frame.to_hoop(state.spin_rad_s),
-            g: Triple(-law.gravity * frame.sin_phi, -law.gravity * frame.cos_phi, law.zero),
+            g: Triple(
+                -law.gravity * frame.sin_phi,
+                -law.gravity * frame.cos_phi,
+                law.zero,
+            ),
             bend_1: per_lever,
             bend_2: -frame.cos_phi * per_axis,
         };

@@ -78,7 +78,11 @@ fn index(surface: Touched) -> usize {
 
 impl Recorder {
     pub(crate) fn new(mass_kg: f64, interval_s: f64, start: State) -> Self {
-        let release = Event { time_s: 0.0, kind: EventKind::Release, state: start };
+        let release = Event {
+            time_s: 0.0,
+            kind: EventKind::Release,
+            state: start,
+        };
         Self {
             mass_kg,
             interval_s: interval_s.max(1e-5),
@@ -91,16 +95,33 @@ impl Recorder {
 
     fn sample(&mut self, time_s: f64, state: State) {
         let [board, ring] = self.open.map(|contact| contact.is_some());
-        self.samples.push(Sample { time_s, state, on_board: board, on_ring: ring });
+        self.samples.push(Sample {
+            time_s,
+            state,
+            on_board: board,
+            on_ring: ring,
+        });
     }
 
     pub(crate) fn trace(mut self, law: &Law, outcome: Outcome) -> Trace {
         let (time_s, state, flown) = self.last;
-        let state = if flown > 0.0 { state.flown(law, flown) } else { state };
+        let state = if flown > 0.0 {
+            state.flown(law, flown)
+        } else {
+            state
+        };
         let time_s = time_s + flown;
         self.sample(time_s, state);
-        self.events.push(Event { time_s, kind: EventKind::End, state });
-        Trace { outcome, events: self.events, samples: self.samples }
+        self.events.push(Event {
+            time_s,
+            kind: EventKind::End,
+            state,
+        });
+        Trace {
+            outcome,
+            events: self.events,
+            samples: self.samples,
+        }
     }
 }
 
@@ -116,7 +137,11 @@ impl Watch for Recorder {
 
     fn touch(&mut self, t: f64, surface: Touched, state: &State) {
         self.open[index(surface)] = Some((t, Triple(0.0, 0.0, 0.0)));
-        self.events.push(Event { time_s: t, kind: EventKind::Touch(surface), state: *state });
+        self.events.push(Event {
+            time_s: t,
+            kind: EventKind::Touch(surface),
+            state: *state,
+        });
     }
 
     fn step(&mut self, t: f64, dt: f64, states: (&State, &State), impulses: [Triple<f64>; 2]) {
@@ -130,10 +155,20 @@ impl Watch for Recorder {
     }
 
     fn part(&mut self, t: f64, surface: Touched, state: &State) {
-        let (began, sum) = self.open[index(surface)].take().unwrap_or((t, Triple(0.0, 0.0, 0.0)));
+        let (began, sum) = self.open[index(surface)]
+            .take()
+            .unwrap_or((t, Triple(0.0, 0.0, 0.0)));
         let Triple(x, y, z) = sum;
         let impulse_n_s = Triple(x * self.mass_kg, y * self.mass_kg, z * self.mass_kg);
-        let kind = EventKind::Part { surface, impulse_n_s, lasted_s: t - began };
-        self.events.push(Event { time_s: t, kind, state: *state });
+        let kind = EventKind::Part {
+            surface,
+            impulse_n_s,
+            lasted_s: t - began,
+        };
+        self.events.push(Event {
+            time_s: t,
+            kind,
+            state: *state,
+        });
     }
 }

@@ -3,7 +3,7 @@
 //! The integrators tell a [`Watch`] what happens; the silent one `()` costs nothing, so the loop
 //! that feeds the probability and the one that draws a trajectory are the same code.
 
-use super::outcome::{Entry, Kind, Outcome, Touched, Verdict, Ending};
+use super::outcome::{Ending, Entry, Kind, Outcome, Touched, Verdict};
 use super::state::{Law, State, Triple};
 
 /// Told of each stretch of a shot, in order.
@@ -58,7 +58,11 @@ impl Summary {
     pub(crate) fn new(ring_radius_m: f64, start: &State) -> Self {
         let Triple(x, y, z) = start.position_m;
         let distance = (x * x + y * y).sqrt();
-        let ahead = if distance > 0.0 { (-x / distance, -y / distance) } else { (-1.0, 0.0) };
+        let ahead = if distance > 0.0 {
+            (-x / distance, -y / distance)
+        } else {
+            (-1.0, 0.0)
+        };
         Self {
             ring_radius_m,
             ahead,
@@ -94,9 +98,10 @@ impl Summary {
         let (x, y) = self.aim_m.unwrap_or((0.0, 0.0));
         let (beyond, aside) = match first {
             Touched::Board => (x, y),
-            Touched::Ring => {
-                (x * self.ahead.0 + y * self.ahead.1, x * self.ahead.1 - y * self.ahead.0)
-            }
+            Touched::Ring => (
+                x * self.ahead.0 + y * self.ahead.1,
+                x * self.ahead.1 - y * self.ahead.0,
+            ),
         };
         if aside.abs() > beyond.abs() {
             Kind::Wide

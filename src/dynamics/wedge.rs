@@ -40,11 +40,19 @@ impl Pair {
         let (board, ()) = Board.meet(law, state);
         let (ring, frame) = Ring.meet(law, state);
         let normals = [board.normal(law), ring.normal(law)];
-        Self { touches: [board, ring], frame, normals }
+        Self {
+            touches: [board, ring],
+            frame,
+            normals,
+        }
     }
 
     fn to_space(&self, which: usize, vector: Triple<f64>) -> Triple<f64> {
-        if which == BOARD { Board.to_space((), vector) } else { Ring.to_space(self.frame, vector) }
+        if which == BOARD {
+            Board.to_space((), vector)
+        } else {
+            Ring.to_space(self.frame, vector)
+        }
     }
 
     /// The slip rate that unit accelerations (linear, angular) of the ball give at a contact.
@@ -70,11 +78,19 @@ impl Pair {
         let drift = touch.drift();
         let (linear, angular) = self.response(law, 1 - which, other_push);
         let from_other = self.slip_rate(which, linear, angular);
-        (touch.g.1 + drift.0 + from_other.0, touch.g.2 + drift.1 + from_other.1)
+        (
+            touch.g.1 + drift.0 + from_other.0,
+            touch.g.2 + drift.1 + from_other.1,
+        )
     }
 
     /// Frictions at both contacts, `sliding` given where a contact slides.
-    fn frictions(&self, law: &Law, rolling: [bool; 2], sliding: [(f64, f64); 2]) -> [(f64, f64); 2] {
+    fn frictions(
+        &self,
+        law: &Law,
+        rolling: [bool; 2],
+        sliding: [(f64, f64); 2],
+    ) -> [(f64, f64); 2] {
         if rolling == [false, false] {
             return sliding;
         }
@@ -107,7 +123,12 @@ impl Pair {
         [(solved[0], solved[1]), (solved[2], solved[3])]
     }
 
-    fn rate(&self, law: &Law, state: &State, frictions: [(f64, f64); 2]) -> (Rate, [Triple<f64>; 2]) {
+    fn rate(
+        &self,
+        law: &Law,
+        state: &State,
+        frictions: [(f64, f64); 2],
+    ) -> (Rate, [Triple<f64>; 2]) {
         let mut pushes = [Triple(0.0, 0.0, 0.0); 2];
         let mut linear = Triple(0.0, 0.0, -law.gravity);
         let mut angular = Triple(0.0, 0.0, 0.0);
@@ -168,9 +189,18 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
 
     // 2. Which contacts roll: those that are stuck and whose friction is enough. One that is not
     //    enough slides, and the other is asked again.
-    let speeds = [BOARD, RING].map(|i| if stuck[i] { 0.0 } else { size(pair.touches[i].slip()) });
+    let speeds = [BOARD, RING].map(|i| {
+        if stuck[i] {
+            0.0
+        } else {
+            size(pair.touches[i].slip())
+        }
+    });
     let limits = pair.normals.map(|n| law.friction * n.max(0.0));
-    let mut rolling = [stuck[BOARD] && !grips[BOARD].spent, stuck[RING] && !grips[RING].spent];
+    let mut rolling = [
+        stuck[BOARD] && !grips[BOARD].spent,
+        stuck[RING] && !grips[RING].spent,
+    ];
     let mut along = [(0.0, 0.0); 2];
     let mut sliding = [(0.0, 0.0); 2];
     let mut failed = [false; 2];
@@ -184,14 +214,30 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
             } else {
                 pair.touches[which].slip()
             };
-            let per = if size(from) > 0.0 { 1.0 / size(from) } else { 0.0 };
+            let per = if size(from) > 0.0 {
+                1.0 / size(from)
+            } else {
+                0.0
+            };
             along[which] = (from.0 * per, from.1 * per);
-            sliding[which] = (-limits[which] * along[which].0, -limits[which] * along[which].1);
+            sliding[which] = (
+                -limits[which] * along[which].0,
+                -limits[which] * along[which].1,
+            );
         }
         let frictions = pair.frictions(law, rolling, sliding);
-        let over = [BOARD, RING]
-            .map(|i| if rolling[i] { size(frictions[i]) - limits[i] } else { f64::NEG_INFINITY });
-        let worst = if over[BOARD] >= over[RING] { BOARD } else { RING };
+        let over = [BOARD, RING].map(|i| {
+            if rolling[i] {
+                size(frictions[i]) - limits[i]
+            } else {
+                f64::NEG_INFINITY
+            }
+        });
+        let worst = if over[BOARD] >= over[RING] {
+            BOARD
+        } else {
+            RING
+        };
         if over[worst] <= 0.0 {
             break frictions;
         }
@@ -209,36 +255,62 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
         let normal_axis = pair.to_space(which, Triple(1.0, 0.0, 0.0));
         let acceleration = dot(normal_axis, k1.acceleration_m_s2) + touch.bending();
         let load = Load::new(law, touch, pair.normals[which], acceleration);
-        until = until.min(load.time_to_part(law, touch)).min(load.time_to_release(law));
+        until = until
+            .min(load.time_to_part(law, touch))
+            .min(load.time_to_release(law));
         loading[which] = load.normal_rate > 0.0;
         let (linear, angular) = pair.response(
             law,
             1 - which,
-            Triple(pair.normals[1 - which], frictions[1 - which].0, frictions[1 - which].1),
+            Triple(
+                pair.normals[1 - which],
+                frictions[1 - which].0,
+                frictions[1 - which].1,
+            ),
         );
         let from_other = pair.slip_rate(which, linear, angular);
-        let hold =
-            Hold::new(law, touch, (touch.g.1 + from_other.0, touch.g.2 + from_other.1));
+        let hold = Hold::new(
+            law,
+            touch,
+            (touch.g.1 + from_other.0, touch.g.2 + from_other.1),
+        );
         to_change[which] = if rolling[which] {
             let spare = limits[which] - hold.need_size;
-            first_root(law, spare.max(NO_FORCE_M_S2), law.friction * load.normal_rate, 0.0)
+            first_root(
+                law,
+                spare.max(NO_FORCE_M_S2),
+                law.friction * load.normal_rate,
+                0.0,
+            )
         } else if speeds[which] > 0.0 {
             let per = 1.0 / hold.yielding;
-            let rate = hold.drive.0 * along[which].0 + hold.drive.1 * along[which].1
-                - limits[which] * per;
-            first_root(law, speeds[which], rate, -(law.friction * load.normal_rate * per))
+            let rate =
+                hold.drive.0 * along[which].0 + hold.drive.1 * along[which].1 - limits[which] * per;
+            first_root(
+                law,
+                speeds[which],
+                rate,
+                -(law.friction * load.normal_rate * per),
+            )
         } else {
             law.never
         };
     }
-    let dt = until.min(to_change[BOARD]).min(to_change[RING]).max(SHORTEST_S);
+    let dt = until
+        .min(to_change[BOARD])
+        .min(to_change[RING])
+        .max(SHORTEST_S);
 
     // 4. RK4 in the modes that hold for the whole step.
     let stage = |state: &State| {
         let pair = Pair::meet(law, state);
         let sliding = [BOARD, RING].map(|i| {
             let limit = law.friction * pair.normals[i].max(0.0);
-            let heading = direction(pair.touches[i].slip(), along[i], SLIP_DIRECTION_LOST * speeds[i]);
+            let heading = direction(
+                pair.touches[i].slip(),
+                along[i],
+                SLIP_DIRECTION_LOST * speeds[i],
+            );
             (-limit * heading.0, -limit * heading.1)
         });
         pair.rate(law, state, pair.frictions(law, rolling, sliding))
@@ -260,7 +332,12 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
             no_slip: contact::left_over(law, landing, speeds[which]),
         };
     }
-    WedgeStep { dt, left_board: false, left_ring: false, impulses }
+    WedgeStep {
+        dt,
+        left_board: false,
+        left_ring: false,
+        impulses,
+    }
 }
 
 /// Takes out the slips of the stuck contacts together, and returns the impulses that did it.
@@ -272,7 +349,11 @@ fn stop_slips(law: &Law, state: &mut State, pair: &mut Pair, stuck: [bool; 2]) -
     }
     let wanted = [BOARD, RING].map(|which| {
         let slip = pair.touches[which].slip();
-        if stuck[which] { (-slip.0, -slip.1) } else { (0.0, 0.0) }
+        if stuck[which] {
+            (-slip.0, -slip.1)
+        } else {
+            (0.0, 0.0)
+        }
     });
     let kick = pair.solve(law, stuck, wanted);
     for which in [BOARD, RING] {

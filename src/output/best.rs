@@ -22,7 +22,10 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: System) -> Record 
         (format!("speed_{long}_s"), number(nominal.speed_m_s / foot)),
         ("pitch_deg".into(), number(nominal.pitch_rad / DEGREE_RAD)),
         ("polar_deg".into(), number(nominal.polar_rad / DEGREE_RAD)),
-        ("backspin_rev_s".into(), number(nominal.backspin_rad_s / REV_RAD)),
+        (
+            "backspin_rev_s".into(),
+            number(nominal.backspin_rad_s / REV_RAD),
+        ),
         ("probability".into(), number(estimate.probability)),
         ("standard_error".into(), number(estimate.standard_error)),
         ("shots".into(), estimate.shots.into()),
@@ -31,12 +34,30 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: System) -> Record 
         ("share_board".into(), number(estimate.shares.board)),
         ("unresolved".into(), estimate.unresolved.into()),
         ("error_free_kind".into(), outcome.kind.name().into()),
-        ("error_free_contacts".into(), outcome.verdict.contacts.to_string().into()),
-        ("entry_angle_deg".into(), maybe(outcome.entry.map(|entry| entry.angle_rad / DEGREE_RAD))),
-        (format!("aim_past_centre_{short}"), maybe(shot.aim_past_centre_m.map(|m| m / inch))),
-        (format!("board_aim_across_{short}"), maybe(board.map(|(_, y, _)| y / inch))),
-        (format!("board_aim_above_hoop_{short}"), maybe(board.map(|(_, _, z)| z / inch))),
-        (format!("apex_above_floor_{long}"), number((outcome.apex_m + hoop) / foot)),
+        (
+            "error_free_contacts".into(),
+            outcome.verdict.contacts.to_string().into(),
+        ),
+        (
+            "entry_angle_deg".into(),
+            maybe(outcome.entry.map(|entry| entry.angle_rad / DEGREE_RAD)),
+        ),
+        (
+            format!("aim_past_centre_{short}"),
+            maybe(shot.aim_past_centre_m.map(|m| m / inch)),
+        ),
+        (
+            format!("board_aim_across_{short}"),
+            maybe(board.map(|(_, y, _)| y / inch)),
+        ),
+        (
+            format!("board_aim_above_hoop_{short}"),
+            maybe(board.map(|(_, _, z)| z / inch)),
+        ),
+        (
+            format!("apex_above_floor_{long}"),
+            number((outcome.apex_m + hoop) / foot),
+        ),
         ("flight_time_s".into(), number(outcome.verdict.time_s)),
         ("mass_outside_bracket".into(), number(shot.mass_outside)),
         ("at_limits".into(), shot.at_limits.join(" ").into()),
@@ -50,11 +71,23 @@ pub fn json(profile: &Profile, best: &Best, units: System) -> Value {
     let (long, foot) = units.length();
     let mut record = vec![
         ("shooter".to_owned(), profile.shooter.name.clone().into()),
-        (format!("distance_{long}"), number(profile.place.distance_m / foot)),
-        ("court_angle_deg".to_owned(), number(profile.place.angle_rad / DEGREE_RAD)),
-        (format!("release_height_{long}"), number(profile.shooter.release_height_m / foot)),
+        (
+            format!("distance_{long}"),
+            number(profile.place.distance_m / foot),
+        ),
+        (
+            "court_angle_deg".to_owned(),
+            number(profile.place.angle_rad / DEGREE_RAD),
+        ),
+        (
+            format!("release_height_{long}"),
+            number(profile.shooter.release_height_m / foot),
+        ),
     ];
-    for (kind, shot) in [(ShotKind::Direct, &best.direct), (ShotKind::Bank, &best.bank)] {
+    for (kind, shot) in [
+        (ShotKind::Direct, &best.direct),
+        (ShotKind::Bank, &best.bank),
+    ] {
         match shot {
             Ok(shot) => {
                 let value = object(shot_record(profile, shot, units));
@@ -97,7 +130,10 @@ pub fn csv(profile: &Profile, best: &Best, units: System) -> Vec<u8> {
 }
 
 fn shots(best: &Best) -> [(ShotKind, &Result<BestShot, NoShot>); 2] {
-    [(ShotKind::Direct, &best.direct), (ShotKind::Bank, &best.bank)]
+    [
+        (ShotKind::Direct, &best.direct),
+        (ShotKind::Bank, &best.bank),
+    ]
 }
 
 /// The table that `best` prints.
@@ -131,7 +167,11 @@ pub fn table(profile: &Profile, best: &Best, units: System) -> String {
         let estimate = &shot.estimate;
         let aim = match (kind, shot.outcome.board_point_m, shot.aim_past_centre_m) {
             (ShotKind::Bank, Some((_, y, z)), _) => {
-                format!("board, {:.1} {short} above ring,\n{}", z / inch, aside(y / inch, short))
+                format!(
+                    "board, {:.1} {short} above ring,\n{}",
+                    z / inch,
+                    aside(y / inch, short)
+                )
             }
             (_, _, Some(past)) => {
                 let side = if past < 0.0 { "short of" } else { "past" };
@@ -146,18 +186,31 @@ pub fn table(profile: &Profile, best: &Best, units: System) -> String {
             format!("{:.1}", nominal.pitch_rad / DEGREE_RAD),
             format!("{:.2}", tidy(nominal.polar_rad / DEGREE_RAD)),
             format!("{:.1}", nominal.backspin_rad_s / REV_RAD),
-            format!("{:.4} ± {:.4}", estimate.probability, estimate.standard_error),
-            format!("{:.2} / {:.2} / {:.2}", shares.swish, shares.ring, shares.board),
-            shot.outcome
-                .entry
-                .map_or_else(String::new, |entry| format!("{:.1}", entry.angle_rad / DEGREE_RAD)),
+            format!(
+                "{:.4} ± {:.4}",
+                estimate.probability, estimate.standard_error
+            ),
+            format!(
+                "{:.2} / {:.2} / {:.2}",
+                shares.swish, shares.ring, shares.board
+            ),
+            shot.outcome.entry.map_or_else(String::new, |entry| {
+                format!("{:.1}", entry.angle_rad / DEGREE_RAD)
+            }),
             aim,
         ]);
         if !shot.at_limits.is_empty() {
-            notes.push(format!("{}: the best lies at a limit: {}.", kind.name(), shot.at_limits.join(", ")));
+            notes.push(format!(
+                "{}: the best lies at a limit: {}.",
+                kind.name(),
+                shot.at_limits.join(", ")
+            ));
         }
         if estimate.standard_error > profile.search.standard_error {
-            notes.push(format!("{}: the standard error asked for was not reached.", kind.name()));
+            notes.push(format!(
+                "{}: the standard error asked for was not reached.",
+                kind.name()
+            ));
         }
     }
     for column in table.column_iter_mut().skip(1) {
@@ -181,6 +234,14 @@ fn aside(across: f64, unit: &str) -> String {
     if across.abs() < 0.05 {
         "on its middle line".to_owned()
     } else {
-        format!("{:.1} {unit} to the {}", across.abs(), if across > 0.0 { "shooter's left (+y)" } else { "shooter's right (-y)" })
+        format!(
+            "{:.1} {unit} to the {}",
+            across.abs(),
+            if across > 0.0 {
+                "right, facing the board"
+            } else {
+                "left, facing the board"
+            }
+        )
     }
 }

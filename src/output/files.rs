@@ -18,14 +18,22 @@ impl Pending {
     /// When the folder cannot be written to, or `path` is a folder.
     pub fn new(path: &Path) -> io::Result<Self> {
         if path.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
+            return Err(io::Error::new(
+                io::ErrorKind::IsADirectory,
+                "it is a folder",
+            ));
         }
         let folder = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
             _ => Path::new("."),
         };
-        let file = tempfile::Builder::new().prefix(".bankshot-").tempfile_in(folder)?;
-        Ok(Self { file, path: path.to_owned() })
+        let file = tempfile::Builder::new()
+            .prefix(".bankshot-")
+            .tempfile_in(folder)?;
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+        })
     }
 
     /// Puts the file in its place.

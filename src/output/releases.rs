@@ -1,9 +1,9 @@
 //! Releases from CSV columns and back: any number of rows, by name, in any order.
 
 use crate::dynamics::{Outcome, Release};
+use crate::physics::FOOT_M;
 use crate::physics::Physics;
 use crate::units::{DEGREE_RAD, REV_RAD};
-use crate::physics::FOOT_M;
 use csv::ByteRecord;
 
 /// One parameter of a release: its columns (name and size of the unit in SI), and whether it is
@@ -14,7 +14,10 @@ struct Parameter {
 }
 
 const PARAMETERS: [Parameter; 9] = [
-    Parameter { columns: [("distance_ft", FOOT_M), ("distance_m", 1.0)], required: true },
+    Parameter {
+        columns: [("distance_ft", FOOT_M), ("distance_m", 1.0)],
+        required: true,
+    },
     Parameter {
         columns: [("court_angle_deg", DEGREE_RAD), ("court_angle_rad", 1.0)],
         required: true,
@@ -23,20 +26,42 @@ const PARAMETERS: [Parameter; 9] = [
         columns: [("release_height_ft", FOOT_M), ("release_height_m", 1.0)],
         required: true,
     },
-    Parameter { columns: [("speed_ft_s", FOOT_M), ("speed_m_s", 1.0)], required: true },
-    Parameter { columns: [("pitch_deg", DEGREE_RAD), ("pitch_rad", 1.0)], required: true },
-    Parameter { columns: [("polar_deg", DEGREE_RAD), ("polar_rad", 1.0)], required: true },
-    Parameter { columns: [("backspin_rev_s", REV_RAD), ("backspin_rad_s", 1.0)], required: false },
+    Parameter {
+        columns: [("speed_ft_s", FOOT_M), ("speed_m_s", 1.0)],
+        required: true,
+    },
+    Parameter {
+        columns: [("pitch_deg", DEGREE_RAD), ("pitch_rad", 1.0)],
+        required: true,
+    },
+    Parameter {
+        columns: [("polar_deg", DEGREE_RAD), ("polar_rad", 1.0)],
+        required: true,
+    },
+    Parameter {
+        columns: [("backspin_rev_s", REV_RAD), ("backspin_rad_s", 1.0)],
+        required: false,
+    },
     Parameter {
         columns: [("rifle_spin_rev_s", REV_RAD), ("rifle_spin_rad_s", 1.0)],
         required: false,
     },
-    Parameter { columns: [("side_spin_rev_s", REV_RAD), ("side_spin_rad_s", 1.0)], required: false },
+    Parameter {
+        columns: [("side_spin_rev_s", REV_RAD), ("side_spin_rad_s", 1.0)],
+        required: false,
+    },
 ];
 
 /// The columns that a simulation adds.
-pub const ADDED: [&str; 7] =
-    ["made", "kind", "contacts", "n_board", "n_ring", "flight_time_s", "entry_angle_deg"];
+pub const ADDED: [&str; 7] = [
+    "made",
+    "kind",
+    "contacts",
+    "n_board",
+    "n_ring",
+    "flight_time_s",
+    "entry_angle_deg",
+];
 
 /// Where each parameter stands in the rows of one file.
 #[derive(Clone, Debug)]
@@ -87,15 +112,27 @@ impl Layout {
                     faults.push(format!("column {} (or {}) is missing", names[0], names[1]));
                 }
                 [] => {}
-                _ => faults.push(format!("columns {} and {} are given more than once together; keep one", names[0], names[1])),
+                _ => faults.push(format!(
+                    "columns {} and {} are given more than once together; keep one",
+                    names[0], names[1]
+                )),
             }
         }
         for added in ADDED {
-            if header.iter().any(|cell| cell.trim_ascii() == added.as_bytes()) {
-                faults.push(format!("column {added} is written by the simulation; rename the input's"));
+            if header
+                .iter()
+                .any(|cell| cell.trim_ascii() == added.as_bytes())
+            {
+                faults.push(format!(
+                    "column {added} is written by the simulation; rename the input's"
+                ));
             }
         }
-        if faults.is_empty() { Ok(Self { places }) } else { Err(HeaderError(faults)) }
+        if faults.is_empty() {
+            Ok(Self { places })
+        } else {
+            Err(HeaderError(faults))
+        }
     }
 
     /// The release of one row.
@@ -109,10 +146,23 @@ impl Layout {
                 *value = cell(row, column, name)? * unit;
             }
         }
-        let [distance_m, court, height, speed, pitch_rad, polar_rad, back, rifle, side] = values;
+        let [
+            distance_m,
+            court,
+            height,
+            speed,
+            pitch_rad,
+            polar_rad,
+            back,
+            rifle,
+            side,
+        ] = values;
         let name = |i: usize| self.places[i].map_or("", |(_, name, _)| name);
         let refuse = |i: usize, reason: &str| {
-            Err(RowError { column: name(i).to_owned(), reason: reason.to_owned() })
+            Err(RowError {
+                column: name(i).to_owned(),
+                reason: reason.to_owned(),
+            })
         };
         let reach = physics.ring_radius_m + physics.ball_radius_m;
         if !(distance_m > reach && distance_m < 100.0) {
@@ -147,12 +197,19 @@ impl Layout {
 }
 
 fn cell(row: &ByteRecord, column: usize, name: &str) -> Result<f64, RowError> {
-    let refuse = |reason: String| RowError { column: name.to_owned(), reason };
-    let bytes = row.get(column).ok_or_else(|| refuse("is missing in this row".to_owned()))?;
+    let refuse = |reason: String| RowError {
+        column: name.to_owned(),
+        reason,
+    };
+    let bytes = row
+        .get(column)
+        .ok_or_else(|| refuse("is missing in this row".to_owned()))?;
     let text = std::str::from_utf8(bytes).map_err(|_| refuse("is not UTF-8".to_owned()))?;
     let shown: String = text.chars().take(40).collect();
-    let value: f64 =
-        text.trim().parse().map_err(|_| refuse(format!("\"{shown}\" is not a number")))?;
+    let value: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| refuse(format!("\"{shown}\" is not a number")))?;
     if value.is_finite() && value.abs() < 1e9 {
         Ok(value)
     } else {
@@ -171,6 +228,8 @@ pub fn cells(outcome: &Outcome) -> [String; 7] {
         contacts.boards().to_string(),
         contacts.rings().to_string(),
         outcome.verdict.time_s.to_string(),
-        outcome.entry.map_or_else(String::new, |entry| (entry.angle_rad / DEGREE_RAD).to_string()),
+        outcome.entry.map_or_else(String::new, |entry| {
+            (entry.angle_rad / DEGREE_RAD).to_string()
+        }),
     ]
 }

@@ -100,7 +100,11 @@ impl Physics {
     /// When `restitution` is not above 0 and at most 1.
     pub fn set_restitution(&mut self, restitution: f64) -> Result<(), PhysicsError> {
         if !(restitution > 0.0 && restitution <= 1.0) {
-            return Err(PhysicsError::new("restitution", restitution, "above 0 and at most 1"));
+            return Err(PhysicsError::new(
+                "restitution",
+                restitution,
+                "above 0 and at most 1",
+            ));
         }
         self.damping_kg_s =
             damping_for_restitution_kg_s(restitution, self.stiffness_n_m, self.ball_mass_kg);
@@ -210,6 +214,10 @@ pub struct PhysicsError {
 
 impl PhysicsError {
     fn new(key: &'static str, value: f64, allowed: &'static str) -> Self {
-        Self { key, value, allowed }
+        Self {
+            key,
+            value,
+            allowed,
+        }
     }
 }

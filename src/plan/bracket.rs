@@ -83,8 +83,7 @@ impl Bracket {
     }
 
     fn passes_ring(&self, polar: f64) -> bool {
-        self.axis_offset(polar) < self.reach_m
-            && libm::cos(polar - self.place.angle_rad) > 0.0
+        self.axis_offset(polar) < self.reach_m && libm::cos(polar - self.place.angle_rad) > 0.0
     }
 
     /// Does the level path meet the board where a bounce can lead within reach of the ring?

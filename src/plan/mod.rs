@@ -9,9 +9,9 @@ mod bracket;
 
 pub use bracket::Bracket;
 
+use crate::dynamics::Simulator;
 use crate::probability::normal;
 use crate::profile::{Grid, Nominal, Profile};
-use crate::dynamics::Simulator;
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -92,7 +92,9 @@ pub enum PlanError {
         most_gib: f64,
     },
     /// No release within the limits reaches the hoop.
-    #[error("search: no release within the limits reaches the hoop from there; raise speed_max or pitch_max")]
+    #[error(
+        "search: no release within the limits reaches the hoop from there; raise speed_max or pitch_max"
+    )]
     OutOfReach,
 }
 
@@ -114,7 +116,8 @@ impl Plan {
         let search = &profile.search;
         let nominal_speed = nominal_speeds(profile, &bracket).ok_or(PlanError::OutOfReach)?;
         let memory = memory_bytes(&grid, nominal_speed.count);
-        let points = grid.speed as f64 * grid.pitch as f64 * grid.polar as f64 * grid.backspin as f64;
+        let points =
+            grid.speed as f64 * grid.pitch as f64 * grid.polar as f64 * grid.backspin as f64;
         if !(memory <= LARGEST_TABLE_BYTES && points < 1e12) {
             let gib = (1u64 << 30) as f64;
             return Err(PlanError::TooLarge {
@@ -131,9 +134,16 @@ impl Plan {
             high: (search.pitch_max_rad + pitch_margin).min(0.5 * std::f64::consts::PI),
             count: grid.pitch,
         };
-        let polar = Axis { low: bracket.polar_rad.0, high: bracket.polar_rad.1, count: grid.polar };
-        let backspin =
-            Axis { low: -spin_margin, high: top_spin + spin_margin, count: grid.backspin };
+        let polar = Axis {
+            low: bracket.polar_rad.0,
+            high: bracket.polar_rad.1,
+            count: grid.polar,
+        };
+        let backspin = Axis {
+            low: -spin_margin,
+            high: top_spin + spin_margin,
+            count: grid.backspin,
+        };
         Ok(Self {
             bracket,
             pitch,
@@ -191,7 +201,11 @@ fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Axis> {
     let sigma = profile.shooter.errors.speed_m_s(low);
     let step = (0.5 * sigma).clamp(0.01, 0.06);
     let count = ((high - low) / step).ceil() as usize;
-    Some(Axis { low, high, count: count.clamp(10, MOST_NOMINAL_SPEEDS) })
+    Some(Axis {
+        low,
+        high,
+        count: count.clamp(10, MOST_NOMINAL_SPEEDS),
+    })
 }
 
 /// A check of the bracket: shots outside it that went in nevertheless.
@@ -214,14 +228,16 @@ impl Plan {
         const BLOCK: u64 = 4096;
         let (polar_low, polar_high) = self.bracket.polar_rad;
         let room = 20.0 * crate::units::DEGREE_RAD;
-        let speeds = (0.5 * self.nominal_speed.low, 1.3 * self.bracket.speed_max_m_s);
+        let speeds = (
+            0.5 * self.nominal_speed.low,
+            1.3 * self.bracket.speed_max_m_s,
+        );
         let (outside, made_outside) = (0..shots.div_ceil(BLOCK))
             .into_par_iter()
             .map(|block| {
                 let mut random = ChaCha12Rng::seed_from_u64(profile.search.seed);
                 random.set_stream(block);
-                let mut between =
-                    |low: f64, high: f64| low + (high - low) * random.random::<f64>();
+                let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
                 let (mut outside, mut made) = (0, 0);
                 for _ in 0..BLOCK.min(shots - block * BLOCK) {
                     let nominal = Nominal {
@@ -230,7 +246,12 @@ impl Plan {
                         polar_rad: between(polar_low - room, polar_high + room),
                         backspin_rad_s: between(self.backspin.low, self.backspin.high),
                     };
-                    let Nominal { speed_m_s, pitch_rad, polar_rad, .. } = nominal;
+                    let Nominal {
+                        speed_m_s,
+                        pitch_rad,
+                        polar_rad,
+                        ..
+                    } = nominal;
                     if !self.bracket.contains(speed_m_s, pitch_rad, polar_rad) {
                         outside += 1;
                         made += u64::from(simulator.verdict(&profile.release(&nominal)).made);
@@ -239,6 +260,10 @@ impl Plan {
                 (outside, made)
             })
             .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-        WideSample { drawn: shots, outside, made_outside }
+        WideSample {
+            drawn: shots,
+            outside,
+            made_outside,
+        }
     }
 }

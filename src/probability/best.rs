@@ -119,7 +119,12 @@ pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestErro
     let table = Table::build(profile, &plan, &simulator, progress);
     let probabilities = table.probabilities(profile);
     drop(table);
-    let search = Search { profile, plan: &plan, simulator: &simulator, progress };
+    let search = Search {
+        profile,
+        plan: &plan,
+        simulator: &simulator,
+        progress,
+    };
     let tops = search.tops(&probabilities);
     drop(probabilities);
     let direct = search.best(ShotKind::Direct, &tops[0]);
@@ -153,7 +158,10 @@ impl Search<'_> {
                                 if p > best.0 { (p, Some(nominal)) } else { best }
                             });
                         let (p, Some(nominal)) = best else { continue };
-                        if tops.iter().all(|top| top.is_some_and(|(most, _)| most >= p)) {
+                        if tops
+                            .iter()
+                            .all(|top| top.is_some_and(|(most, _)| most >= p))
+                        {
                             continue;
                         }
                         let kind = ShotKind::of(self.profile, self.simulator, &nominal);
@@ -213,10 +221,12 @@ impl Search<'_> {
             let mut moved = true;
             while moved && moves < MOST_MOVES {
                 moved = false;
-                for axis in 0..4 {
+                for (axis, &step) in steps.iter().enumerate() {
                     for sign in [1.0, -1.0] {
-                        let next = self.moved(&best.1, axis, sign * steps[axis]);
-                        if next == best.1 || ShotKind::of(self.profile, self.simulator, &next) != kind {
+                        let next = self.moved(&best.1, axis, sign * step);
+                        if next == best.1
+                            || ShotKind::of(self.profile, self.simulator, &next) != kind
+                        {
                             continue;
                         }
                         moves += 1;
@@ -244,7 +254,8 @@ impl Search<'_> {
         match axis {
             0 => to.speed_m_s += by,
             1 => {
-                to.pitch_rad = (from.pitch_rad + by).clamp(search.pitch_min_rad, search.pitch_max_rad);
+                to.pitch_rad =
+                    (from.pitch_rad + by).clamp(search.pitch_min_rad, search.pitch_max_rad);
                 let before = centre_speed_m_s(self.profile, from.pitch_rad);
                 let after = centre_speed_m_s(self.profile, to.pitch_rad);
                 if let Some((before, after)) = before.zip(after) {
@@ -270,9 +281,18 @@ impl Search<'_> {
         [
             ("pitch_min", nominal.pitch_rad <= search.pitch_min_rad),
             ("pitch_max", nominal.pitch_rad >= search.pitch_max_rad),
-            ("no backspin", most_spin > 0.0 && nominal.backspin_rad_s <= 0.0),
-            ("max_backspin", most_spin > 0.0 && nominal.backspin_rad_s >= most_spin),
-            ("speed_max", nominal.speed_m_s >= self.plan.bracket.speed_max_m_s),
+            (
+                "no backspin",
+                most_spin > 0.0 && nominal.backspin_rad_s <= 0.0,
+            ),
+            (
+                "max_backspin",
+                most_spin > 0.0 && nominal.backspin_rad_s >= most_spin,
+            ),
+            (
+                "speed_max",
+                nominal.speed_m_s >= self.plan.bracket.speed_max_m_s,
+            ),
         ]
         .into_iter()
         .filter_map(|(name, at)| at.then_some(name))
@@ -282,8 +302,11 @@ impl Search<'_> {
 
 /// The best of the tops, and others at least [`START_GAP`] pitch angles away from those before.
 fn starts(tops: &[Option<Top>]) -> Vec<Top> {
-    let mut order: Vec<(usize, Top)> =
-        tops.iter().enumerate().filter_map(|(i, top)| top.map(|top| (i, top))).collect();
+    let mut order: Vec<(usize, Top)> = tops
+        .iter()
+        .enumerate()
+        .filter_map(|(i, top)| top.map(|top| (i, top)))
+        .collect();
     order.sort_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)));
     let mut chosen: Vec<(usize, Top)> = Vec::new();
     for (i, top) in order {

@@ -82,7 +82,11 @@ impl<'a> Sampler<'a> {
     /// A sampler for a profile's errors and place.
     #[must_use]
     pub fn new(profile: &'a Profile, simulator: &'a Simulator) -> Self {
-        Self { profile, simulator, sobol: Sobol::new() }
+        Self {
+            profile,
+            simulator,
+            sobol: Sobol::new(),
+        }
     }
 
     /// Release number `index` of the scramble `key` about a nominal shot.
@@ -142,7 +146,9 @@ impl<'a> Sampler<'a> {
         seed: u64,
         progress: &dyn Progress,
     ) -> Estimate {
-        let keys: Vec<u64> = (0..REPLICATES).map(|replicate| sobol::key(seed, replicate)).collect();
+        let keys: Vec<u64> = (0..REPLICATES)
+            .map(|replicate| sobol::key(seed, replicate))
+            .collect();
         let mut counts = vec![Counts::default(); keys.len()];
         let mut points = 0;
         loop {
@@ -172,10 +178,15 @@ impl<'a> Sampler<'a> {
 fn summarise(counts: &[Counts], points: u32) -> Estimate {
     let n = counts.len() as f64;
     let per = f64::from(points);
-    let means: Vec<f64> = counts.iter().map(|count| count.made() as f64 / per).collect();
+    let means: Vec<f64> = counts
+        .iter()
+        .map(|count| count.made() as f64 / per)
+        .collect();
     let probability = means.iter().sum::<f64>() / n;
     let square: f64 = means.iter().map(|mean| (mean - probability).powi(2)).sum();
-    let all = counts.iter().fold(Counts::default(), |sum, &count| sum.plus(count));
+    let all = counts
+        .iter()
+        .fold(Counts::default(), |sum, &count| sum.plus(count));
     let share = |count: u64| count as f64 / (n * per);
     Estimate {
         probability,

@@ -2,8 +2,8 @@
 //!
 //! [`Table`] holds, for one place, what every release of a grid leads to, summed over speed with the
 //! weights of every nominal speed (Eq. 25, first axis); [`Table::probabilities`] applies the
-//! remaining axes. [`estimate`] integrates one nominal shot with scrambled Sobol points drawn from
-//! the normal, and [`best`] joins the two into Eq. 26.
+//! remaining axes. the module `estimate` integrates one nominal shot with scrambled Sobol points drawn from
+//! the normal, and the module `best` joins the two into Eq. 26.
 
 pub mod best;
 pub mod estimate;

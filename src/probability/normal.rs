@@ -97,7 +97,11 @@ pub fn quantile(p: f64) -> f64 {
     }
     let tail = if q < 0.0 { p } else { 1.0 - p };
     let r = (-libm::log(tail)).sqrt();
-    let size = if r <= 5.0 { ratio(&NEAR, r - 1.6) } else { ratio(&FAR, r - 5.0) };
+    let size = if r <= 5.0 {
+        ratio(&NEAR, r - 1.6)
+    } else {
+        ratio(&FAR, r - 5.0)
+    };
     if q < 0.0 { -size } else { size }
 }
 
@@ -113,7 +117,11 @@ mod tests {
             (0.001, -3.090_232_306_167_813_5),
             (1e-20, -9.262_340_089_798_408),
         ] {
-            assert!((quantile(p) / z - 1.0).abs() < 1e-14, "{p}: {}", quantile(p));
+            assert!(
+                (quantile(p) / z - 1.0).abs() < 1e-14,
+                "{p}: {}",
+                quantile(p)
+            );
         }
     }
 

@@ -91,7 +91,8 @@ pub fn key(user_seed: u64, replicate: u64) -> u64 {
 }
 
 fn seed(key: u64, dimension: usize) -> u32 {
-    (mix(key.wrapping_add(0xD1B5_4A32_D192_ED03_u64.wrapping_mul(dimension as u64 + 1))) >> 32) as u32
+    (mix(key.wrapping_add(0xD1B5_4A32_D192_ED03_u64.wrapping_mul(dimension as u64 + 1))) >> 32)
+        as u32
 }
 
 /// The finaliser of splitmix64.
@@ -128,7 +129,10 @@ mod tests {
                     let cell = sobol.point(i, dimension, key(7, 3)) * f64::from(1 << m);
                     scrambled[cell as usize] += 1;
                 }
-                assert!(plain.iter().chain(&scrambled).all(|&n| n == 1), "{dimension} {m}");
+                assert!(
+                    plain.iter().chain(&scrambled).all(|&n| n == 1),
+                    "{dimension} {m}"
+                );
             }
         }
     }

@@ -78,13 +78,18 @@ impl Table {
         let block = plan.backspin.count * nominals.len();
         let mut sums = vec![0.0; plan.pitch.count * plan.polar.count * block];
         progress.begin("simulating", plan.shots);
-        sums.par_chunks_mut(block).enumerate().for_each(|(pair, block)| {
-            let cell = (pair / plan.polar.count, pair % plan.polar.count);
-            fill(profile, plan, simulator, &nominals, cell, block);
-            progress.advance((plan.backspin.count * plan.speeds_per_line) as u64);
-        });
+        sums.par_chunks_mut(block)
+            .enumerate()
+            .for_each(|(pair, block)| {
+                let cell = (pair / plan.polar.count, pair % plan.polar.count);
+                fill(profile, plan, simulator, &nominals, cell, block);
+                progress.advance((plan.backspin.count * plan.speeds_per_line) as u64);
+            });
         progress.end();
-        Self { plan: plan.clone(), sums }
+        Self {
+            plan: plan.clone(),
+            sums,
+        }
     }
 
     /// Eq. 25 at every nominal shot: the products along backspin, polar angle and pitch angle.
@@ -99,7 +104,9 @@ impl Table {
         let speed_m_s: Vec<f64> = plan.nominal_speed.values().collect();
 
         let speeds = speed_m_s.len();
-        let spin = weights(&plan.backspin, &backspin_rad_s, |w| errors.backspin_rad_s(w));
+        let spin = weights(&plan.backspin, &backspin_rad_s, |w| {
+            errors.backspin_rad_s(w)
+        });
         let polar = weights(&plan.polar, &polar_rad, |_| errors.c30_rad);
         let pitch = weights(&plan.pitch, &pitch_rad, |_| errors.c20_rad);
         let values = along_axis(&self.sums, plan.backspin.count, speeds, &spin);
@@ -107,7 +114,13 @@ impl Table {
         let values = along_axis(&values, plan.polar.count, inner, &polar);
         let inner = polar_rad.len() * inner;
         let values = along_axis(&values, plan.pitch.count, inner, &pitch);
-        Probabilities { pitch_rad, polar_rad, backspin_rad_s, speed_m_s, values }
+        Probabilities {
+            pitch_rad,
+            polar_rad,
+            backspin_rad_s,
+            speed_m_s,
+            values,
+        }
     }
 }
 
@@ -116,7 +129,9 @@ fn spread(low: f64, high: f64, count: usize) -> Vec<f64> {
     if !(low < high) {
         return vec![low];
     }
-    (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
+    (0..count)
+        .map(|i| low + (high - low) * i as f64 / (count - 1) as f64)
+        .collect()
 }
 
 /// Simulates the lines of one (pitch, polar) cell and sums each over speed.
@@ -175,7 +190,11 @@ fn weights(axis: &Axis, nominals: &[f64], sigma: impl Fn(f64) -> f64) -> Vec<Vec
             axis.values()
                 .map(|x| {
                     let near = (x - nominal).abs() <= REACH_SIGMAS * sigma;
-                    if near { normal::density(x, nominal, sigma) * step } else { 0.0 }
+                    if near {
+                        normal::density(x, nominal, sigma) * step
+                    } else {
+                        0.0
+                    }
                 })
                 .collect()
         })
@@ -187,17 +206,20 @@ fn weights(axis: &Axis, nominals: &[f64], sigma: impl Fn(f64) -> f64) -> Vec<Vec
 fn along_axis(input: &[f64], cells: usize, inner: usize, matrix: &[Vec<f64>]) -> Vec<f64> {
     let outer = input.len() / (cells * inner);
     let mut output = vec![0.0; outer * matrix.len() * inner];
-    output.par_chunks_mut(inner).enumerate().for_each(|(index, row)| {
-        let (block, nominal) = (index / matrix.len(), index % matrix.len());
-        let source = &input[block * cells * inner..(block + 1) * cells * inner];
-        for (&weight, cell) in matrix[nominal].iter().zip(source.chunks(inner)) {
-            if weight != 0.0 {
-                for (sum, value) in row.iter_mut().zip(cell) {
-                    *sum += weight * value;
+    output
+        .par_chunks_mut(inner)
+        .enumerate()
+        .for_each(|(index, row)| {
+            let (block, nominal) = (index / matrix.len(), index % matrix.len());
+            let source = &input[block * cells * inner..(block + 1) * cells * inner];
+            for (&weight, cell) in matrix[nominal].iter().zip(source.chunks(inner)) {
+                if weight != 0.0 {
+                    for (sum, value) in row.iter_mut().zip(cell) {
+                        *sum += weight * value;
+                    }
                 }
             }
-        }
-    });
+        });
     output
 }
 
@@ -207,7 +229,11 @@ mod tests {
 
     #[test]
     fn prop_weights_of_a_nominal_inside_the_axis_sum_to_one() {
-        let axis = Axis { low: -3.0, high: 5.0, count: 40 };
+        let axis = Axis {
+            low: -3.0,
+            high: 5.0,
+            count: 40,
+        };
         for row in weights(&axis, &[0.0, 1.03, 1.99], |_| 0.3) {
             let sum: f64 = row.iter().sum();
             assert!((sum - 1.0).abs() < 1e-6, "{sum}");

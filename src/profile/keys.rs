@@ -25,7 +25,11 @@ impl<'t, 'i> Keys<'t, 'i> {
     }
 
     pub(super) fn name(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+        if self.path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.path)
+        }
     }
 
     pub(super) fn has(&self, key: &str) -> bool {
@@ -42,18 +46,30 @@ impl<'t, 'i> Keys<'t, 'i> {
             .table
             .and_then(|table| table.get(key))
             .map_or_else(|| self.span.clone(), Spanned::span);
-        Fault { span, key: self.name(key), message: message.into() }
+        Fault {
+            span,
+            key: self.name(key),
+            message: message.into(),
+        }
     }
 
     /// The table under `key`; an empty one where it is absent.
     pub(super) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Keys<'t, 'i> {
         let found = self.get(key);
         let path = self.name(key);
-        let nothing = |span| Keys { path: path.clone(), table: None, span, asked: Vec::new() };
+        let nothing = |span| Keys {
+            path: path.clone(),
+            table: None,
+            span,
+            asked: Vec::new(),
+        };
         match found.map(|value| (value.get_ref(), value.span())) {
-            Some((DeValue::Table(table), span)) => {
-                Keys { path, table: Some(table), span, asked: Vec::new() }
-            }
+            Some((DeValue::Table(table), span)) => Keys {
+                path,
+                table: Some(table),
+                span,
+                asked: Vec::new(),
+            },
             Some((_, span)) => {
                 faults.push(self.fault(key, "must be a table, such as [shooter]"));
                 nothing(span)
@@ -98,7 +114,8 @@ impl<'t, 'i> Keys<'t, 'i> {
                 None
             }
             None => {
-                faults.push(self.fault(key, "must be a number, or a text with a number and a unit"));
+                faults
+                    .push(self.fault(key, "must be a number, or a text with a number and a unit"));
                 None
             }
         }
@@ -148,7 +165,8 @@ impl<'t, 'i> Keys<'t, 'i> {
             Some(number) if range.contains(&number) => Some(number),
             _ => {
                 let (low, high) = (range.start(), range.end());
-                faults.push(self.fault(key, format!("must be a whole number from {low} to {high}")));
+                faults
+                    .push(self.fault(key, format!("must be a whole number from {low} to {high}")));
                 None
             }
         }
@@ -166,7 +184,11 @@ impl<'t, 'i> Keys<'t, 'i> {
             known.sort_unstable();
             let message = format!("is not a key here; known are {}", known.join(", "));
             let shown: String = name.chars().take(60).collect();
-            faults.push(Fault { span: key.span(), key: self.name(&shown), message });
+            faults.push(Fault {
+                span: key.span(),
+                key: self.name(&shown),
+                message,
+            });
         }
     }
 }

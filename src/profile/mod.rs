@@ -107,7 +107,12 @@ pub struct Grid {
 
 impl Default for Grid {
     fn default() -> Self {
-        Self { speed: 40, pitch: 40, polar: 40, backspin: 40 }
+        Self {
+            speed: 40,
+            pitch: 40,
+            polar: 40,
+            backspin: 40,
+        }
     }
 }
 
@@ -155,7 +160,10 @@ pub struct Output {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { folder: "results".to_owned(), units: System::Imperial }
+        Self {
+            folder: "results".to_owned(),
+            units: System::Imperial,
+        }
     }
 }
 

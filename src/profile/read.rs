@@ -46,12 +46,27 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
         let place = read_place(place_at, &physics, faults);
         let grid = read_grid(&mut keys, faults);
         let usual = place.zip(shooter.as_ref()).map(|(place, shooter)| {
-            Search::around(place.distance_m, shooter.release_height_m - physics.hoop_height_m)
+            Search::around(
+                place.distance_m,
+                shooter.release_height_m - physics.hoop_height_m,
+            )
         });
-        let search = read_search(&mut keys, usual.unwrap_or_else(|| Search::around(4.0, -1.0)), faults);
+        let search = read_search(
+            &mut keys,
+            usual.unwrap_or_else(|| Search::around(4.0, -1.0)),
+            faults,
+        );
         let output = read_output(&mut keys, faults);
         keys.finish(faults);
-        Some(Profile { shooter: shooter?, place: place?, physics, integrator, grid, search, output })
+        Some(Profile {
+            shooter: shooter?,
+            place: place?,
+            physics,
+            integrator,
+            grid,
+            search,
+            output,
+        })
     })
 }
 
@@ -60,7 +75,9 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
 /// # Errors
 /// Every fault of the table at once.
 pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), ProfileError> {
-    with_table(text, origin, |mut keys, faults| Some(read_physics(&mut keys, faults)))
+    with_table(text, origin, |mut keys, faults| {
+        Some(read_physics(&mut keys, faults))
+    })
 }
 
 fn with_table<T>(
@@ -87,7 +104,11 @@ fn with_table<T>(
                 faults.retain(|fault| fault.key.is_empty());
             }
             faults.sort_by_key(|fault| fault.span.start);
-            Err(ProfileError { origin: origin.to_owned(), text: text.to_owned(), faults })
+            Err(ProfileError {
+                origin: origin.to_owned(),
+                text: text.to_owned(),
+                faults,
+            })
         }
     }
 }
@@ -110,19 +131,43 @@ fn check(
 
 fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shooter> {
     let mut keys = root.table("shooter", faults);
-    let name = keys.text("name", faults).unwrap_or_else(|| "shooter".to_owned());
+    let name = keys
+        .text("name", faults)
+        .unwrap_or_else(|| "shooter".to_owned());
     if name.chars().count() > LONGEST_NAME {
-        faults.push(keys.fault("name", format!("must have at most {LONGEST_NAME} characters")));
+        faults.push(keys.fault(
+            "name",
+            format!("must have at most {LONGEST_NAME} characters"),
+        ));
     }
     let height = keys.required("release_height", Dimension::Length, faults);
-    let height = check(&keys, "release_height", height, |h| h > 0.0 && h < 10.0, "above 0 and below 10 m", faults);
+    let height = check(
+        &keys,
+        "release_height",
+        height,
+        |h| h > 0.0 && h < 10.0,
+        "above 0 and below 10 m",
+        faults,
+    );
     let spin = keys.required("max_backspin", Dimension::Spin, faults);
-    let spin = check(&keys, "max_backspin", spin, |w| (0.0..=200.0).contains(&w), "0 to 31 rev/s", faults);
+    let spin = check(
+        &keys,
+        "max_backspin",
+        spin,
+        |w| (0.0..=200.0).contains(&w),
+        "0 to 31 rev/s",
+        faults,
+    );
     let mut table = keys.table("errors", faults);
     let errors = read_errors(&mut table, spin.unwrap_or(0.0), faults);
     table.finish(faults);
     keys.finish(faults);
-    Some(Shooter { name, release_height_m: height?, max_backspin_rad_s: spin?, errors: errors? })
+    Some(Shooter {
+        name,
+        release_height_m: height?,
+        max_backspin_rad_s: spin?,
+        errors: errors?,
+    })
 }
 
 fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) -> Option<Errors> {
@@ -138,10 +183,18 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
     for (key, value) in [("c20", c20), ("c30", c30)] {
         check(keys, key, value, |s| s < 0.5, "below 28 deg", faults);
     }
-    let c11 = keys.quantity("c11", Dimension::Number, faults).unwrap_or(0.0);
-    let c12 = keys.quantity("c12", Dimension::PerSpeed, faults).unwrap_or(0.0);
-    let c41 = keys.quantity("c41", Dimension::Number, faults).unwrap_or(0.0);
-    let c42 = keys.quantity("c42", Dimension::PerSpin, faults).unwrap_or(0.0);
+    let c11 = keys
+        .quantity("c11", Dimension::Number, faults)
+        .unwrap_or(0.0);
+    let c12 = keys
+        .quantity("c12", Dimension::PerSpeed, faults)
+        .unwrap_or(0.0);
+    let c41 = keys
+        .quantity("c41", Dimension::Number, faults)
+        .unwrap_or(0.0);
+    let c42 = keys
+        .quantity("c42", Dimension::PerSpin, faults)
+        .unwrap_or(0.0);
     let errors = Errors {
         c10_m_s: c10?,
         c11,
@@ -153,12 +206,20 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
         c42_s_rad: c42,
     };
     // Eq. 28 must stay a standard deviation over everything that can be nominal.
-    let scan = |to: f64, sigma: &dyn Fn(f64) -> f64| (0..=200).all(|i| sigma(to * f64::from(i) / 200.0) >= 0.0);
+    let scan = |to: f64, sigma: &dyn Fn(f64) -> f64| {
+        (0..=200).all(|i| sigma(to * f64::from(i) / 200.0) >= 0.0)
+    };
     if !scan(25.0, &|v| errors.speed_m_s(v)) {
-        faults.push(keys.fault("c10", "c10 + c11 v + c12 v^2 must be 0 or more for every speed to 25 m/s"));
+        faults.push(keys.fault(
+            "c10",
+            "c10 + c11 v + c12 v^2 must be 0 or more for every speed to 25 m/s",
+        ));
     }
     if !scan(max_spin, &|w| errors.backspin_rad_s(w)) {
-        faults.push(keys.fault("c40", "c40 + c41 w + c42 w^2 must be 0 or more for every backspin to max_backspin"));
+        faults.push(keys.fault(
+            "c40",
+            "c40 + c41 w + c42 w^2 must be 0 or more for every backspin to max_backspin",
+        ));
     }
     (faults.len() == before).then_some(errors)
 }
@@ -180,23 +241,48 @@ fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>
         let distance = keys.required("distance", Dimension::Length, faults);
         let distance = check(&keys, "distance", distance, |d| d > 0.0, "above 0", faults);
         let angle = keys.required("angle", Dimension::Angle, faults);
-        let angle = check(&keys, "angle", angle, |a| a.abs() <= PI, "between -180 and 180 deg", faults);
+        let angle = check(
+            &keys,
+            "angle",
+            angle,
+            |a| a.abs() <= PI,
+            "between -180 and 180 deg",
+            faults,
+        );
         let place = distance.zip(angle);
         let span_of = keys.fault("distance", "");
         keys.finish(faults);
         let (distance_m, angle_rad) = place?;
-        let place = Place { distance_m, angle_rad };
+        let place = Place {
+            distance_m,
+            angle_rad,
+        };
         return check_place(place, physics, &span_of, faults);
     };
-    let place = Place { distance_m: (x * x + y * y).sqrt(), angle_rad: libm::atan2(y, x) };
-    let at = Fault { span: 0..0, key: key.to_owned(), message: String::new() };
+    let place = Place {
+        distance_m: (x * x + y * y).sqrt(),
+        angle_rad: libm::atan2(y, x),
+    };
+    let at = Fault {
+        span: 0..0,
+        key: key.to_owned(),
+        message: String::new(),
+    };
     check_place(place, physics, &at, faults)
 }
 
-fn check_place(place: Place, physics: &Physics, at: &Fault, faults: &mut Vec<Fault>) -> Option<Place> {
+fn check_place(
+    place: Place,
+    physics: &Physics,
+    at: &Fault,
+    faults: &mut Vec<Fault>,
+) -> Option<Place> {
     let foot = crate::physics::FOOT_M;
     let reach = physics.ring_radius_m + physics.ball_radius_m;
-    let fault = |message: String| Fault { message, ..at.clone() };
+    let fault = |message: String| Fault {
+        message,
+        ..at.clone()
+    };
     let x = place.distance_m * libm::cos(place.angle_rad);
     let in_front = physics.ball_radius_m - physics.board_distance_m;
     if !(place.distance_m > reach) {
@@ -224,10 +310,14 @@ fn check_place(place: Place, physics: &Physics, at: &Fault, faults: &mut Vec<Fau
 fn read_physics(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> (Physics, Integrator) {
     let mut keys = root.table("physics", faults);
     let mut physics = Physics::paper();
-    if let Some(preset) = keys.text("preset", faults) {
-        if preset != "paper" {
-            faults.push(keys.fault("preset", "must be \"paper\" (set restitution for a livelier or duller ball)"));
-        }
+    if keys
+        .text("preset", faults)
+        .is_some_and(|preset| preset != "paper")
+    {
+        faults.push(keys.fault(
+            "preset",
+            "must be \"paper\" (set restitution for a livelier or duller ball)",
+        ));
     }
     let before = faults.len();
     {
@@ -240,7 +330,11 @@ fn read_physics(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> (Physics, I
             ("board_distance", Dimension::Length, &mut p.board_distance_m),
             ("board_width", Dimension::Length, &mut p.board_width_m),
             ("board_height", Dimension::Length, &mut p.board_height_m),
-            ("board_centre_height", Dimension::Length, &mut p.board_centre_height_m),
+            (
+                "board_centre_height",
+                Dimension::Length,
+                &mut p.board_centre_height_m,
+            ),
             ("hoop_height", Dimension::Length, &mut p.hoop_height_m),
             ("gravity", Dimension::Acceleration, &mut p.gravity_m_s2),
             ("stiffness", Dimension::Stiffness, &mut p.stiffness_n_m),
@@ -273,19 +367,39 @@ fn read_physics(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> (Physics, I
 }
 
 fn read_integrator(keys: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Integrator {
-    let name = keys.text("integrator", faults).unwrap_or_else(|| "exact".to_owned());
-    let steps = keys.count("steps_per_contact", 2..=100_000, faults).unwrap_or(8);
-    let dt_max = keys.quantity("dt_max", Dimension::Time, faults).unwrap_or(0.015);
-    let dt_min = keys.quantity("dt_min", Dimension::Time, faults).unwrap_or(0.0005);
+    let name = keys
+        .text("integrator", faults)
+        .unwrap_or_else(|| "exact".to_owned());
+    let steps = keys
+        .count("steps_per_contact", 2..=100_000, faults)
+        .unwrap_or(8);
+    let dt_max = keys
+        .quantity("dt_max", Dimension::Time, faults)
+        .unwrap_or(0.015);
+    let dt_min = keys
+        .quantity("dt_min", Dimension::Time, faults)
+        .unwrap_or(0.0005);
     for (key, value) in [("dt_max", dt_max), ("dt_min", dt_min)] {
-        check(keys, key, Some(value), |dt| (1e-7..=0.1).contains(&dt), "from 1e-7 s to 0.1 s", faults);
+        check(
+            keys,
+            key,
+            Some(value),
+            |dt| (1e-7..=0.1).contains(&dt),
+            "from 1e-7 s to 0.1 s",
+            faults,
+        );
     }
     if dt_min > dt_max {
         faults.push(keys.fault("dt_min", "must not be more than dt_max"));
     }
     match name.as_str() {
-        "exact" => Integrator::Exact { steps_per_contact: u32::try_from(steps).unwrap_or(8) },
-        "paper" => Integrator::Paper { dt_max_s: dt_max, dt_min_s: dt_min },
+        "exact" => Integrator::Exact {
+            steps_per_contact: u32::try_from(steps).unwrap_or(8),
+        },
+        "paper" => Integrator::Paper {
+            dt_max_s: dt_max,
+            dt_min_s: dt_min,
+        },
         _ => {
             faults.push(keys.fault("integrator", "must be \"exact\" or \"paper\""));
             Integrator::EXACT
@@ -315,9 +429,10 @@ fn read_search(root: &mut Keys<'_, '_>, usual: Search, faults: &mut Vec<Fault>) 
     let mut search = usual;
     let deg = crate::units::DEGREE_RAD;
     let pitch = |a: f64| (deg..=89.0 * deg).contains(&a);
-    for (key, place) in
-        [("pitch_min", &mut search.pitch_min_rad), ("pitch_max", &mut search.pitch_max_rad)]
-    {
+    for (key, place) in [
+        ("pitch_min", &mut search.pitch_min_rad),
+        ("pitch_max", &mut search.pitch_max_rad),
+    ] {
         let value = keys.quantity(key, Dimension::Angle, faults);
         if let Some(value) = check(&keys, key, value, pitch, "from 1 to 89 deg", faults) {
             *place = value;
@@ -327,9 +442,23 @@ fn read_search(root: &mut Keys<'_, '_>, usual: Search, faults: &mut Vec<Fault>) 
         faults.push(keys.fault("pitch_min", "must be less than pitch_max"));
     }
     let speed = keys.quantity("speed_max", Dimension::Speed, faults);
-    search.speed_max_m_s = check(&keys, "speed_max", speed, |v| v > 0.0 && v <= 40.0, "above 0 and at most 40 m/s", faults);
+    search.speed_max_m_s = check(
+        &keys,
+        "speed_max",
+        speed,
+        |v| v > 0.0 && v <= 40.0,
+        "above 0 and at most 40 m/s",
+        faults,
+    );
     let error = keys.quantity("standard_error", Dimension::Number, faults);
-    if let Some(error) = check(&keys, "standard_error", error, |e| (1e-5..=0.1).contains(&e), "from 0.00001 to 0.1", faults) {
+    if let Some(error) = check(
+        &keys,
+        "standard_error",
+        error,
+        |e| (1e-5..=0.1).contains(&e),
+        "from 0.00001 to 0.1",
+        faults,
+    ) {
         search.standard_error = error;
     }
     if let Some(seed) = keys.count("seed", 0..=u64::MAX, faults) {

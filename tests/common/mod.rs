@@ -1,5 +1,5 @@
 //! What the integration tests share.
-#![allow(dead_code)]
+#![allow(dead_code, unreachable_pub)]
 
 use bankshot::dynamics::{Integrator, Release, Simulator};
 use bankshot::physics::{FOOT_M, Physics};
@@ -8,7 +8,13 @@ use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 
 /// A release 13.75 ft from the hoop, 3 ft below it, in the units of the paper.
-pub fn release(court_deg: f64, speed_ft_s: f64, pitch_deg: f64, polar_deg: f64, backspin_rev_s: f64) -> Release {
+pub fn release(
+    court_deg: f64,
+    speed_ft_s: f64,
+    pitch_deg: f64,
+    polar_deg: f64,
+    backspin_rev_s: f64,
+) -> Release {
     Release {
         distance_m: 13.75 * FOOT_M,
         court_angle_rad: court_deg * DEGREE_RAD,
@@ -57,6 +63,9 @@ pub fn paper(physics: &Physics, dt_max_s: f64, dt_min_s: f64) -> Simulator {
 /// Part of the releases on which two simulators agree about made or missed.
 pub fn agreement(a: &Simulator, b: &Simulator, releases: &[Release]) -> f64 {
     use rayon::prelude::*;
-    let same = releases.par_iter().filter(|r| a.verdict(r).made == b.verdict(r).made).count();
+    let same = releases
+        .par_iter()
+        .filter(|r| a.verdict(r).made == b.verdict(r).made)
+        .count();
     same as f64 / releases.len() as f64
 }
