@@ -9,17 +9,43 @@ use super::state::{Law, State, Triple};
 use super::surface::{Board, Ring, Surface};
 use super::watch::Watch;
 use super::wedge;
+use crate::lane::{Lane, Mask};
 
 /// Bound on the flights and contacts of one shot, so that every run ends; never reached so far.
 const MOST_STRETCHES: u32 = 100_000;
 
 /// What the ball touches at present.
 #[derive(Clone, Copy, Debug)]
-enum On {
+pub(crate) enum On {
+    /// Flying, or about to.
     Nothing,
     Board(Grip),
     Ring(Grip),
     Both([Grip; 2]),
+}
+
+/// How far a shot has come.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Progress {
+    pub(crate) state: State,
+    pub(crate) time_s: f64,
+    pub(crate) on: On,
+    pub(crate) contacts: Contacts,
+    pub(crate) passage: Passage,
+}
+
+impl Progress {
+    /// At the release.
+    #[inline(always)]
+    pub(crate) fn at_release(law: &Law, start: State) -> Self {
+        Self {
+            state: start,
+            time_s: 0.0,
+            on: On::Nothing,
+            contacts: Contacts::default(),
+            passage: Passage::at_release(law, &start),
+        }
+    }
 }
 
 /// Limits that belong to the run and not to the equations.
@@ -37,31 +63,59 @@ struct Shot<'a, W> {
     law: &'a Law,
     rules: &'a Rules,
     watch: &'a mut W,
-    state: State,
-    time_s: f64,
-    on: On,
-    contacts: Contacts,
-    passage: Passage,
+    now: Progress,
     /// Time for which board and ring have both been rolled on without a break.
     wedged_s: f64,
 }
 
 /// Runs one shot to its end.
 pub(crate) fn run<W: Watch>(law: &Law, rules: &Rules, start: State, watch: &mut W) -> Verdict {
+    let mut progress = Progress::at_release(law, start);
+    let (on_board, on_ring) = pressed_at_start(law, &start);
+    let fresh = Grip::fresh(law);
+    for (touched, on) in [(on_board, Touched::Board), (on_ring, Touched::Ring)] {
+        if touched {
+            progress.contacts.push(on);
+            watch.touch(0.0, on, &start);
+        }
+    }
+    progress.on = match (on_board, on_ring) {
+        (true, true) => On::Both([fresh; 2]),
+        (true, false) => On::Board(fresh),
+        (false, true) => On::Ring(fresh),
+        (false, false) => On::Nothing,
+    };
+    resume(law, rules, progress, watch)
+}
+
+/// Is a ball already pressed against board or ring when it starts?
+pub(crate) fn pressed_at_start(law: &Law, start: &State) -> (bool, bool) {
+    let Triple(x, _, z) = start.position_m;
+    if z.abs() > law.radius && x > law.board_touch_x {
+        return (false, false);
+    }
+    let (board, ()) = Board.meet(law, start);
+    let (ring, _) = Ring.meet(law, start);
+    let on_board = board.compression > REACHED_M && flight::on_board(law, start);
+    (on_board, ring.compression > REACHED_M)
+}
+
+/// Runs a shot on to its end.
+pub(crate) fn resume<W: Watch>(
+    law: &Law,
+    rules: &Rules,
+    progress: Progress,
+    watch: &mut W,
+) -> Verdict {
     let mut shot = Shot {
         law,
         rules,
         watch,
-        state: start,
-        time_s: 0.0,
-        on: On::Nothing,
-        contacts: Contacts::default(),
-        passage: Passage::at_release(law, &start),
+        now: progress,
         wedged_s: 0.0,
     };
-    shot.begin();
     for _ in 0..MOST_STRETCHES {
-        let ending = match shot.on {
+        let ending = match shot.now.on {
             On::Nothing => shot.fly(),
             On::Board(grip) => shot.press_board(grip),
             On::Ring(grip) => shot.press_ring(grip),
@@ -76,49 +130,28 @@ pub(crate) fn run<W: Watch>(law: &Law, rules: &Rules, start: State, watch: &mut 
 
 impl<W: Watch> Shot<'_, W> {
     fn verdict(&self, ending: Ending) -> Verdict {
-        let made = ending == Ending::Fell && self.passage.made(self.law, &self.state);
+        let made = ending == Ending::Fell && self.now.passage.made(self.law, &self.now.state);
         Verdict {
             made,
             ending,
-            contacts: self.contacts,
-            time_s: self.time_s,
-        }
-    }
-
-    /// A ball that is already pressed against something starts in contact.
-    fn begin(&mut self) {
-        let (board, ()) = Board.meet(self.law, &self.state);
-        let (ring, _) = Ring.meet(self.law, &self.state);
-        let on_board = board.compression > REACHED_M && flight::on_board(self.law, &self.state);
-        let on_ring = ring.compression > REACHED_M;
-        let fresh = Grip::fresh(self.law);
-        if on_board {
-            self.touch(Touched::Board);
-            self.on = On::Board(fresh);
-        }
-        if on_ring {
-            self.touch(Touched::Ring);
-            self.on = if on_board {
-                On::Both([fresh; 2])
-            } else {
-                On::Ring(fresh)
-            };
+            contacts: self.now.contacts,
+            time_s: self.now.time_s,
         }
     }
 
     /// One arc of free flight, up to its end or the next touch.
     fn fly(&mut self) -> Option<Ending> {
         let law = self.law;
-        let mut arc = Arc::from(law, &self.state);
+        let mut arc = Arc::from(law, &self.now.state);
         let mut behind = law.never;
         if arc.beside_board < arc.end.min(arc.board).min(arc.ring) {
-            let (enters, face) = flight::beside_board(law, &self.state, arc.beside_board);
+            let (enters, face) = flight::beside_board(law, &self.now.state, arc.beside_board);
             (arc.board, behind) = (enters, face);
-            arc.seek_ring(law, &self.state, arc.end.min(enters).min(face));
+            arc.seek_ring(law, &self.now.state, arc.end.min(enters).min(face));
         }
-        let dt = arc.end.min(arc.board).min(arc.ring).min(behind);
-        if self.time_s + dt > self.rules.time_limit_s {
-            self.advance_flight(self.rules.time_limit_s - self.time_s);
+        let dt = arc.end.least(arc.board).least(arc.ring).least(behind);
+        if self.now.time_s + dt > self.rules.time_limit_s {
+            self.advance_flight(self.rules.time_limit_s - self.now.time_s);
             return Some(Ending::TimeLimit);
         }
         self.advance_flight(dt);
@@ -127,14 +160,14 @@ impl<W: Watch> Shot<'_, W> {
         }
         if arc.ring <= dt {
             self.touch(Touched::Ring);
-            self.on = On::Ring(Grip::fresh(law));
+            self.now.on = On::Ring(Grip::fresh(law));
         } else if arc.board <= dt {
             self.touch(Touched::Board);
-            self.on = On::Board(Grip::fresh(law));
+            self.now.on = On::Board(Grip::fresh(law));
         } else if behind <= dt {
             return Some(Ending::BehindBoard);
         } else {
-            let rose = self.state.position_m.2 > -law.radius - REACHED_M;
+            let rose = self.now.state.position_m.2 > -law.radius - REACHED_M;
             return Some(if rose {
                 Ending::Fell
             } else {
@@ -145,49 +178,48 @@ impl<W: Watch> Shot<'_, W> {
     }
 
     fn advance_flight(&mut self, dt: f64) {
-        self.watch.flight(self.law, self.time_s, dt, &self.state);
-        self.passage.flight(self.law, &self.state, dt);
-        self.state = self.state.flown(self.law, dt);
-        self.time_s += dt;
+        self.watch
+            .flight(self.law, self.now.time_s, dt, &self.now.state);
+        self.now.passage.flight(self.law, &self.now.state, dt);
+        self.now.state = self.now.state.flown(self.law, dt);
+        self.now.time_s += dt;
     }
 
     fn touch(&mut self, surface: Touched) {
-        self.contacts.push(surface);
-        self.watch.touch(self.time_s, surface, &self.state);
+        self.now.contacts.push(surface);
+        self.watch.touch(self.now.time_s, surface, &self.now.state);
     }
 
     fn part(&mut self, surface: Touched) {
-        self.watch.part(self.time_s, surface, &self.state);
+        self.watch.part(self.now.time_s, surface, &self.now.state);
     }
 
     fn press_board(&mut self, mut grip: Grip) -> Option<Ending> {
         let law = self.law;
         loop {
-            if !flight::on_board(law, &self.state) {
+            if !flight::on_board(law, &self.now.state) {
                 self.part(Touched::Board);
-                self.on = On::Nothing;
+                self.now.on = On::Nothing;
                 return None;
             }
-            if ring_gap(law, &self.state).is_some_and(|gap| gap.reached()) {
+            if ring_gap(law, &self.now.state).reached(law) {
                 self.touch(Touched::Ring);
-                self.on = On::Both([grip, Grip::fresh(law)]);
+                self.now.on = On::Both([grip, Grip::fresh(law)]);
                 self.wedged_s = 0.0;
                 return None;
             }
-            let before = self.state;
+            let before = self.now.state;
             let step = contact::step(
                 law,
                 Board,
-                &mut self.state,
+                &mut self.now.state,
                 &mut grip,
                 self.rules.longest_step_s,
-                |state, acceleration| {
-                    ring_gap(law, state).map_or(law.never, |gap| gap.time(law, acceleration))
-                },
+                |state, acceleration| ring_gap(law, state).time(law, acceleration),
             );
             if step.parted {
                 self.part(Touched::Board);
-                self.on = On::Nothing;
+                self.now.on = On::Nothing;
                 return None;
             }
             let impulse = self.impulse(&before, step.dt);
@@ -200,36 +232,24 @@ impl<W: Watch> Shot<'_, W> {
     fn press_ring(&mut self, mut grip: Grip) -> Option<Ending> {
         let law = self.law;
         loop {
-            let gap = self.state.position_m.0 - law.board_touch_x;
-            if gap <= REACHED_M
-                && self.state.velocity_m_s.0 < 0.0
-                && flight::on_board(law, &self.state)
-            {
+            if board_reached(law, &self.now.state) {
                 self.touch(Touched::Board);
-                self.on = On::Both([Grip::fresh(law), grip]);
+                self.now.on = On::Both([Grip::fresh(law), grip]);
                 self.wedged_s = 0.0;
                 return None;
             }
-            let before = self.state;
+            let before = self.now.state;
             let step = contact::step(
                 law,
                 Ring,
-                &mut self.state,
+                &mut self.now.state,
                 &mut grip,
                 self.rules.longest_step_s,
-                |state, acceleration| {
-                    let gap = state.position_m.0 - law.board_touch_x;
-                    contact::first_root(
-                        law,
-                        gap.max(REACHED_M),
-                        state.velocity_m_s.0,
-                        acceleration.0,
-                    )
-                },
+                |state, acceleration| time_to_board(law, state, acceleration),
             );
             if step.parted {
                 self.part(Touched::Ring);
-                self.on = On::Nothing;
+                self.now.on = On::Nothing;
                 return None;
             }
             let impulse = self.impulse(&before, step.dt);
@@ -242,9 +262,14 @@ impl<W: Watch> Shot<'_, W> {
     fn press_both(&mut self, mut grips: [Grip; 2]) -> Option<Ending> {
         let law = self.law;
         loop {
-            let before = self.state;
-            let step = wedge::step(law, &mut self.state, &mut grips, self.rules.longest_step_s);
-            let off_board = step.left_board || !flight::on_board(law, &self.state);
+            let before = self.now.state;
+            let step = wedge::step(
+                law,
+                &mut self.now.state,
+                &mut grips,
+                self.rules.longest_step_s,
+            );
+            let off_board = step.left_board || !flight::on_board(law, &self.now.state);
             if off_board {
                 self.part(Touched::Board);
             }
@@ -252,9 +277,9 @@ impl<W: Watch> Shot<'_, W> {
                 self.part(Touched::Ring);
             }
             match (off_board, step.left_ring) {
-                (true, true) => self.on = On::Nothing,
-                (true, false) => self.on = On::Ring(grips[1]),
-                (false, true) => self.on = On::Board(grips[0]),
+                (true, true) => self.now.on = On::Nothing,
+                (true, false) => self.now.on = On::Ring(grips[1]),
+                (false, true) => self.now.on = On::Board(grips[0]),
                 (false, false) => {}
             }
             if step.dt > 0.0 {
@@ -277,7 +302,7 @@ impl<W: Watch> Shot<'_, W> {
 
     /// Impulse per unit of mass of the one contact of a step: what gravity does not explain.
     fn impulse(&self, before: &State, dt: f64) -> Triple<f64> {
-        let Triple(vx, vy, vz) = self.state.velocity_m_s;
+        let Triple(vx, vy, vz) = self.now.state.velocity_m_s;
         let Triple(ux, uy, uz) = before.velocity_m_s;
         Triple(vx - ux, vy - uy, vz - uz + self.law.gravity * dt)
     }
@@ -289,15 +314,15 @@ impl<W: Watch> Shot<'_, W> {
         impulses: [Triple<f64>; 2],
     ) -> Option<Ending> {
         self.watch
-            .step(self.time_s, dt, (before, &self.state), impulses);
-        self.time_s += dt;
-        self.passage.step(self.law, before, &self.state);
+            .step(self.now.time_s, dt, (before, &self.now.state), impulses);
+        self.now.time_s += dt;
+        self.now.passage.step(self.law, before, &self.now.state);
         let law = self.law;
-        if self.state.position_m.0 < law.board_face_x {
+        if self.now.state.position_m.0 < law.board_face_x {
             Some(Ending::BehindBoard)
-        } else if self.state.position_m.2 < -law.radius && self.state.velocity_m_s.2 < 0.0 {
+        } else if self.now.state.position_m.2 < -law.radius && self.now.state.velocity_m_s.2 < 0.0 {
             Some(Ending::Fell)
-        } else if self.time_s > self.rules.time_limit_s {
+        } else if self.now.time_s > self.rules.time_limit_s {
             Some(Ending::TimeLimit)
         } else {
             None
@@ -307,46 +332,79 @@ impl<W: Watch> Shot<'_, W> {
 
 const NONE: Triple<f64> = Triple(0.0, 0.0, 0.0);
 
-/// The ring seen by a ball that is in contact with the board.
-struct Gap {
-    gap: f64,
-    opening: f64,
-    bending: f64,
-    normal: Triple<f64>,
+/// Has a ball on the ring reached the board?
+#[inline(always)]
+pub(crate) fn board_reached<L: Lane>(law: &Law<L>, state: &State<L>) -> L::Mask {
+    let gap = state.position_m.0 - law.board_touch_x;
+    gap.le(law.zero.lit(REACHED_M))
+        & state.velocity_m_s.0.lt(law.zero)
+        & flight::on_board(law, state)
 }
 
-/// The gap to the ring, where it is near enough to matter within a step.
-fn ring_gap(law: &Law, state: &State) -> Option<Gap> {
-    let near = 2.0 * law.radius;
+/// Time until a ball on the ring reaches the board's plane.
+#[inline(always)]
+pub(crate) fn time_to_board<L: Lane>(law: &Law<L>, state: &State<L>, acceleration: Triple<L>) -> L {
+    let gap = (state.position_m.0 - law.board_touch_x).most(law.zero.lit(REACHED_M));
+    contact::first_root(law, gap, state.velocity_m_s.0, acceleration.0)
+}
+
+/// The ring seen by a ball that is in contact with the board.
+#[derive(Clone, Copy)]
+pub(crate) struct Gap<L: Lane> {
+    /// The ring is near enough to matter within a step; else the rest means nothing.
+    near: L::Mask,
+    gap: L,
+    opening: L,
+    bending: L,
+    normal: Triple<L>,
+}
+
+/// The gap to the ring.
+#[inline(always)]
+pub(crate) fn ring_gap<L: Lane>(law: &Law<L>, state: &State<L>) -> Gap<L> {
+    let margin = law.radius * 2.0;
     let Triple(x, y, z) = state.position_m;
-    let reach = law.ring_radius + near;
-    if z.abs() > near || x * x + y * y > reach * reach {
-        return None;
+    let reach = law.ring_radius + margin;
+    let near = z.abs().le(margin) & (x.squared() + y.squared()).le(reach.squared());
+    if !near.any() {
+        let zero = law.zero;
+        let normal = Triple(zero, zero, zero);
+        return Gap {
+            near,
+            gap: zero,
+            opening: zero,
+            bending: zero,
+            normal,
+        };
     }
     let (touch, frame) = Ring.meet(law, state);
-    Some(Gap {
+    Gap {
+        near,
         gap: -touch.compression,
         opening: touch.v.0,
         bending: touch.bending(),
-        normal: Ring.to_space(frame, Triple(1.0, 0.0, 0.0)),
-    })
+        normal: Ring.to_space(frame, Triple(law.one, law.zero, law.zero)),
+    }
 }
 
-impl Gap {
-    fn reached(&self) -> bool {
-        self.gap <= REACHED_M && self.opening < 0.0
+impl<L: Lane> Gap<L> {
+    /// Has the ball reached the ring?
+    #[inline(always)]
+    pub(crate) fn reached(&self, law: &Law<L>) -> L::Mask {
+        self.near & self.gap.le(law.zero.lit(REACHED_M)) & self.opening.lt(law.zero)
     }
 
     /// Time until the gap closes.
-    fn time(&self, law: &Law, acceleration: Triple<f64>) -> f64 {
+    #[inline(always)]
+    pub(crate) fn time(&self, law: &Law<L>, acceleration: Triple<L>) -> L {
+        if !self.near.any() {
+            return law.never;
+        }
         let Triple(x, y, z) = acceleration;
         let along = self.normal.0 * x + self.normal.1 * y + self.normal.2 * z;
-        contact::first_root(
-            law,
-            self.gap.max(REACHED_M),
-            self.opening,
-            along + self.bending,
-        )
-        .max(SHORTEST_S)
+        let gap = self.gap.most(law.zero.lit(REACHED_M));
+        let time = contact::first_root(law, gap, self.opening, along + self.bending);
+        time.most(law.zero.lit(SHORTEST_S))
+            .when(self.near, law.never)
     }
 }

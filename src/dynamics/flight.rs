@@ -194,12 +194,13 @@ impl Arc<f64> {
 }
 
 /// Is the centre level with the board and in front of its face?
-pub(crate) fn on_board(law: &Law, state: &State) -> bool {
+#[inline(always)]
+pub(crate) fn on_board<L: Lane>(law: &Law<L>, state: &State<L>) -> L::Mask {
     let Triple(x, y, z) = state.position_m;
-    x > law.board_face_x
-        && y.abs() < law.board_half_width
-        && z > law.board_bottom_z
-        && z < law.board_top_z
+    law.board_face_x.lt(x)
+        & y.abs().lt(law.board_half_width)
+        & law.board_bottom_z.lt(z)
+        & z.lt(law.board_top_z)
 }
 
 /// For a ball whose centre is beside the board's rectangle at time `from` of its arc, nearer to the

@@ -4,9 +4,11 @@
 //! the paper's own method, [`Integrator::Paper`]. Both use the same surfaces and the same contact
 //! forces (`surface`, Eqs. 2-14 of the paper).
 
+mod batch;
 mod contact;
 mod exact;
 mod flight;
+mod lanes;
 mod outcome;
 mod paper;
 mod passage;
@@ -18,6 +20,7 @@ mod trace;
 mod watch;
 mod wedge;
 
+pub use lanes::Lanes;
 pub use outcome::{Contacts, Ending, Entry, Kind, Outcome, Touched, Verdict};
 pub use release::Release;
 pub use simulator::{Integrator, Simulator};

@@ -12,8 +12,8 @@ use crate::lane::Lane;
 /// Has the ball been above the plane of the hoop, and has it risen through the hoop from below?
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passage<L: Lane = f64> {
-    above: L::Mask,
-    rose_through: L::Mask,
+    pub(crate) above: L::Mask,
+    pub(crate) rose_through: L::Mask,
 }
 
 impl<L: Lane> Passage<L> {

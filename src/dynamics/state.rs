@@ -144,29 +144,52 @@ pub(crate) struct Law<L = f64> {
     pub(crate) never: L,
 }
 
-impl<L: Lane> Law<L> {
-    /// The constants in every lane of the kind that `lit` makes.
-    pub(crate) fn new(physics: &Physics, lit: impl Fn(f64) -> L) -> Self {
+impl Law {
+    /// The constants per unit of mass.
+    pub(crate) fn new(physics: &Physics) -> Self {
         let radius = physics.ball_radius_m;
         let inertia = physics.inertia_ratio * radius * radius;
         let half_height = 0.5 * physics.board_height_m;
         Self {
-            radius: lit(radius),
-            ring_radius: lit(physics.ring_radius_m),
-            board_touch_x: lit(radius - physics.board_distance_m),
-            board_face_x: lit(-physics.board_distance_m),
-            board_half_width: lit(0.5 * physics.board_width_m),
-            board_bottom_z: lit(physics.board_centre_height_m - half_height),
-            board_top_z: lit(physics.board_centre_height_m + half_height),
-            gravity: lit(physics.gravity_m_s2),
-            half_gravity: lit(0.5 * physics.gravity_m_s2),
-            stiffness: lit(physics.stiffness_n_m / physics.ball_mass_kg),
-            damping: lit(physics.damping_kg_s / physics.ball_mass_kg),
-            friction: lit(physics.friction),
-            mass_over_inertia: lit(1.0 / inertia),
-            zero: lit(0.0),
-            one: lit(1.0),
-            never: lit(1e9),
+            radius,
+            ring_radius: physics.ring_radius_m,
+            board_touch_x: radius - physics.board_distance_m,
+            board_face_x: -physics.board_distance_m,
+            board_half_width: 0.5 * physics.board_width_m,
+            board_bottom_z: physics.board_centre_height_m - half_height,
+            board_top_z: physics.board_centre_height_m + half_height,
+            gravity: physics.gravity_m_s2,
+            half_gravity: 0.5 * physics.gravity_m_s2,
+            stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
+            damping: physics.damping_kg_s / physics.ball_mass_kg,
+            friction: physics.friction,
+            mass_over_inertia: 1.0 / inertia,
+            zero: 0.0,
+            one: 1.0,
+            never: 1e9,
+        }
+    }
+
+    /// The same constants in every lane of the kind that `lit` makes.
+    #[inline(always)]
+    pub(crate) fn map<L: Lane>(&self, lit: impl Fn(f64) -> L) -> Law<L> {
+        Law {
+            radius: lit(self.radius),
+            ring_radius: lit(self.ring_radius),
+            board_touch_x: lit(self.board_touch_x),
+            board_face_x: lit(self.board_face_x),
+            board_half_width: lit(self.board_half_width),
+            board_bottom_z: lit(self.board_bottom_z),
+            board_top_z: lit(self.board_top_z),
+            gravity: lit(self.gravity),
+            half_gravity: lit(self.half_gravity),
+            stiffness: lit(self.stiffness),
+            damping: lit(self.damping),
+            friction: lit(self.friction),
+            mass_over_inertia: lit(self.mass_over_inertia),
+            zero: lit(self.zero),
+            one: lit(self.one),
+            never: lit(self.never),
         }
     }
 }

@@ -5,6 +5,10 @@
 //! IEEE 754 rounds exactly (`+ - * /`, square root, comparisons) are in the trait and nothing is
 //! fused, so every width gives the same bits.
 
+mod vector;
+
+pub(crate) use vector::{Pack, PackMask, WIDTH};
+
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Truth values of a comparison, one per lane.

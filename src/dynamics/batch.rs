@@ -1,0 +1,360 @@
+//! Many shots at once, eight to a step, in vector lanes.
+//!
+//! The shots of a batch wait in three queues, by what comes next: flight, board, ring. Flights are
+//! closed-form and are done eight at a time. In contact eight shots step together; a lane whose ball
+//! parts is refilled from the queue at once, so short and long contacts mix without waiting. What is
+//! rare (both surfaces at once, the board's edges, lodged balls, the time limit) leaves its lane and
+//! is finished by the scalar form from where it is.
+//!
+//! The equations are those of the scalar form, so the verdicts are the same, bit for bit.
+
+use super::contact::{self, Grip, REACHED_M};
+use super::exact::{self, On, Progress, Rules, ring_gap};
+use super::flight::{self, Arc};
+use super::outcome::{Contacts, Ending, Touched, Verdict};
+use super::passage::Passage;
+use super::state::{Law, State, Triple};
+use super::surface::{Board, Ring, Surface};
+use crate::lane::{Lane, Pack, PackMask, WIDTH};
+use fearless_simd::Simd;
+
+/// Nine state variables of eight shots.
+type Block = [[f64; WIDTH]; 9];
+
+/// Runs the shots of `starts` to their ends.
+#[inline(always)]
+pub(super) fn run<S: Simd>(
+    simd: S,
+    law: &Law,
+    rules: &Rules,
+    starts: &[State],
+    verdicts: &mut [Verdict],
+) {
+    let mut batch = Batch {
+        simd,
+        law,
+        lanes: law.map(|value| Pack::splat(simd, value)),
+        rules,
+        shots: starts
+            .iter()
+            .map(|start| Progress::at_release(law, *start))
+            .collect(),
+        verdicts,
+        flying: Vec::with_capacity(starts.len()),
+        on_board: Vec::with_capacity(starts.len()),
+        on_ring: Vec::with_capacity(starts.len()),
+    };
+    for (shot, start) in starts.iter().enumerate() {
+        if exact::pressed_at_start(law, start) == (false, false) {
+            batch.flying.push(shot as u32);
+        } else {
+            batch.verdicts[shot] = exact::run(law, rules, *start, &mut ());
+        }
+    }
+    while !(batch.flying.is_empty() && batch.on_board.is_empty() && batch.on_ring.is_empty()) {
+        batch.fly();
+        batch.press_board();
+        batch.press_ring();
+    }
+}
+
+struct Batch<'a, S: Simd> {
+    simd: S,
+    law: &'a Law,
+    lanes: Law<Pack<S>>,
+    rules: &'a Rules,
+    shots: Vec<Progress>,
+    verdicts: &'a mut [Verdict],
+    flying: Vec<u32>,
+    on_board: Vec<u32>,
+    on_ring: Vec<u32>,
+}
+
+/// The bits of up to eight lanes that are set, in order.
+fn lanes_of(mut bits: u8) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (bits != 0).then(|| {
+            let lane = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            lane
+        })
+    })
+}
+
+fn set(block: &mut Block, lane: usize, state: &State) {
+    let (p, v, w) = (state.position_m, state.velocity_m_s, state.spin_rad_s);
+    let values = [p.0, p.1, p.2, v.0, v.1, v.2, w.0, w.1, w.2];
+    for (row, value) in block.iter_mut().zip(values) {
+        row[lane] = value;
+    }
+}
+
+fn get(block: &Block, lane: usize) -> State {
+    let triple = |i: usize| Triple(block[i][lane], block[i + 1][lane], block[i + 2][lane]);
+    State {
+        position_m: triple(0),
+        velocity_m_s: triple(3),
+        spin_rad_s: triple(6),
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, block: &Block) -> State<Pack<S>> {
+    let pack = |i: usize| Pack::load(simd, &block[i]);
+    let triple = |i: usize| Triple(pack(i), pack(i + 1), pack(i + 2));
+    State {
+        position_m: triple(0),
+        velocity_m_s: triple(3),
+        spin_rad_s: triple(6),
+    }
+}
+
+#[inline(always)]
+fn store<S: Simd>(state: &State<Pack<S>>, block: &mut Block) {
+    let (p, v, w) = (state.position_m, state.velocity_m_s, state.spin_rad_s);
+    for (row, value) in block
+        .iter_mut()
+        .zip([p.0, p.1, p.2, v.0, v.1, v.2, w.0, w.1, w.2])
+    {
+        value.store(row);
+    }
+}
+
+/// Sets one lane's bit.
+fn put(bits: &mut u8, lane: usize, value: bool) {
+    *bits = *bits & !(1 << lane) | u8::from(value) << lane;
+}
+
+impl<S: Simd> Batch<'_, S> {
+    /// Finishes a shot in the scalar form.
+    #[cold]
+    fn hand_over(&mut self, shot: u32, on: On) {
+        let mut progress = self.shots[shot as usize];
+        progress.on = on;
+        self.verdicts[shot as usize] = exact::resume(self.law, self.rules, progress, &mut ());
+    }
+
+    fn finish(&mut self, shot: u32, ending: Ending, made: bool) {
+        let progress = &self.shots[shot as usize];
+        self.verdicts[shot as usize] = Verdict {
+            made,
+            ending,
+            contacts: progress.contacts,
+            time_s: progress.time_s,
+        };
+    }
+
+    /// Flies every shot of the queue to its end or its next touch.
+    #[inline(always)]
+    fn fly(&mut self) {
+        let queue = std::mem::take(&mut self.flying);
+        let mut block: Block = [[0.0; WIDTH]; 9];
+        for shots in queue.chunks(WIDTH) {
+            let (mut above, mut rose) = (0, 0);
+            for lane in 0..WIDTH {
+                // Lanes without a shot repeat the last one.
+                let progress = &self.shots[shots[lane.min(shots.len() - 1)] as usize];
+                set(&mut block, lane, &progress.state);
+                put(&mut above, lane, progress.passage.above);
+                put(&mut rose, lane, progress.passage.rose_through);
+            }
+            let law = &self.lanes;
+            let start = load(self.simd, &block);
+            let mut passage = Passage {
+                above: PackMask::from_bits(self.simd, above),
+                rose_through: PackMask::from_bits(self.simd, rose),
+            };
+            let arc = Arc::from(law, &start);
+            let dt = arc.end.least(arc.board).least(arc.ring);
+            passage.flight(law, &start, dt);
+            let end = start.flown(law, dt);
+            let made = passage.made(law, &end).to_bits();
+            let special = (arc.beside_board.lt(dt) | arc.unresolved).to_bits();
+            let ring = arc.ring.le(dt).to_bits();
+            let board = arc.board.le(dt).to_bits();
+            let rose_to = law.zero.lit(-1.0) * law.radius - REACHED_M;
+            let fell = rose_to.lt(end.position_m.2).to_bits();
+            let (above, rose) = (passage.above.to_bits(), passage.rose_through.to_bits());
+            let mut durations = [0.0; WIDTH];
+            dt.store(&mut durations);
+            store(&end, &mut block);
+            for (lane, &shot) in shots.iter().enumerate() {
+                let bit = |bits: u8| bits >> lane & 1 == 1;
+                let progress = &mut self.shots[shot as usize];
+                let late = progress.time_s + durations[lane] > self.rules.time_limit_s;
+                if bit(special) || late {
+                    self.hand_over(shot, On::Nothing);
+                    continue;
+                }
+                progress.state = get(&block, lane);
+                progress.time_s += durations[lane];
+                progress.passage = Passage {
+                    above: bit(above),
+                    rose_through: bit(rose),
+                };
+                if bit(ring) {
+                    progress.contacts.push(Touched::Ring);
+                    self.on_ring.push(shot);
+                } else if bit(board) {
+                    progress.contacts.push(Touched::Board);
+                    self.on_board.push(shot);
+                } else if bit(fell) {
+                    self.finish(shot, Ending::Fell, bit(made));
+                } else {
+                    self.finish(shot, Ending::NeverRose, false);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn press_board(&mut self) {
+        let queue = std::mem::take(&mut self.on_board);
+        let (law, scalar) = (self.lanes, *self.law);
+        self.press(
+            queue,
+            Board,
+            On::Board,
+            |state| !flight::on_board(&scalar, state) || ring_gap(&scalar, state).reached(&scalar),
+            |state| !flight::on_board(&law, state) | ring_gap(&law, state).reached(&law),
+            |state, acceleration| ring_gap(&law, state).time(&law, acceleration),
+        );
+    }
+
+    #[inline(always)]
+    fn press_ring(&mut self) {
+        let queue = std::mem::take(&mut self.on_ring);
+        let (law, scalar) = (self.lanes, *self.law);
+        self.press(
+            queue,
+            Ring,
+            On::Ring,
+            |state| exact::board_reached(&scalar, state),
+            |state| exact::board_reached(&law, state),
+            |state, acceleration| exact::time_to_board(&law, state, acceleration),
+        );
+    }
+
+    /// Steps every shot of the queue on one surface until it parts. `other_at_start` and `other` tell
+    /// that the contact is no longer one with this surface alone.
+    #[inline(always)]
+    fn press<T: Surface<Pack<S>>>(
+        &mut self,
+        mut queue: Vec<u32>,
+        surface: T,
+        on: fn(Grip) -> On,
+        other_at_start: impl Fn(&State) -> bool,
+        other: impl Fn(&State<Pack<S>>) -> PackMask<S>,
+        time_to_other: impl Fn(&State<Pack<S>>, Triple<Pack<S>>) -> Pack<S>,
+    ) {
+        let law = self.lanes;
+        let simd = self.simd;
+        let longest = law.zero.lit(self.rules.longest_step_s);
+        let fresh = Grip::fresh(self.law);
+        let mut block: Block = [[0.0; WIDTH]; 9];
+        let mut no_slip = [fresh.no_slip; WIDTH];
+        let mut times = [0.0; WIDTH];
+        let mut shots = [0_u32; WIDTH];
+        let (mut rolling, mut spent, mut above, mut rose, mut active) = (0_u8, 0, 0, 0, 0_u8);
+        loop {
+            for lane in lanes_of(!active) {
+                while let Some(shot) = queue.pop() {
+                    let progress = &self.shots[shot as usize];
+                    if other_at_start(&progress.state) {
+                        self.hand_over(shot, on(fresh));
+                        continue;
+                    }
+                    set(&mut block, lane, &progress.state);
+                    times[lane] = progress.time_s;
+                    put(&mut above, lane, progress.passage.above);
+                    put(&mut rose, lane, progress.passage.rose_through);
+                    put(&mut rolling, lane, false);
+                    put(&mut spent, lane, false);
+                    put(&mut active, lane, true);
+                    no_slip[lane] = fresh.no_slip;
+                    shots[lane] = shot;
+                    break;
+                }
+            }
+            if active == 0 {
+                return;
+            }
+            let before = load(simd, &block);
+            let mut state = before;
+            let mut grip = Grip {
+                rolling: PackMask::from_bits(simd, rolling),
+                spent: PackMask::from_bits(simd, spent),
+                no_slip: Pack::load(simd, &no_slip),
+            };
+            let mut passage = Passage {
+                above: PackMask::from_bits(simd, above),
+                rose_through: PackMask::from_bits(simd, rose),
+            };
+            let step = contact::step(
+                &law,
+                surface,
+                &mut state,
+                &mut grip,
+                longest,
+                &time_to_other,
+            );
+            let time = Pack::load(simd, &times) + step.dt;
+            passage.step(&law, &before, &state);
+            let behind = state.position_m.0.lt(law.board_face_x);
+            let fell = state.position_m.2.lt(-law.radius) & state.velocity_m_s.2.lt(law.zero);
+            let late = law.zero.lit(self.rules.time_limit_s).lt(time);
+            let ends = behind | fell | late;
+            let leaves = (ends | other(&state)).to_bits();
+            let parted = step.parted.to_bits();
+            store(&state, &mut block);
+            time.store(&mut times);
+            grip.no_slip.store(&mut no_slip);
+            (rolling, spent) = (grip.rolling.to_bits(), grip.spent.to_bits());
+            (above, rose) = (passage.above.to_bits(), passage.rose_through.to_bits());
+            let done = (parted | leaves) & active;
+            if done == 0 {
+                continue;
+            }
+            let made = passage.made(&law, &state).to_bits();
+            let ends = [behind, fell, late].map(PackMask::to_bits);
+            for lane in lanes_of(done) {
+                let bit = |bits: u8| bits >> lane & 1 == 1;
+                let shot = shots[lane];
+                let progress = &mut self.shots[shot as usize];
+                progress.state = get(&block, lane);
+                progress.time_s = times[lane];
+                progress.passage = Passage {
+                    above: bit(above),
+                    rose_through: bit(rose),
+                };
+                put(&mut active, lane, false);
+                if bit(parted) {
+                    self.flying.push(shot);
+                } else if bit(ends[0]) {
+                    self.finish(shot, Ending::BehindBoard, false);
+                } else if bit(ends[1]) {
+                    self.finish(shot, Ending::Fell, bit(made));
+                } else if bit(ends[2]) {
+                    self.finish(shot, Ending::TimeLimit, false);
+                } else {
+                    let grip = Grip {
+                        rolling: bit(rolling),
+                        spent: bit(spent),
+                        no_slip: no_slip[lane],
+                    };
+                    self.hand_over(shot, on(grip));
+                }
+            }
+        }
+    }
+}
+
+/// A verdict to be overwritten.
+pub(super) fn pending() -> Verdict {
+    Verdict {
+        made: false,
+        ending: Ending::Unresolved,
+        contacts: Contacts::default(),
+        time_s: 0.0,
+    }
+}
