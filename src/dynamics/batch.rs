@@ -3,13 +3,13 @@
 //! The shots of a batch wait in three queues, by what comes next: flight, board, ring. Flights are
 //! closed-form and are done eight at a time. In contact eight shots step together; a lane whose ball
 //! parts is refilled from the queue at once, so short and long contacts mix without waiting. What is
-//! rare (both surfaces at once, the board's edges, lodged balls, the time limit) leaves its lane and
-//! is finished by the scalar form from where it is.
+//! rare (both surfaces at once, the board's edges, the time limit) leaves its lane for the scalar form
+//! and comes back to a queue when it is over.
 //!
 //! The equations are those of the scalar form, so the verdicts are the same, bit for bit.
 
 use super::contact::{self, Grip, REACHED_M};
-use super::exact::{self, On, Progress, Rules, ring_gap};
+use super::exact::{self, MOST_STRETCHES, On, Progress, Rules, ring_gap};
 use super::flight::{self, Arc};
 use super::outcome::{Contacts, Ending, Touched, Verdict};
 use super::passage::Passage;
@@ -126,12 +126,28 @@ fn put(bits: &mut u8, lane: usize, value: bool) {
 }
 
 impl<S: Simd> Batch<'_, S> {
-    /// Finishes a shot in the scalar form.
+    /// Takes a shot through what the lanes do not do, in the scalar form, and queues it again.
     #[cold]
-    fn hand_over(&mut self, shot: u32, on: On) {
-        let mut progress = self.shots[shot as usize];
-        progress.on = on;
-        self.verdicts[shot as usize] = exact::resume(self.law, self.rules, progress, &mut ());
+    fn hand_over(&mut self, shot: u32) {
+        let progress = &mut self.shots[shot as usize];
+        loop {
+            if progress.stretches >= MOST_STRETCHES {
+                self.finish(shot, Ending::Unresolved, false);
+                return;
+            }
+            progress.stretches += 1;
+            if let Some(verdict) = exact::stretch(self.law, self.rules, progress) {
+                self.verdicts[shot as usize] = verdict;
+                return;
+            }
+            match progress.on {
+                On::Nothing => self.flying.push(shot),
+                On::Board(_) => self.on_board.push(shot),
+                On::Ring(_) => self.on_ring.push(shot),
+                On::Both(_) => continue,
+            }
+            return;
+        }
     }
 
     fn finish(&mut self, shot: u32, ending: Ending, made: bool) {
@@ -148,6 +164,7 @@ impl<S: Simd> Batch<'_, S> {
     #[inline(always)]
     fn fly(&mut self) {
         let queue = std::mem::take(&mut self.flying);
+        let fresh = Grip::fresh(self.law);
         let mut block: Block = [[0.0; WIDTH]; 9];
         for shots in queue.chunks(WIDTH) {
             let (mut above, mut rose) = (0, 0);
@@ -182,10 +199,12 @@ impl<S: Simd> Batch<'_, S> {
                 let bit = |bits: u8| bits >> lane & 1 == 1;
                 let progress = &mut self.shots[shot as usize];
                 let late = progress.time_s + durations[lane] > self.rules.time_limit_s;
-                if bit(special) || late {
-                    self.hand_over(shot, On::Nothing);
+                progress.on = On::Nothing;
+                if bit(special) || late || progress.stretches >= MOST_STRETCHES {
+                    self.hand_over(shot);
                     continue;
                 }
+                progress.stretches += 1;
                 progress.state = get(&block, lane);
                 progress.time_s += durations[lane];
                 progress.passage = Passage {
@@ -194,9 +213,11 @@ impl<S: Simd> Batch<'_, S> {
                 };
                 if bit(ring) {
                     progress.contacts.push(Touched::Ring);
+                    progress.on = On::Ring(fresh);
                     self.on_ring.push(shot);
                 } else if bit(board) {
                     progress.contacts.push(Touched::Board);
+                    progress.on = On::Board(fresh);
                     self.on_board.push(shot);
                 } else if bit(fell) {
                     self.finish(shot, Ending::Fell, bit(made));
@@ -261,17 +282,21 @@ impl<S: Simd> Batch<'_, S> {
                 while let Some(shot) = queue.pop() {
                     let progress = &self.shots[shot as usize];
                     if other_at_start(&progress.state) {
-                        self.hand_over(shot, on(fresh));
+                        self.hand_over(shot);
                         continue;
                     }
+                    let grip = match progress.on {
+                        On::Board(grip) | On::Ring(grip) => grip,
+                        On::Nothing | On::Both(_) => fresh,
+                    };
                     set(&mut block, lane, &progress.state);
                     times[lane] = progress.time_s;
                     put(&mut above, lane, progress.passage.above);
                     put(&mut rose, lane, progress.passage.rose_through);
-                    put(&mut rolling, lane, false);
-                    put(&mut spent, lane, false);
+                    put(&mut rolling, lane, grip.rolling);
+                    put(&mut spent, lane, grip.spent);
                     put(&mut active, lane, true);
-                    no_slip[lane] = fresh.no_slip;
+                    no_slip[lane] = grip.no_slip;
                     shots[lane] = shot;
                     break;
                 }
@@ -342,7 +367,8 @@ impl<S: Simd> Batch<'_, S> {
                         spent: bit(spent),
                         no_slip: no_slip[lane],
                     };
-                    self.hand_over(shot, on(grip));
+                    progress.on = on(grip);
+                    self.hand_over(shot);
                 }
             }
         }

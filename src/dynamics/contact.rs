@@ -29,8 +29,11 @@ const PARTED_FAST_M: f64 = 2e-5;
 const FAST_M_S: f64 = 0.1;
 /// Gap at which a surface that is being approached counts as touched, m.
 pub(crate) const REACHED_M: f64 = 1e-7;
-/// Normal acceleration that counts as zero, m/s^2.
-pub(crate) const NO_FORCE_M_S2: f64 = 1e-3;
+/// Normal acceleration that counts as zero, m/s^2 (a bounce reaches a thousand).
+pub(crate) const NO_FORCE_M_S2: f64 = 0.5;
+/// Steps that end a roll or the normal force go this part beyond the predicted time, so that the
+/// next step is past the event and not, again and again, just before it.
+const BEYOND: f64 = 1.02;
 /// Shortest step, s.
 pub(crate) const SHORTEST_S: f64 = 1e-9;
 
@@ -120,7 +123,8 @@ impl<L: Lane> Load<L> {
     #[inline(always)]
     pub(crate) fn time_to_release(&self, law: &Law<L>) -> L {
         let pressing = law.zero.lit(NO_FORCE_M_S2).lt(self.normal);
-        first_root(law, self.normal, self.normal_rate, self.normal_curve).when(pressing, law.never)
+        let time = first_root(law, self.normal, self.normal_rate, self.normal_curve);
+        (time * BEYOND).when(pressing, law.never)
     }
 }
 
@@ -153,10 +157,11 @@ impl<L: Lane> Hold<L> {
     }
 }
 
-/// Slip that counts as none after a step: more where the step was meant to land on zero.
+/// Slip that counts as none after a step: more (`ended`, or a part of the slip there was) where the
+/// step was meant to land on zero.
 #[inline(always)]
-pub(crate) fn left_over<L: Lane>(law: &Law<L>, landing: L::Mask, speed: L) -> L {
-    let landed = (speed * SLIP_LEFT).most(law.zero.lit(SLIP_ENDED_M_S));
+pub(crate) fn left_over<L: Lane>(law: &Law<L>, landing: L::Mask, speed: L, ended: f64) -> L {
+    let landed = (speed * SLIP_LEFT).most(law.zero.lit(ended));
     landed.when(landing, law.zero.lit(NO_SLIP_M_S))
 }
 
@@ -343,7 +348,7 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     let until = to_part.least(to_release).least(to_other).least(longest);
     let dt = until.least(to_change).most(law.zero.lit(SHORTEST_S));
     let landing = to_change.le(until) & !rolling;
-    let no_slip = left_over(law, landing, speed);
+    let no_slip = left_over(law, landing, speed, SLIP_ENDED_M_S);
 
     // 4. The classical RK4 step.
     let half = dt * 0.5;
@@ -391,7 +396,8 @@ fn time_to_change<L: Lane>(
     let c1 = (law.friction * load.normal_rate - need_rate).when(rolling, slip_rate);
     let c2 = (law.friction * load.normal_curve).when(rolling, slip_curve);
     let moving = law.zero.lt(c0) | rolling;
-    first_root(law, c0, c1, c2).when(moving, law.never)
+    let time = first_root(law, c0, c1, c2).when(moving, law.never);
+    time * law.zero.lit(BEYOND).when(rolling, law.one)
 }
 
 /// Is the compression gone, but for what the parting's own step makes up?

@@ -12,7 +12,7 @@ use super::wedge;
 use crate::lane::{Lane, Mask};
 
 /// Bound on the flights and contacts of one shot, so that every run ends; never reached so far.
-const MOST_STRETCHES: u32 = 100_000;
+pub(crate) const MOST_STRETCHES: u32 = 100_000;
 
 /// What the ball touches at present.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +32,8 @@ pub(crate) struct Progress {
     pub(crate) on: On,
     pub(crate) contacts: Contacts,
     pub(crate) passage: Passage,
+    /// Flights and contacts so far.
+    pub(crate) stretches: u32,
 }
 
 impl Progress {
@@ -44,6 +46,7 @@ impl Progress {
             on: On::Nothing,
             contacts: Contacts::default(),
             passage: Passage::at_release(law, &start),
+            stretches: 0,
         }
     }
 }
@@ -115,20 +118,37 @@ pub(crate) fn resume<W: Watch>(
         wedged_s: 0.0,
     };
     for _ in 0..MOST_STRETCHES {
-        let ending = match shot.now.on {
-            On::Nothing => shot.fly(),
-            On::Board(grip) => shot.press_board(grip),
-            On::Ring(grip) => shot.press_ring(grip),
-            On::Both(grips) => shot.press_both(grips),
-        };
-        if let Some(ending) = ending {
+        if let Some(ending) = shot.stretch() {
             return shot.verdict(ending);
         }
     }
     shot.verdict(Ending::Unresolved)
 }
 
+/// Runs a shot on through one flight or contact, to its end or to what comes next.
+pub(crate) fn stretch(law: &Law, rules: &Rules, progress: &mut Progress) -> Option<Verdict> {
+    let mut shot = Shot {
+        law,
+        rules,
+        watch: &mut (),
+        now: *progress,
+        wedged_s: 0.0,
+    };
+    let ending = shot.stretch();
+    *progress = shot.now;
+    ending.map(|ending| shot.verdict(ending))
+}
+
 impl<W: Watch> Shot<'_, W> {
+    fn stretch(&mut self) -> Option<Ending> {
+        match self.now.on {
+            On::Nothing => self.fly(),
+            On::Board(grip) => self.press_board(grip),
+            On::Ring(grip) => self.press_ring(grip),
+            On::Both(grips) => self.press_both(grips),
+        }
+    }
+
     fn verdict(&self, ending: Ending) -> Verdict {
         let made = ending == Ending::Fell && self.now.passage.made(self.law, &self.now.state);
         Verdict {

@@ -8,7 +8,7 @@ use super::contact::{
 };
 use super::state::{Law, Rate, State, Triple};
 use super::surface::{Board, Ring, Surface, Touch};
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix2, Vector2};
 
 /// What one step in the wedge did.
 pub(crate) struct WedgeStep {
@@ -21,106 +21,130 @@ pub(crate) struct WedgeStep {
     pub(crate) impulses: [Triple<f64>; 2],
 }
 
-type RingFrame = <Ring as Surface<f64>>::Frame;
-
 /// Both contacts seen from one state.
 struct Pair {
     touches: [Touch; 2],
-    frame: RingFrame,
+    /// The directions (n, 1, 2) of each contact in space.
+    axes: [[Triple<f64>; 3]; 2],
+    /// Lever over the moment of inertia (per unit of mass).
+    twists: [f64; 2],
     normals: [f64; 2],
 }
 
+/// Slip that counts as ended after a step meant to end it, m/s. The other contact's push turns the
+/// slip as it dies away, so each such step leaves about half of it over.
+const SLIP_ENDED_M_S: f64 = 1e-3;
+
 const BOARD: usize = 0;
 const RING: usize = 1;
-/// The directions along the surface, in the frame of a contact.
-const UNITS: [Triple<f64>; 2] = [Triple(0.0, 1.0, 0.0), Triple(0.0, 0.0, 1.0)];
+const UNITS: [Triple<f64>; 3] = [
+    Triple(1.0, 0.0, 0.0),
+    Triple(0.0, 1.0, 0.0),
+    Triple(0.0, 0.0, 1.0),
+];
 
 impl Pair {
     fn meet(law: &Law, state: &State) -> Self {
         let (board, ()) = Board.meet(law, state);
         let (ring, frame) = Ring.meet(law, state);
-        let normals = [board.normal(law), ring.normal(law)];
+        let touches = [board, ring];
         Self {
-            touches: [board, ring],
-            frame,
-            normals,
+            axes: [UNITS, UNITS.map(|unit| Ring.to_space(frame, unit))],
+            twists: touches.map(|touch| touch.lever * law.mass_over_inertia),
+            normals: touches.map(|touch| touch.normal(law)),
+            touches,
         }
     }
 
-    fn to_space(&self, which: usize, vector: Triple<f64>) -> Triple<f64> {
-        if which == BOARD {
-            Board.to_space((), vector)
-        } else {
-            Ring.to_space(self.frame, vector)
-        }
-    }
-
-    /// The slip rate that unit accelerations (linear, angular) of the ball give at a contact.
-    fn slip_rate(&self, which: usize, linear: Triple<f64>, angular: Triple<f64>) -> (f64, f64) {
-        let axes = UNITS.map(|unit| self.to_space(which, unit));
+    /// The slip rate that accelerations (linear, angular) of the ball give at a contact.
+    fn slip_rate(&self, which: usize, (linear, angular): (Triple<f64>, Triple<f64>)) -> (f64, f64) {
+        let [_, first, second] = self.axes[which];
         let lever = self.touches[which].lever;
         (
-            dot(axes[0], linear) - lever * dot(axes[1], angular),
-            dot(axes[1], linear) + lever * dot(axes[0], angular),
+            dot(first, linear) - lever * dot(second, angular),
+            dot(second, linear) + lever * dot(first, angular),
         )
     }
 
     /// Linear and angular acceleration of the ball from (n, 1, 2) accelerations at a contact.
-    fn response(&self, law: &Law, which: usize, push: Triple<f64>) -> (Triple<f64>, Triple<f64>) {
-        let twist = self.touches[which].lever * law.mass_over_inertia;
-        let spin = Triple(0.0, twist * push.2, -(twist * push.1));
-        (self.to_space(which, push), self.to_space(which, spin))
+    fn response(&self, which: usize, push: Triple<f64>) -> (Triple<f64>, Triple<f64>) {
+        let [normal, first, second] = self.axes[which];
+        let twist = self.twists[which];
+        let nothing = Triple(0.0, 0.0, 0.0);
+        (
+            nothing
+                .plus(normal, push.0)
+                .plus(first, push.1)
+                .plus(second, push.2),
+            nothing
+                .plus(first, twist * push.2)
+                .plus(second, -(twist * push.1)),
+        )
     }
 
     /// Slip rates at a contact with no friction there: drift, gravity, and the other contact's push.
-    fn driven(&self, law: &Law, which: usize, other_push: Triple<f64>) -> (f64, f64) {
+    fn driven(&self, which: usize, other_push: Triple<f64>) -> (f64, f64) {
         let touch = &self.touches[which];
         let drift = touch.drift();
-        let (linear, angular) = self.response(law, 1 - which, other_push);
-        let from_other = self.slip_rate(which, linear, angular);
+        let from_other = self.slip_rate(which, self.response(1 - which, other_push));
         (
             touch.g.1 + drift.0 + from_other.0,
             touch.g.2 + drift.1 + from_other.1,
         )
     }
 
+    /// The push along the normal alone.
+    fn press(&self, which: usize) -> Triple<f64> {
+        Triple(self.normals[which], 0.0, 0.0)
+    }
+
     /// Frictions at both contacts, `sliding` given where a contact slides.
-    fn frictions(
-        &self,
-        law: &Law,
-        rolling: [bool; 2],
-        sliding: [(f64, f64); 2],
-    ) -> [(f64, f64); 2] {
+    fn frictions(&self, rolling: [bool; 2], sliding: [(f64, f64); 2]) -> [(f64, f64); 2] {
         if rolling == [false, false] {
             return sliding;
         }
         let wanted = [BOARD, RING].map(|which| {
             if rolling[which] {
-                let drive = self.driven(law, which, Triple(self.normals[1 - which], 0.0, 0.0));
+                let drive = self.driven(which, self.press(1 - which));
                 (-drive.0, -drive.1)
             } else {
                 sliding[which]
             }
         });
-        self.solve(law, rolling, wanted)
+        self.solve(rolling, wanted)
     }
 
     /// The (1, 2) accelerations at both contacts that change the slips of the `held` contacts at the
     /// `wanted` rates; those of the other contacts are `wanted` themselves.
-    fn solve(&self, law: &Law, held: [bool; 2], wanted: [(f64, f64); 2]) -> [(f64, f64); 2] {
-        let mut matrix = Matrix4::<f64>::identity();
-        let right = Vector4::new(wanted[0].0, wanted[0].1, wanted[1].0, wanted[1].1);
-        for which in [BOARD, RING].into_iter().filter(|&which| held[which]) {
-            for (column, unit) in UNITS.iter().cycle().take(4).enumerate() {
-                let (linear, angular) = self.response(law, column / 2, *unit);
-                let rate = self.slip_rate(which, linear, angular);
-                matrix[(2 * which, column)] = rate.0;
-                matrix[(2 * which + 1, column)] = rate.1;
+    ///
+    /// A contact's own accelerations change its slip alike in both directions (1 + lever^2 m/I), so
+    /// the four equations come down to two.
+    fn solve(&self, held: [bool; 2], wanted: [(f64, f64); 2]) -> [(f64, f64); 2] {
+        let [board, ring] = wanted.map(|(first, second)| Vector2::new(first, second));
+        let own = [BOARD, RING].map(|i| 1.0 + self.touches[i].lever * self.twists[i]);
+        let (board, ring) = match held {
+            [false, false] => (board, ring),
+            [true, false] => ((board - self.coupling(BOARD) * ring) / own[BOARD], ring),
+            [false, true] => (board, (ring - self.coupling(RING) * board) / own[RING]),
+            [true, true] => {
+                let (on_board, on_ring) = (self.coupling(BOARD), self.coupling(RING));
+                let matrix = Matrix2::identity() * own[RING] - on_ring * on_board / own[BOARD];
+                let right = ring - on_ring * board / own[BOARD];
+                // Singular only where both contacts are one point; then one of them serves.
+                let ring = matrix
+                    .try_inverse()
+                    .map_or(right / own[RING], |inverse| inverse * right);
+                ((board - on_board * ring) / own[BOARD], ring)
             }
-        }
-        // Singular only where both contacts are one point; then friction at one of them serves.
-        let solved = matrix.lu().solve(&right).unwrap_or(right);
-        [(solved[0], solved[1]), (solved[2], solved[3])]
+        };
+        [(board.x, board.y), (ring.x, ring.y)]
+    }
+
+    /// Slip rates at a contact from unit (1, 2) accelerations at the other one.
+    fn coupling(&self, which: usize) -> Matrix2<f64> {
+        let column = |unit| self.slip_rate(which, self.response(1 - which, unit));
+        let (first, second) = (column(UNITS[1]), column(UNITS[2]));
+        Matrix2::new(first.0, second.0, first.1, second.1)
     }
 
     fn rate(
@@ -134,7 +158,7 @@ impl Pair {
         let mut angular = Triple(0.0, 0.0, 0.0);
         for which in [BOARD, RING] {
             let push = Triple(self.normals[which], frictions[which].0, frictions[which].1);
-            let (a, alpha) = self.response(law, which, push);
+            let (a, alpha) = self.response(which, push);
             pushes[which] = a;
             linear = linear.plus(a, 1.0);
             angular = angular.plus(alpha, 1.0);
@@ -210,7 +234,7 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
                 continue;
             }
             let from = if stuck[which] {
-                pair.driven(law, which, Triple(pair.normals[1 - which], 0.0, 0.0))
+                pair.driven(which, pair.press(1 - which))
             } else {
                 pair.touches[which].slip()
             };
@@ -225,7 +249,7 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
                 -limits[which] * along[which].1,
             );
         }
-        let frictions = pair.frictions(law, rolling, sliding);
+        let frictions = pair.frictions(rolling, sliding);
         let over = [BOARD, RING].map(|i| {
             if rolling[i] {
                 size(frictions[i]) - limits[i]
@@ -252,23 +276,19 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
     let mut loading = [false; 2];
     for which in [BOARD, RING] {
         let touch = &pair.touches[which];
-        let normal_axis = pair.to_space(which, Triple(1.0, 0.0, 0.0));
+        let normal_axis = pair.axes[which][0];
         let acceleration = dot(normal_axis, k1.acceleration_m_s2) + touch.bending();
         let load = Load::new(law, touch, pair.normals[which], acceleration);
         until = until
             .min(load.time_to_part(law, touch))
             .min(load.time_to_release(law));
         loading[which] = load.normal_rate > 0.0;
-        let (linear, angular) = pair.response(
-            law,
-            1 - which,
-            Triple(
-                pair.normals[1 - which],
-                frictions[1 - which].0,
-                frictions[1 - which].1,
-            ),
+        let other_push = Triple(
+            pair.normals[1 - which],
+            frictions[1 - which].0,
+            frictions[1 - which].1,
         );
-        let from_other = pair.slip_rate(which, linear, angular);
+        let from_other = pair.slip_rate(which, pair.response(1 - which, other_push));
         let hold = Hold::new(
             law,
             touch,
@@ -313,7 +333,7 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
             );
             (-limit * heading.0, -limit * heading.1)
         });
-        pair.rate(law, state, pair.frictions(law, rolling, sliding))
+        pair.rate(law, state, pair.frictions(rolling, sliding))
     };
     let (k2, push2) = stage(&state.advanced(&k1, 0.5 * dt));
     let (k3, push3) = stage(&state.advanced(&k2, 0.5 * dt));
@@ -329,7 +349,7 @@ pub(crate) fn step(law: &Law, state: &mut State, grips: &mut [Grip; 2], longest:
         grips[which] = Grip {
             rolling: rolling[which],
             spent: (grips[which].spent || failed[which]) && !loading[which],
-            no_slip: contact::left_over(law, landing, speeds[which]),
+            no_slip: contact::left_over(law, landing, speeds[which], SLIP_ENDED_M_S),
         };
     }
     WedgeStep {
@@ -355,11 +375,11 @@ fn stop_slips(law: &Law, state: &mut State, pair: &mut Pair, stuck: [bool; 2]) -
             (0.0, 0.0)
         }
     });
-    let kick = pair.solve(law, stuck, wanted);
+    let kick = pair.solve(stuck, wanted);
     for which in [BOARD, RING] {
         if stuck[which] {
             let push = Triple(0.0, kick[which].0, kick[which].1);
-            let (linear, angular) = pair.response(law, which, push);
+            let (linear, angular) = pair.response(which, push);
             state.velocity_m_s = state.velocity_m_s.plus(linear, 1.0);
             state.spin_rad_s = state.spin_rad_s.plus(angular, 1.0);
             impulses[which] = linear;
