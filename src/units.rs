@@ -121,6 +121,12 @@ pub enum QuantityError {
         /// The units understood here.
         allowed: String,
     },
+    /// A unit where a bare number is wanted.
+    #[error("\"{text}\" has a unit; write a bare number")]
+    UnitOfNumber {
+        /// What was given.
+        text: String,
+    },
     /// The unit is not one of this dimension.
     #[error("\"{unit}\" is not a unit that fits here; write one of {allowed}")]
     WrongUnit {
@@ -166,7 +172,10 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
             allowed: dimension.unit_names(),
         });
     }
-    let scale = if dimension == Dimension::Number && unit.is_empty() {
+    let scale = if dimension == Dimension::Number {
+        if !unit.is_empty() {
+            return Err(QuantityError::UnitOfNumber { text: shown() });
+        }
         1.0
     } else {
         dimension

@@ -319,7 +319,7 @@ fn contract_names_never_become_paths() {
     let profile = file(
         &folder,
         "p.toml",
-        small().replace("college guard", "../../<script>\\u0000 é"),
+        small().replace("college guard", "../../<script> é"),
     );
     let out = folder.path().join("runs");
     bankshot()
@@ -461,22 +461,23 @@ fn contract_bad_rows_are_named_and_the_others_done() {
         b"a,52,fast,13.75,0,7,0,0\nb,nan,23,13.75,0,7,0,0\nc,52,23.5,1,0,7,0,0\nd,52\n",
     );
     rows.extend_from_slice(
-        b"e\xff,52,23.5,13.75,0,7,0,0\nf,5\xff,23.5,13.75,0,7,0,0\ng,52,23.5,13.75,170,7,0,0\n",
+        b"e\xff,52,23.5,13.75,0,7,0,0\nf,5\xff,23.5,13.75,0,7,0,0\ng,52,23.5,13.75,170,7,0,0\nh,52,23.5,13.75,0,7,0,0,more\n",
     );
     let (code, text, message) = simulate(&folder, rows, &[]);
     assert_eq!(code, Some(3), "{message}");
     for words in [
-        "line 5: column speed_ft_s: \"fast\" is not a number",
-        "line 6: column pitch_deg",
-        "line 7: column distance_ft: the place is inside the ring's reach",
-        "line 8: column",
-        "line 10: column pitch_deg: is not UTF-8",
-        "line 11: column court_angle_deg: the place is behind the board",
-        "6 of 10 rows",
+        "row 4: column speed_ft_s: \"fast\" is not a number",
+        "row 5: column pitch_deg",
+        "row 6: column distance_ft: the place is inside the ring's reach",
+        "row 7: column",
+        "row 9: column pitch_deg: is not UTF-8",
+        "row 10: column court_angle_deg: the place is behind the board",
+        "row 11: column 9: the row has 9 fields",
+        "7 of 11 rows",
     ] {
         assert!(message.contains(words), "{words} in {message}");
     }
-    assert_eq!(text.lines().count(), 11);
+    assert_eq!(text.lines().count(), 12);
     let columns = |line: &str| line.split(',').count();
     assert!(text.lines().all(|line| columns(line) == 15), "{text}");
     assert!(text.lines().nth(8).unwrap().contains(",1,swish,"), "{text}");
@@ -602,4 +603,111 @@ fn contract_completions_and_man_page() {
     for command in ["best", "check", "plan", "simulate", "trace"] {
         bankshot().args([command, "--help"]).assert().success();
     }
+}
+
+#[test]
+fn contract_a_shooter_without_spin_or_error_of_spin_gets_an_answer() {
+    let folder = TempDir::new().unwrap();
+    let text = small()
+        .replace("\"3 rev/s\"", "\"0 rev/s\"")
+        .replace("\"0.3 rev/s\"", "\"0 rev/s\"");
+    let profile = file(&folder, "p.toml", text);
+    let output = bankshot()
+        .args(["best", "--json", "--quiet", "--out"])
+        .arg(folder.path())
+        .arg(&profile)
+        .output()
+        .unwrap();
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(answer["direct"]["probability"].as_f64().unwrap() > 0.5);
+    assert_eq!(answer["direct"]["backspin_rev_s"], 0.0);
+}
+
+#[test]
+fn contract_errors_out_of_this_world_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for (from, to) in [
+        ("\"0.25 ft/s\"", "\"1e300 ft/s\""),
+        ("\"0.3 rev/s\"", "\"1e300 rev/s\""),
+        ("c11 = 0.0", "c11 = 9"),
+    ] {
+        let profile = file(&folder, "p.toml", FREE_THROW.replace(from, to));
+        bankshot().arg("check").arg(&profile).assert().code(2);
+    }
+}
+
+#[test]
+fn contract_refusals_write_nothing() {
+    let folder = TempDir::new().unwrap();
+    let profile = file(
+        &folder,
+        "p.toml",
+        small().replace("[search]", "[search]\nspeed_max = \"5 m/s\""),
+    );
+    let out = folder.path().join("out");
+    bankshot()
+        .args(["best", "--out"])
+        .arg(&out)
+        .arg(&profile)
+        .assert()
+        .code(2);
+    assert!(!out.exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn contract_outputs_follow_links_and_write_through_devices() {
+    let folder = TempDir::new().unwrap();
+    let releases = file(&folder, "r.csv", ROWS);
+    let real = file(&folder, "real.csv", "old");
+    let link = folder.path().join("link.csv");
+    std::os::unix::fs::symlink(&real, &link).unwrap();
+    bankshot()
+        .arg("simulate")
+        .arg(&releases)
+        .arg("--output")
+        .arg(&link)
+        .assert()
+        .success();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read_to_string(&real).unwrap().lines().count(), 4);
+    bankshot()
+        .arg("simulate")
+        .arg(&releases)
+        .args(["--output", "/dev/null"])
+        .assert()
+        .success();
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn contract_ctrl_c_leaves_no_file() {
+    let folder = TempDir::new().unwrap();
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("bankshot"))
+        .args(["simulate", "-", "--output", "out.csv"])
+        .current_dir(folder.path())
+        .stdin(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    use std::io::Write;
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(ROWS.as_bytes()).unwrap();
+    input.flush().unwrap();
+    // The temporary file appears once the header has been read.
+    for _ in 0..200 {
+        if !names(folder.path()).is_empty() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert_eq!(names(folder.path()).len(), 1);
+    let status = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(status.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(names(folder.path()).is_empty());
+    drop(input);
 }

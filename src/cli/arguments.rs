@@ -141,10 +141,10 @@ pub(crate) struct TraceOptions {
     /// The shooter's profile (for the place, the height and the physics).
     pub(crate) profile: PathBuf,
     /// Speed of the release, such as '23.5 ft/s'.
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) speed: String,
     /// Pitch angle of the release, such as '52 deg'.
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     pub(crate) pitch: String,
     /// Polar angle of the release [default: towards the hoop's centre].
     #[arg(long, allow_hyphen_values = true)]

@@ -6,14 +6,18 @@ use super::plan::load;
 use super::progress::Bars;
 use super::terminal::{answer, tell};
 use bankshot::output::{self, files};
+use bankshot::plan::Plan;
 use bankshot::probability::best::{self, Best};
 use bankshot::profile::Profile;
 use bankshot::units::System;
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
-    let profile = load(&options.profile)?;
-    let units = options.units.unwrap_or(profile.output.units);
+    let mut profile = load(&options.profile)?;
+    profile.output.units = options.units.unwrap_or(profile.output.units);
+    let units = profile.output.units;
+    // Refused before anything is written.
+    Plan::new(&profile)?;
     let parent = options
         .out
         .clone()

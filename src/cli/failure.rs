@@ -19,6 +19,8 @@ pub(crate) mod code {
     pub(crate) const BUG: u8 = 70;
     /// Input or output failed.
     pub(crate) const IO: u8 = 74;
+    /// Stopped by Ctrl-C.
+    pub(crate) const INTERRUPTED: u8 = 130;
 }
 
 /// A command that could not do what was asked.

@@ -19,14 +19,15 @@ pub(crate) fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            let _ = error.print();
-            return ExitCode::from(if error.use_stderr() {
-                code::USAGE
-            } else {
-                code::WHOLE
+            let printed = error.print();
+            return ExitCode::from(match (error.use_stderr(), printed) {
+                (true, _) => code::USAGE,
+                (false, Ok(())) => code::WHOLE,
+                (false, Err(_)) => code::IO,
             });
         }
     };
+    clean_up_on_interrupt();
     let result = std::panic::catch_unwind(|| run(&arguments));
     match result {
         Ok(Ok(code)) => ExitCode::from(code),
@@ -43,6 +44,15 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
+/// Ctrl-C removes the files that are not finished and ends the program.
+fn clean_up_on_interrupt() {
+    // Without a handler the default one ends the program too; only the temporary file would stay.
+    let _ = ctrlc::set_handler(|| {
+        bankshot::output::files::discard_pending();
+        std::process::exit(i32::from(code::INTERRUPTED));
+    });
+}
+
 fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
@@ -50,7 +60,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Check(options) => plan::check(options),
         Command::Plan(options) => plan::run(options, arguments.quiet),
         Command::Simulate(options) => simulate::run(options, arguments.quiet),
-        Command::Trace(options) => trace::run(options),
+        Command::Trace(options) => trace::run(options, arguments.quiet),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "bankshot", &mut script);

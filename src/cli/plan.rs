@@ -46,14 +46,18 @@ pub(crate) fn load(path: &Path) -> Result<Profile, Failure> {
     Ok(profile::parse(&text, &path.display().to_string())?)
 }
 
+/// Shots that the search for the best and the final integrals take, about.
+const SEARCH_SHOTS: u64 = 3_000_000;
+
 pub(crate) fn check(options: &CheckOptions) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
     Plan::new(&profile)?;
+    let (long, metre) = profile.output.units.length();
     answer(&format!(
-        "{}: fine ({}, {:.2} ft from the hoop at {:.1} deg)\n",
+        "{}: fine ({}, {:.2} {long} from the hoop at {:.1} deg)\n",
         options.profile.display(),
         profile.shooter.name,
-        profile.place.distance_m / bankshot::physics::FOOT_M,
+        profile.place.distance_m / metre,
         profile.place.angle_rad / DEGREE_RAD
     ))
 }
@@ -96,7 +100,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         record.push(("mass_outside_edge".to_owned(), output::number(mass.1)));
         return answer(&format!("{:#}\n", output::object(record)));
     }
-    let foot = bankshot::physics::FOOT_M;
+    let (long, foot) = profile.output.units.length();
     let deg = |axis: bankshot::plan::Axis| {
         format!(
             "{:.1} to {:.1} deg, {} points",
@@ -106,7 +110,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         )
     };
     let mut text = format!(
-        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} ft/s\nshots       {}\nmemory      {:.0} MiB\ntime        about {:.1} s for the table on {} threads\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
+        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} {long}/s\nshots       {}\nmemory      {:.0} MiB\ntime        about {:.1} s on {} threads, the search for the best included\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
         deg(plan.pitch),
         deg(plan.polar),
         plan.backspin.low / REV_RAD,
@@ -128,16 +132,17 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
             wide.drawn, wide.outside, wide.made_outside
         ));
         if wide.made_outside > 0 && !quiet {
-            tell("remark: shots outside the bracket were made; widen speed_max");
+            tell("remark: shots outside the bracket were made; raise speed_max, or report it");
         }
     }
     answer(&text)
 }
 
-/// Forecast of the table's time, from a few shots of the bracket.
+/// Forecast of the time that `best` takes, from a few shots of the bracket.
 fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
-    const SHOTS: u32 = 4000;
+    const SHOTS: u32 = 8000;
     let began = Instant::now();
+    let mut starts = Vec::new();
     for i in 0..SHOTS {
         let part = |step: f64| (f64::from(i) * step).fract();
         let pitch_rad = plan.pitch.low + part(0.754_877_666) * (plan.pitch.high - plan.pitch.low);
@@ -151,8 +156,9 @@ fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
             polar_rad,
             backspin_rad_s: plan.backspin.value(i as usize % plan.backspin.count),
         };
-        std::hint::black_box(simulator.verdict(&profile.release(&nominal)));
+        starts.push(profile.release(&nominal).state());
     }
+    std::hint::black_box(simulator.verdicts(&starts));
     let per_shot = began.elapsed().as_secs_f64() / f64::from(SHOTS);
-    per_shot * plan.shots as f64 / rayon::current_num_threads() as f64
+    per_shot * (plan.shots + SEARCH_SHOTS) as f64 / rayon::current_num_threads() as f64
 }

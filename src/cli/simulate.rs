@@ -159,7 +159,7 @@ impl Stream<'_> {
         writer
             .write_record(header.iter().chain(added))
             .map_err(output)?;
-        let mut batch: Vec<(u64, ByteRecord)> = Vec::with_capacity(BATCH);
+        let mut batch: Vec<ByteRecord> = Vec::with_capacity(BATCH);
         loop {
             batch.clear();
             let mut record = ByteRecord::new();
@@ -167,9 +167,8 @@ impl Stream<'_> {
             while batch.len() < BATCH
                 && reader.read_byte_record(&mut record).map_err(Stop::Input)?
             {
-                let line = record.position().map_or(0, csv::Position::line);
                 bytes += record.as_slice().len() as u64 + record.len() as u64;
-                batch.push((line, std::mem::take(&mut record)));
+                batch.push(std::mem::take(&mut record));
             }
             if batch.is_empty() {
                 break;
@@ -185,25 +184,29 @@ impl Stream<'_> {
 
     fn write<W: Write>(
         &mut self,
-        batch: &[(u64, ByteRecord)],
+        batch: &[ByteRecord],
         columns: usize,
         writer: &mut Writer<W>,
     ) -> Result<(), Stop> {
         let outcomes: Vec<_> = batch
             .par_iter()
-            .map(|(_, row)| {
+            .map(|row| {
+                if row.len() > columns {
+                    return Err(releases::RowError::surplus(row.len(), columns));
+                }
                 let release = self.layout.release(row, &self.physics)?;
                 Ok::<_, releases::RowError>(releases::cells(&self.simulator.shoot(&release)))
             })
             .collect();
-        for ((line, row), outcome) in batch.iter().zip(outcomes) {
+        for (row, outcome) in batch.iter().zip(outcomes) {
             self.rows += 1;
             let cells = outcome.unwrap_or_else(|error| {
                 self.bad += 1;
                 if self.bad <= NAMED {
                     tell(&format!(
-                        "{}: line {line}: {error}",
-                        self.options.releases.display()
+                        "{}: row {}: {error}",
+                        self.options.releases.display(),
+                        self.rows
                     ));
                 }
                 Default::default()

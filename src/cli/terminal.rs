@@ -25,7 +25,7 @@ pub(crate) fn tell(text: &str) {
 
 /// Tells of an error on standard error.
 pub(crate) fn complain(text: &str) {
-    let prefix = if text.starts_with("error") {
+    let prefix = if text.starts_with("error: ") {
         ""
     } else {
         "error: "

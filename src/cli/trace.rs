@@ -14,7 +14,7 @@ use std::path::Path;
 /// Spacing of the trajectory in flight, s.
 const INTERVAL_S: f64 = 0.005;
 
-pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
     let system = options.units.unwrap_or(profile.output.units);
     let nominal = nominal(options, &profile)?;
@@ -34,7 +34,7 @@ pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
         words(&trace, system)
     };
     answer(&text)?;
-    if let Some(path) = &options.output {
+    if let (Some(path), false) = (&options.output, quiet) {
         tell(&format!("trajectory written to {}", path.display()));
     }
     Ok(0)
@@ -63,6 +63,9 @@ fn nominal(options: &TraceOptions, profile: &Profile) -> Result<Nominal, Failure
     if !(0.0..=1000.0).contains(&speed_m_s) {
         faults.push("--speed: must be from 0 to 1000 m/s".to_owned());
     }
+    if !(backspin_rad_s.abs() <= 10_000.0) {
+        faults.push("--backspin: must be within 10000 rad/s".to_owned());
+    }
     if faults.is_empty() {
         Ok(Nominal {
             speed_m_s,
@@ -83,6 +86,9 @@ fn surface(touched: Touched) -> &'static str {
 }
 
 fn verdict(outcome: &Outcome) -> &'static str {
+    if outcome.verdict.ending == Ending::TimeLimit {
+        return "missed: not over at the time limit";
+    }
     match outcome.kind {
         Kind::Swish => "made: a swish",
         Kind::RimIn => "made off the ring",

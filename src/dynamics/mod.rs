@@ -22,7 +22,7 @@ mod wedge;
 
 pub use lanes::Lanes;
 pub use outcome::{Contacts, Ending, Entry, Kind, Outcome, Touched, Verdict};
-pub use release::Release;
+pub use release::{Aim, Release};
 pub use simulator::{Integrator, Simulator};
 pub use state::{State, Triple};
 pub use trace::{Event, EventKind, Sample, Trace};

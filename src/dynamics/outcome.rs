@@ -146,7 +146,7 @@ pub enum Kind {
     Wide,
     /// Missed behind the board.
     OverBoard,
-    /// Came to rest on ring and board.
+    /// Came to rest on ring and board, or had not ended at the time limit.
     Lodged,
     /// Missed and touched nothing.
     Airball,

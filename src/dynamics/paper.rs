@@ -119,7 +119,11 @@ pub(crate) fn run<W: Watch>(
             dt = (0.5 * dt).max(steps.dt_min_s);
             continue;
         }
-        if pressed.any() {
+        let falls = next.position_m.2 < -law.radius && next.velocity_m_s.2 < 0.0 && !pressed.any();
+        let fall = flight::falling_time(law, state.position_m.2, state.velocity_m_s.2, -law.radius);
+        if falls && fall <= dt {
+            watch.flight(law, time_s, fall, &state);
+        } else if pressed.any() {
             watch.step(time_s, dt, (&state, &next), [Triple(0.0, 0.0, 0.0); 2]);
         } else {
             watch.flight(law, time_s, dt, &state);

@@ -31,27 +31,7 @@ impl Release {
     /// The nine state variables at the release (Eq. 18).
     #[must_use]
     pub fn state(&self) -> State {
-        let (sin_pitch, cos_pitch) = libm::sincos(self.pitch_rad);
-        let (sin_polar, cos_polar) = libm::sincos(self.polar_rad);
-        let (sin_court, cos_court) = libm::sincos(self.court_angle_rad);
-        let level = self.speed_m_s * cos_pitch;
-        State {
-            position_m: Triple(
-                self.distance_m * cos_court,
-                self.distance_m * sin_court,
-                self.height_above_hoop_m,
-            ),
-            velocity_m_s: Triple(
-                -level * cos_polar,
-                -level * sin_polar,
-                self.speed_m_s * sin_pitch,
-            ),
-            spin_rad_s: Triple(
-                self.rifle_spin_rad_s * cos_polar - self.backspin_rad_s * sin_polar,
-                self.rifle_spin_rad_s * sin_polar + self.backspin_rad_s * cos_polar,
-                self.side_spin_rad_s,
-            ),
-        }
+        Aim::new(self).state(self.speed_m_s, self.backspin_rad_s)
     }
 
     /// The same release mirrored in the plane of symmetry (y -> -y).
@@ -63,6 +43,58 @@ impl Release {
             rifle_spin_rad_s: -self.rifle_spin_rad_s,
             side_spin_rad_s: -self.side_spin_rad_s,
             ..*self
+        }
+    }
+}
+
+/// A release but for its speed and backspin: place and directions, with their sines and cosines
+/// computed once for many shots.
+#[derive(Clone, Copy, Debug)]
+pub struct Aim {
+    position_m: Triple<f64>,
+    sin_pitch: f64,
+    cos_pitch: f64,
+    sin_polar: f64,
+    cos_polar: f64,
+    rifle_spin_rad_s: f64,
+    side_spin_rad_s: f64,
+}
+
+impl Aim {
+    /// The place, directions and other spins of `release`.
+    #[must_use]
+    pub fn new(release: &Release) -> Self {
+        let (sin_pitch, cos_pitch) = libm::sincos(release.pitch_rad);
+        let (sin_polar, cos_polar) = libm::sincos(release.polar_rad);
+        let (sin_court, cos_court) = libm::sincos(release.court_angle_rad);
+        Self {
+            position_m: Triple(
+                release.distance_m * cos_court,
+                release.distance_m * sin_court,
+                release.height_above_hoop_m,
+            ),
+            sin_pitch,
+            cos_pitch,
+            sin_polar,
+            cos_polar,
+            rifle_spin_rad_s: release.rifle_spin_rad_s,
+            side_spin_rad_s: release.side_spin_rad_s,
+        }
+    }
+
+    /// The nine state variables at the release with this speed and backspin (Eq. 18).
+    #[must_use]
+    pub fn state(&self, speed_m_s: f64, backspin_rad_s: f64) -> State {
+        let level = speed_m_s * self.cos_pitch;
+        let (sin, cos) = (self.sin_polar, self.cos_polar);
+        State {
+            position_m: self.position_m,
+            velocity_m_s: Triple(-level * cos, -level * sin, speed_m_s * self.sin_pitch),
+            spin_rad_s: Triple(
+                self.rifle_spin_rad_s * cos - backspin_rad_s * sin,
+                self.rifle_spin_rad_s * sin + backspin_rad_s * cos,
+                self.side_spin_rad_s,
+            ),
         }
     }
 }

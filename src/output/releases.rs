@@ -85,6 +85,17 @@ pub struct RowError {
     pub reason: String,
 }
 
+impl RowError {
+    /// A row with more fields than the header.
+    #[must_use]
+    pub fn surplus(fields: usize, columns: usize) -> Self {
+        Self {
+            column: format!("{}", columns + 1),
+            reason: format!("the row has {fields} fields where the header has {columns}"),
+        }
+    }
+}
+
 impl Layout {
     /// Finds the parameters' columns in a header.
     ///
@@ -117,6 +128,12 @@ impl Layout {
                     names[0], names[1]
                 )),
             }
+        }
+        for cell in header.iter().filter(|cell| is_misspelt(cell)) {
+            faults.push(format!(
+                "column {} looks like a parameter but is not one; see `bankshot simulate --help` for their names and units",
+                String::from_utf8_lossy(cell)
+            ));
         }
         for added in ADDED {
             if header
@@ -194,6 +211,43 @@ impl Layout {
             side_spin_rad_s: side,
         })
     }
+}
+
+/// Is a column named like a parameter, but with other case or another unit?
+fn is_misspelt(cell: &[u8]) -> bool {
+    const UNITS: [&str; 14] = [
+        "", "_ft", "_in", "_m", "_cm", "_deg", "_rad", "_ft_s", "_m_s", "_mph", "_km_h", "_rpm",
+        "_hz", "_deg_s",
+    ];
+    const STEMS: [&str; 9] = [
+        "distance",
+        "court_angle",
+        "release_height",
+        "speed",
+        "pitch",
+        "polar",
+        "backspin",
+        "rifle_spin",
+        "side_spin",
+    ];
+    let Ok(name) = std::str::from_utf8(cell.trim_ascii()) else {
+        return false;
+    };
+    let known = PARAMETERS
+        .iter()
+        .flat_map(|p| p.columns)
+        .any(|(column, _)| column == name);
+    let lower = name.to_ascii_lowercase();
+    let alike = PARAMETERS
+        .iter()
+        .flat_map(|p| p.columns)
+        .any(|(column, _)| column == lower);
+    let other_unit = STEMS.iter().any(|stem| {
+        lower
+            .strip_prefix(stem)
+            .is_some_and(|unit| UNITS.contains(&unit))
+    });
+    !known && (alike || other_unit)
 }
 
 fn cell(row: &ByteRecord, column: usize, name: &str) -> Result<f64, RowError> {

@@ -19,6 +19,8 @@ use serde::Serialize;
 
 /// Standard deviations by which pitch and backspin are widened beyond the nominal values.
 pub const MARGIN_SIGMAS: f64 = 4.5;
+/// Least widening of the backspin, rad/s.
+const LEAST_SPIN_MARGIN_RAD_S: f64 = 0.3;
 /// Largest table that is built, in bytes.
 pub const LARGEST_TABLE_BYTES: f64 = 2.0 * (1u64 << 30) as f64;
 /// Most nominal speeds that are considered.
@@ -129,6 +131,8 @@ impl Plan {
         let pitch_margin = MARGIN_SIGMAS * errors.c20_rad;
         let top_spin = profile.shooter.max_backspin_rad_s;
         let spin_margin = MARGIN_SIGMAS * errors.backspin_rad_s(top_spin).max(errors.c40_rad_s);
+        // Without spin and its error the axis would have no width.
+        let spin_margin = spin_margin.max(LEAST_SPIN_MARGIN_RAD_S);
         let pitch = Axis {
             low: (search.pitch_min_rad - pitch_margin).max(-0.5 * std::f64::consts::PI),
             high: (search.pitch_max_rad + pitch_margin).min(0.5 * std::f64::consts::PI),

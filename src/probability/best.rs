@@ -118,7 +118,6 @@ pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestErro
     let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)?;
     let table = Table::build(profile, &plan, &simulator, progress);
     let probabilities = table.probabilities(profile);
-    drop(table);
     let search = Search {
         profile,
         plan: &plan,
@@ -190,10 +189,9 @@ impl Search<'_> {
                 winner = Some(climbed);
             }
         }
-        let Some((made, nominal)) = winner.filter(|(made, _)| *made > 0) else {
+        let Some((_, nominal)) = winner.filter(|(made, _)| *made > 0) else {
             return Err(NoShot { kind });
         };
-        let _ = made;
         let search = &self.profile.search;
         let estimate =
             sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);

@@ -6,7 +6,7 @@
 
 use super::sobol::{self, Sobol};
 use super::{Progress, normal};
-use crate::dynamics::{Ending, Kind, Release, Simulator};
+use crate::dynamics::{Ending, Kind, Release, Simulator, State};
 use crate::profile::{Nominal, Profile};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,7 +16,7 @@ pub const REPLICATES: u64 = 16;
 /// Points of the first round of each replicate.
 const FIRST_POINTS: u32 = 1024;
 /// Points of one parallel block.
-const BLOCK: u32 = 512;
+const BLOCK: u32 = 2048;
 /// Points of one replicate at most: the target is given up there.
 const MOST_POINTS: u32 = 1 << 22;
 
@@ -111,9 +111,11 @@ impl<'a> Sampler<'a> {
 
     /// Counts of the points `from..to` of one scramble.
     fn block(&self, nominal: &Nominal, key: u64, from: u32, to: u32) -> Counts {
+        let starts: Vec<State> = (from..to)
+            .map(|index| self.release(nominal, index, key).state())
+            .collect();
         let mut counts = Counts::default();
-        for index in from..to {
-            let verdict = self.simulator.verdict(&self.release(nominal, index, key));
+        for verdict in self.simulator.verdicts(&starts) {
             if verdict.ending == Ending::Unresolved {
                 counts.unresolved += 1;
             } else if verdict.made {

@@ -16,10 +16,10 @@ pub use table::{Probabilities, Table};
 
 /// Told how far a long computation has come.
 pub trait Progress: Sync {
-    /// A stage of `total` shots begins.
+    /// A stage of `total` units of work (shots, rounds of a search, bytes) begins.
     fn begin(&self, stage: &str, total: u64);
-    /// `shots` more are done.
-    fn advance(&self, shots: u64);
+    /// `units` more are done.
+    fn advance(&self, units: u64);
     /// The stage is over.
     fn end(&self);
 }

@@ -4,7 +4,7 @@
 //! Each block of samples has a random stream of its own, keyed by (seed, block), so the number of
 //! threads changes nothing.
 
-use crate::dynamics::Simulator;
+use crate::dynamics::{Simulator, State};
 use crate::profile::{Nominal, Profile};
 use rand::SeedableRng;
 use rand::rngs::ChaCha12Rng;
@@ -29,11 +29,18 @@ pub fn estimate(
             let mut random = ChaCha12Rng::seed_from_u64(seed);
             random.set_stream(block);
             let count = BLOCK.min(samples - block * BLOCK);
-            let made = (0..count).filter(|_| {
-                let release = profile.release(&draw(profile, nominal, &mut random));
-                simulator.verdict(&release).made
-            });
-            made.count() as u64
+            let starts: Vec<State> = (0..count)
+                .map(|_| {
+                    profile
+                        .release(&draw(profile, nominal, &mut random))
+                        .state()
+                })
+                .collect();
+            simulator
+                .verdicts(&starts)
+                .iter()
+                .filter(|verdict| verdict.made)
+                .count() as u64
         })
         .sum();
     let p = made as f64 / samples as f64;

@@ -8,7 +8,7 @@
 //! not (0.0006).
 
 use super::{Progress, normal};
-use crate::dynamics::Simulator;
+use crate::dynamics::{Aim, Simulator};
 use crate::plan::{Axis, Plan};
 use crate::profile::{Nominal, Profile};
 use rayon::prelude::*;
@@ -94,7 +94,7 @@ impl Table {
 
     /// Eq. 25 at every nominal shot: the products along backspin, polar angle and pitch angle.
     #[must_use]
-    pub fn probabilities(&self, profile: &Profile) -> Probabilities {
+    pub fn probabilities(self, profile: &Profile) -> Probabilities {
         let plan = &self.plan;
         let errors = &profile.shooter.errors;
         let search = &profile.search;
@@ -109,11 +109,11 @@ impl Table {
         });
         let polar = weights(&plan.polar, &polar_rad, |_| errors.c30_rad);
         let pitch = weights(&plan.pitch, &pitch_rad, |_| errors.c20_rad);
-        let values = along_axis(&self.sums, plan.backspin.count, speeds, &spin);
+        let values = along_axis(self.sums, plan.backspin.count, speeds, &spin);
         let inner = backspin_rad_s.len() * speeds;
-        let values = along_axis(&values, plan.polar.count, inner, &polar);
+        let values = along_axis(values, plan.polar.count, inner, &polar);
         let inner = polar_rad.len() * inner;
-        let values = along_axis(&values, plan.pitch.count, inner, &pitch);
+        let values = along_axis(values, plan.pitch.count, inner, &pitch);
         Probabilities {
             pitch_rad,
             polar_rad,
@@ -148,24 +148,37 @@ fn fill(
         return;
     };
     let step = (most - least) / plan.speeds_per_line as f64;
-    for (backspin, line) in block.chunks_mut(nominals.len()).enumerate() {
+    let aim = Aim::new(&profile.release(&Nominal {
+        speed_m_s: 0.0,
+        pitch_rad,
+        polar_rad,
+        backspin_rad_s: 0.0,
+    }));
+    let mut speeds = Vec::with_capacity(plan.backspin.count * plan.speeds_per_line);
+    let mut starts = Vec::with_capacity(speeds.capacity());
+    for backspin in 0..plan.backspin.count {
         let shift = [pitch, polar, backspin]
             .iter()
             .zip(SHIFT_PER_STEP)
             .fold(0.5, |sum, (&i, per_step)| sum + per_step * i as f64)
             .fract();
-        let nominal = Nominal {
-            speed_m_s: 0.0,
-            pitch_rad,
-            polar_rad,
-            backspin_rad_s: plan.backspin.value(backspin),
-        };
-        let mut release = profile.release(&nominal);
+        let spin = plan.backspin.value(backspin);
         for i in 0..plan.speeds_per_line {
-            release.speed_m_s = least + (i as f64 + shift) * step;
-            if simulator.verdict(&release).made {
-                add_speed(line, nominals, release.speed_m_s, step);
-            }
+            let speed = least + (i as f64 + shift) * step;
+            speeds.push(speed);
+            starts.push(aim.state(speed, spin));
+        }
+    }
+    let verdicts = simulator.verdicts(&starts);
+    for (i, (verdict, speed)) in verdicts.iter().zip(speeds).enumerate() {
+        if verdict.made {
+            let line = i / plan.speeds_per_line * nominals.len();
+            add_speed(
+                &mut block[line..line + nominals.len()],
+                nominals,
+                speed,
+                step,
+            );
         }
     }
 }
@@ -202,8 +215,8 @@ fn weights(axis: &Axis, nominals: &[f64], sigma: impl Fn(f64) -> f64) -> Vec<Vec
 }
 
 /// Applies a matrix along the middle axis of `[outer][cells][inner]`, giving
-/// `[outer][rows][inner]`. Each output row is summed in the order of the cells.
-fn along_axis(input: &[f64], cells: usize, inner: usize, matrix: &[Vec<f64>]) -> Vec<f64> {
+/// `[outer][rows][inner]`; the input is given up. Each output row is summed in the order of the cells.
+fn along_axis(input: Vec<f64>, cells: usize, inner: usize, matrix: &[Vec<f64>]) -> Vec<f64> {
     let outer = input.len() / (cells * inner);
     let mut output = vec![0.0; outer * matrix.len() * inner];
     output
@@ -244,7 +257,7 @@ mod tests {
     fn prop_along_axis_is_the_matrix_product() {
         let input: Vec<f64> = (0..2 * 3 * 4).map(f64::from).collect();
         let matrix = vec![vec![1.0, 0.0, 0.0], vec![0.5, 0.25, 2.0]];
-        let output = along_axis(&input, 3, 4, &matrix);
+        let output = along_axis(input.clone(), 3, 4, &matrix);
         for outer in 0..2 {
             for (row, weights) in matrix.iter().enumerate() {
                 for inner in 0..4 {

@@ -31,7 +31,6 @@ pub struct Profile {
     /// Bounds and precision of the search.
     pub search: Search,
     /// Where and in which units results are written.
-    #[serde(skip)]
     pub output: Output,
 }
 
@@ -153,6 +152,7 @@ impl Search {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Output {
     /// Folder under which a folder for the run is made.
+    #[serde(skip)]
     pub folder: String,
     /// Units of tables and files.
     pub units: System,

@@ -11,6 +11,8 @@ use toml::de::DeTable;
 
 /// Largest profile that is read, in bytes.
 pub const LARGEST_PROFILE_BYTES: u64 = 16 * 1024 * 1024;
+/// Greatest speed that a search may be given, m/s.
+const FASTEST_M_S: f64 = 40.0;
 /// Longest name of a shooter, in characters.
 const LONGEST_NAME: usize = 500;
 
@@ -76,6 +78,9 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
 /// Every fault of the table at once.
 pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), ProfileError> {
     with_table(text, origin, |mut keys, faults| {
+        if !keys.has("physics") {
+            faults.push(keys.fault("physics", "there is no [physics] table in this file"));
+        }
         Some(read_physics(&mut keys, faults))
     })
 }
@@ -140,6 +145,9 @@ fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shoo
             format!("must have at most {LONGEST_NAME} characters"),
         ));
     }
+    if name.chars().any(char::is_control) {
+        faults.push(keys.fault("name", "must not contain control characters"));
+    }
     let height = keys.required("release_height", Dimension::Length, faults);
     let height = check(
         &keys,
@@ -155,7 +163,7 @@ fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shoo
         "max_backspin",
         spin,
         |w| (0.0..=200.0).contains(&w),
-        "0 to 31 rev/s",
+        "0 to 200 rad/s (31.8 rev/s)",
         faults,
     );
     let mut table = keys.table("errors", faults);
@@ -181,7 +189,14 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
     let c30 = sigma("c30", Dimension::Angle, faults);
     let c40 = sigma("c40", Dimension::Spin, faults);
     for (key, value) in [("c20", c20), ("c30", c30)] {
-        check(keys, key, value, |s| s < 0.5, "below 28 deg", faults);
+        check(
+            keys,
+            key,
+            value,
+            |s| s < 0.5,
+            "below 0.5 rad (28.6 deg)",
+            faults,
+        );
     }
     let c11 = keys
         .quantity("c11", Dimension::Number, faults)
@@ -205,20 +220,20 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
         c41,
         c42_s_rad: c42,
     };
-    // Eq. 28 must stay a standard deviation over everything that can be nominal.
-    let scan = |to: f64, sigma: &dyn Fn(f64) -> f64| {
-        (0..=200).all(|i| sigma(to * f64::from(i) / 200.0) >= 0.0)
+    // Eq. 28 must stay a standard deviation, and one of this world, over all that can be nominal.
+    let scan = |to: f64, most: f64, sigma: &dyn Fn(f64) -> f64| {
+        (0..=200).all(|i| (0.0..=most).contains(&sigma(to * f64::from(i) / 200.0)))
     };
-    if !scan(25.0, &|v| errors.speed_m_s(v)) {
+    if !scan(FASTEST_M_S, 10.0, &|v| errors.speed_m_s(v)) {
         faults.push(keys.fault(
             "c10",
-            "c10 + c11 v + c12 v^2 must be 0 or more for every speed to 25 m/s",
+            "c10 + c11 v + c12 v^2 must be from 0 to 10 m/s for every speed up to 40 m/s",
         ));
     }
-    if !scan(max_spin, &|w| errors.backspin_rad_s(w)) {
+    if !scan(max_spin, 200.0, &|w| errors.backspin_rad_s(w)) {
         faults.push(keys.fault(
             "c40",
-            "c40 + c41 w + c42 w^2 must be 0 or more for every backspin to max_backspin",
+            "c40 + c41 w + c42 w^2 must be from 0 to 200 rad/s for every backspin up to max_backspin",
         ));
     }
     (faults.len() == before).then_some(errors)
@@ -227,16 +242,19 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
 fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>) -> Option<Place> {
     let cartesian = keys.has("x") || keys.has("y");
     let polar = keys.has("distance") || keys.has("angle");
-    let (x, y, key) = if cartesian {
+    let (x, y, at) = if cartesian {
         if polar {
             faults.push(keys.fault("x", "give either distance and angle, or x and y"));
         }
-        keys.quantity("distance", Dimension::Length, faults);
-        keys.quantity("angle", Dimension::Angle, faults);
+        let _ = (
+            keys.quantity("distance", Dimension::Length, faults),
+            keys.quantity("angle", Dimension::Angle, faults),
+        );
         let x = keys.required("x", Dimension::Length, faults);
         let y = keys.required("y", Dimension::Length, faults);
+        let at = keys.fault("x", "");
         keys.finish(faults);
-        (x?, y?, "location.x")
+        (x?, y?, at)
     } else {
         let distance = keys.required("distance", Dimension::Length, faults);
         let distance = check(&keys, "distance", distance, |d| d > 0.0, "above 0", faults);
@@ -251,6 +269,11 @@ fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>
         );
         let place = distance.zip(angle);
         let span_of = keys.fault("distance", "");
+        // Known here, though not given.
+        let _ = (
+            keys.quantity("x", Dimension::Length, faults),
+            keys.quantity("y", Dimension::Length, faults),
+        );
         keys.finish(faults);
         let (distance_m, angle_rad) = place?;
         let place = Place {
@@ -262,11 +285,6 @@ fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>
     let place = Place {
         distance_m: (x * x + y * y).sqrt(),
         angle_rad: libm::atan2(y, x),
-    };
-    let at = Fault {
-        span: 0..0,
-        key: key.to_owned(),
-        message: String::new(),
     };
     check_place(place, physics, &at, faults)
 }
@@ -356,8 +374,11 @@ fn read_physics(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> (Physics, I
             faults.push(keys.fault("restitution", format!("must be {}", error.allowed)));
         }
     }
-    if faults.len() == before {
-        for error in physics.faults() {
+    for error in physics.faults() {
+        let told = faults[before..]
+            .iter()
+            .any(|fault| fault.key == keys.name(error.key));
+        if !told {
             faults.push(keys.fault(error.key, format!("must be {}", error.allowed)));
         }
     }
@@ -439,14 +460,18 @@ fn read_search(root: &mut Keys<'_, '_>, usual: Search, faults: &mut Vec<Fault>) 
         }
     }
     if !(search.pitch_min_rad < search.pitch_max_rad) {
-        faults.push(keys.fault("pitch_min", "must be less than pitch_max"));
+        let most = search.pitch_max_rad / deg;
+        faults.push(keys.fault(
+            "pitch_min",
+            format!("must be less than pitch_max ({most:.1} deg)"),
+        ));
     }
     let speed = keys.quantity("speed_max", Dimension::Speed, faults);
     search.speed_max_m_s = check(
         &keys,
         "speed_max",
         speed,
-        |v| v > 0.0 && v <= 40.0,
+        |v| v > 0.0 && v <= FASTEST_M_S,
         "above 0 and at most 40 m/s",
         faults,
     );
