@@ -2,7 +2,7 @@
 
 mod common;
 
-use bankshot::dynamics::{Lanes, Release, Simulator, State, Verdict};
+use bankshot::dynamics::{Lanes, Release, Room, Simulator, State, Verdict};
 use bankshot::physics::Physics;
 use common::{foul, side};
 use rand::rngs::ChaCha12Rng;
@@ -18,10 +18,11 @@ fn check(physics: &Physics, starts: &[State]) {
     assert!(available.len() >= 2);
     for (name, lanes) in available {
         let simulator = scalar.clone().with_lanes(lanes);
+        let mut room = Room::default();
         for size in [1000, 4096] {
             let found: Vec<Verdict> = starts
                 .chunks(size)
-                .flat_map(|chunk| simulator.verdicts(chunk))
+                .flat_map(|chunk| simulator.verdicts(chunk, &mut room).to_vec())
                 .collect();
             let differ = found.iter().zip(&truth).filter(|(a, b)| a != b).count();
             assert_eq!(differ, 0, "{name}, batches of {size}");

@@ -3,7 +3,7 @@
 use super::arguments::{CheckOptions, PlanOptions};
 use super::failure::Failure;
 use super::terminal::{answer, tell};
-use bankshot::dynamics::Simulator;
+use bankshot::dynamics::{Room, Simulator};
 use bankshot::output;
 use bankshot::plan::Plan;
 use bankshot::profile::{self, LARGEST_PROFILE_BYTES, Nominal, Profile};
@@ -158,7 +158,7 @@ fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
         };
         starts.push(profile.release(&nominal).state());
     }
-    std::hint::black_box(simulator.verdicts(&starts));
+    std::hint::black_box(simulator.verdicts(&starts, &mut Room::default()));
     let per_shot = began.elapsed().as_secs_f64() / f64::from(SHOTS);
     per_shot * (plan.shots + SEARCH_SHOTS) as f64 / rayon::current_num_threads() as f64
 }

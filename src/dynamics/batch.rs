@@ -21,40 +21,50 @@ use fearless_simd::Simd;
 /// Nine state variables of eight shots.
 type Block = [[f64; WIDTH]; 9];
 
-/// Runs the shots of `starts` to their ends.
+/// Room for a batch, to be used again and again: nothing is allocated once it has grown.
+#[derive(Debug, Default)]
+pub struct Room {
+    shots: Vec<Progress>,
+    pub(super) verdicts: Vec<Verdict>,
+    flying: Vec<u32>,
+    on_board: Vec<u32>,
+    on_ring: Vec<u32>,
+    queue: Vec<u32>,
+}
+
+/// Runs the shots of `starts` to their ends; the verdicts are then in the room.
 #[inline(always)]
-pub(super) fn run<S: Simd>(
-    simd: S,
-    law: &Law,
-    rules: &Rules,
-    starts: &[State],
-    verdicts: &mut [Verdict],
-) {
+pub(super) fn run<S: Simd>(simd: S, law: &Law, rules: &Rules, starts: &[State], room: &mut Room) {
+    room.shots.clear();
+    room.shots
+        .extend(starts.iter().map(|start| Progress::at_release(law, *start)));
+    room.verdicts.clear();
+    room.verdicts.resize(starts.len(), PENDING);
+    let lanes = law.map(|value| Pack::splat(simd, value));
     let mut batch = Batch {
         simd,
         law,
-        lanes: law.map(|value| Pack::splat(simd, value)),
+        lanes,
         rules,
-        shots: starts
-            .iter()
-            .map(|start| Progress::at_release(law, *start))
-            .collect(),
-        verdicts,
-        flying: Vec::with_capacity(starts.len()),
-        on_board: Vec::with_capacity(starts.len()),
-        on_ring: Vec::with_capacity(starts.len()),
+        room,
     };
     for (shot, start) in starts.iter().enumerate() {
         if exact::pressed_at_start(law, start) == (false, false) {
-            batch.flying.push(shot as u32);
+            batch.room.flying.push(shot as u32);
         } else {
-            batch.verdicts[shot] = exact::run(law, rules, *start, &mut ());
+            batch.room.verdicts[shot] = exact::run(law, rules, *start, &mut ());
         }
     }
-    while !(batch.flying.is_empty() && batch.on_board.is_empty() && batch.on_ring.is_empty()) {
+    while !batch.room.is_done() {
         batch.fly();
         batch.press_board();
         batch.press_ring();
+    }
+}
+
+impl Room {
+    fn is_done(&self) -> bool {
+        self.flying.is_empty() && self.on_board.is_empty() && self.on_ring.is_empty()
     }
 }
 
@@ -63,11 +73,7 @@ struct Batch<'a, S: Simd> {
     law: &'a Law,
     lanes: Law<Pack<S>>,
     rules: &'a Rules,
-    shots: Vec<Progress>,
-    verdicts: &'a mut [Verdict],
-    flying: Vec<u32>,
-    on_board: Vec<u32>,
-    on_ring: Vec<u32>,
+    room: &'a mut Room,
 }
 
 /// The bits of up to eight lanes that are set, in order.
@@ -129,7 +135,7 @@ impl<S: Simd> Batch<'_, S> {
     /// Takes a shot through what the lanes do not do, in the scalar form, and queues it again.
     #[cold]
     fn hand_over(&mut self, shot: u32) {
-        let progress = &mut self.shots[shot as usize];
+        let progress = &mut self.room.shots[shot as usize];
         loop {
             if progress.stretches >= MOST_STRETCHES {
                 self.finish(shot, Ending::Unresolved, false);
@@ -137,13 +143,13 @@ impl<S: Simd> Batch<'_, S> {
             }
             progress.stretches += 1;
             if let Some(verdict) = exact::stretch(self.law, self.rules, progress) {
-                self.verdicts[shot as usize] = verdict;
+                self.room.verdicts[shot as usize] = verdict;
                 return;
             }
             match progress.on {
-                On::Nothing => self.flying.push(shot),
-                On::Board(_) => self.on_board.push(shot),
-                On::Ring(_) => self.on_ring.push(shot),
+                On::Nothing => self.room.flying.push(shot),
+                On::Board(_) => self.room.on_board.push(shot),
+                On::Ring(_) => self.room.on_ring.push(shot),
                 On::Both(_) => continue,
             }
             return;
@@ -151,8 +157,8 @@ impl<S: Simd> Batch<'_, S> {
     }
 
     fn finish(&mut self, shot: u32, ending: Ending, made: bool) {
-        let progress = &self.shots[shot as usize];
-        self.verdicts[shot as usize] = Verdict {
+        let progress = &self.room.shots[shot as usize];
+        self.room.verdicts[shot as usize] = Verdict {
             made,
             ending,
             contacts: progress.contacts,
@@ -160,17 +166,28 @@ impl<S: Simd> Batch<'_, S> {
         };
     }
 
+    /// A queue to work off, with an empty one in its place; to be given back to `room.queue`.
+    fn take_queue(&mut self, of: impl Fn(&mut Room) -> &mut Vec<u32>) -> Vec<u32> {
+        let spare = std::mem::take(&mut self.room.queue);
+        std::mem::replace(of(self.room), spare)
+    }
+
+    fn give_back(&mut self, mut queue: Vec<u32>) {
+        queue.clear();
+        self.room.queue = queue;
+    }
+
     /// Flies every shot of the queue to its end or its next touch.
     #[inline(always)]
     fn fly(&mut self) {
-        let queue = std::mem::take(&mut self.flying);
+        let queue = self.take_queue(|room| &mut room.flying);
         let fresh = Grip::fresh(self.law);
         let mut block: Block = [[0.0; WIDTH]; 9];
         for shots in queue.chunks(WIDTH) {
             let (mut above, mut rose) = (0, 0);
             for lane in 0..WIDTH {
                 // Lanes without a shot repeat the last one.
-                let progress = &self.shots[shots[lane.min(shots.len() - 1)] as usize];
+                let progress = &self.room.shots[shots[lane.min(shots.len() - 1)] as usize];
                 set(&mut block, lane, &progress.state);
                 put(&mut above, lane, progress.passage.above);
                 put(&mut rose, lane, progress.passage.rose_through);
@@ -197,7 +214,7 @@ impl<S: Simd> Batch<'_, S> {
             store(&end, &mut block);
             for (lane, &shot) in shots.iter().enumerate() {
                 let bit = |bits: u8| bits >> lane & 1 == 1;
-                let progress = &mut self.shots[shot as usize];
+                let progress = &mut self.room.shots[shot as usize];
                 let late = progress.time_s + durations[lane] > self.rules.time_limit_s;
                 progress.on = On::Nothing;
                 if bit(special) || late || progress.stretches >= MOST_STRETCHES {
@@ -214,11 +231,11 @@ impl<S: Simd> Batch<'_, S> {
                 if bit(ring) {
                     progress.contacts.push(Touched::Ring);
                     progress.on = On::Ring(fresh);
-                    self.on_ring.push(shot);
+                    self.room.on_ring.push(shot);
                 } else if bit(board) {
                     progress.contacts.push(Touched::Board);
                     progress.on = On::Board(fresh);
-                    self.on_board.push(shot);
+                    self.room.on_board.push(shot);
                 } else if bit(fell) {
                     self.finish(shot, Ending::Fell, bit(made));
                 } else {
@@ -226,11 +243,12 @@ impl<S: Simd> Batch<'_, S> {
                 }
             }
         }
+        self.give_back(queue);
     }
 
     #[inline(always)]
     fn press_board(&mut self) {
-        let queue = std::mem::take(&mut self.on_board);
+        let queue = self.take_queue(|room| &mut room.on_board);
         let (law, scalar) = (self.lanes, *self.law);
         self.press(
             queue,
@@ -244,7 +262,7 @@ impl<S: Simd> Batch<'_, S> {
 
     #[inline(always)]
     fn press_ring(&mut self) {
-        let queue = std::mem::take(&mut self.on_ring);
+        let queue = self.take_queue(|room| &mut room.on_ring);
         let (law, scalar) = (self.lanes, *self.law);
         self.press(
             queue,
@@ -280,7 +298,7 @@ impl<S: Simd> Batch<'_, S> {
         loop {
             for lane in lanes_of(!active) {
                 while let Some(shot) = queue.pop() {
-                    let progress = &self.shots[shot as usize];
+                    let progress = &self.room.shots[shot as usize];
                     if other_at_start(&progress.state) {
                         self.hand_over(shot);
                         continue;
@@ -302,6 +320,7 @@ impl<S: Simd> Batch<'_, S> {
                 }
             }
             if active == 0 {
+                self.give_back(queue);
                 return;
             }
             let before = load(simd, &block);
@@ -345,7 +364,7 @@ impl<S: Simd> Batch<'_, S> {
             for lane in lanes_of(done) {
                 let bit = |bits: u8| bits >> lane & 1 == 1;
                 let shot = shots[lane];
-                let progress = &mut self.shots[shot as usize];
+                let progress = &mut self.room.shots[shot as usize];
                 progress.state = get(&block, lane);
                 progress.time_s = times[lane];
                 progress.passage = Passage {
@@ -354,7 +373,7 @@ impl<S: Simd> Batch<'_, S> {
                 };
                 put(&mut active, lane, false);
                 if bit(parted) {
-                    self.flying.push(shot);
+                    self.room.flying.push(shot);
                 } else if bit(ends[0]) {
                     self.finish(shot, Ending::BehindBoard, false);
                 } else if bit(ends[1]) {
@@ -376,11 +395,9 @@ impl<S: Simd> Batch<'_, S> {
 }
 
 /// A verdict to be overwritten.
-pub(super) fn pending() -> Verdict {
-    Verdict {
-        made: false,
-        ending: Ending::Unresolved,
-        contacts: Contacts::default(),
-        time_s: 0.0,
-    }
-}
+const PENDING: Verdict = Verdict {
+    made: false,
+    ending: Ending::Unresolved,
+    contacts: Contacts::NONE,
+    time_s: 0.0,
+};

@@ -20,6 +20,7 @@ mod trace;
 mod watch;
 mod wedge;
 
+pub use batch::Room;
 pub use lanes::Lanes;
 pub use outcome::{Contacts, Ending, Entry, Kind, Outcome, Touched, Verdict};
 pub use release::{Aim, Release};

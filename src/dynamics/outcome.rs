@@ -22,6 +22,12 @@ pub struct Contacts {
 }
 
 impl Contacts {
+    /// No contact yet.
+    pub(crate) const NONE: Self = Self {
+        board_bits: 0,
+        boards: 0,
+        rings: 0,
+    };
     /// Contacts that are kept with their order; later ones are only counted.
     pub const KEPT: u32 = 64;
 

@@ -1,6 +1,6 @@
 //! The interface to the dynamics: physics and integrator in, outcomes out.
 
-use super::batch;
+use super::batch::{self, Room};
 use super::exact::{self, Rules};
 use super::flight::Arc;
 use super::lanes::Lanes;
@@ -92,22 +92,21 @@ impl Simulator {
 
     /// The verdicts of many shots, from their states at the release: the fast form of
     /// [`Simulator::verdict_from`], equal to it bit for bit. A few thousand shots a call are enough to
-    /// keep the lanes full; about 200 bytes of memory are used for each.
-    #[must_use]
-    pub fn verdicts(&self, starts: &[State]) -> Vec<Verdict> {
+    /// keep the lanes full; about 250 bytes of the room are used for each.
+    pub fn verdicts<'r>(&self, starts: &[State], room: &'r mut Room) -> &'r [Verdict] {
         match (self.integrator, self.lanes.0) {
             (Integrator::Exact { .. }, Some(level)) => {
-                let mut verdicts = vec![batch::pending(); starts.len()];
                 fearless_simd::dispatch!(level, simd => {
-                    batch::run(simd, &self.law, &self.rules, starts, &mut verdicts)
+                    batch::run(simd, &self.law, &self.rules, starts, room)
                 });
-                verdicts
             }
-            _ => starts
-                .iter()
-                .map(|start| self.verdict_from(*start))
-                .collect(),
+            _ => {
+                room.verdicts.clear();
+                room.verdicts
+                    .extend(starts.iter().map(|start| self.verdict_from(*start)));
+            }
         }
+        &room.verdicts
     }
 
     /// A simulator with the default integrator.

@@ -6,7 +6,7 @@
 
 use super::sobol::{self, Sobol};
 use super::{Progress, normal};
-use crate::dynamics::{Ending, Kind, Release, Simulator, State};
+use crate::dynamics::{Ending, Kind, Release, Room, Simulator, State};
 use crate::profile::{Nominal, Profile};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -110,12 +110,18 @@ impl<'a> Sampler<'a> {
     }
 
     /// Counts of the points `from..to` of one scramble.
-    fn block(&self, nominal: &Nominal, key: u64, from: u32, to: u32) -> Counts {
+    fn block(
+        &self,
+        nominal: &Nominal,
+        key: u64,
+        (from, to): (u32, u32),
+        room: &mut Room,
+    ) -> Counts {
         let starts: Vec<State> = (from..to)
             .map(|index| self.release(nominal, index, key).state())
             .collect();
         let mut counts = Counts::default();
-        for verdict in self.simulator.verdicts(&starts) {
+        for verdict in self.simulator.verdicts(&starts, room) {
             if verdict.ending == Ending::Unresolved {
                 counts.unresolved += 1;
             } else if verdict.made {
@@ -134,7 +140,9 @@ impl<'a> Sampler<'a> {
         (from..to)
             .into_par_iter()
             .step_by(BLOCK as usize)
-            .map(|start| self.block(nominal, key, start, (start + BLOCK).min(to)))
+            .map_init(Room::default, |room, start| {
+                self.block(nominal, key, (start, (start + BLOCK).min(to)), room)
+            })
             .reduce(Counts::default, Counts::plus)
     }
 

@@ -4,7 +4,7 @@
 //! Each block of samples has a random stream of its own, keyed by (seed, block), so the number of
 //! threads changes nothing.
 
-use crate::dynamics::{Simulator, State};
+use crate::dynamics::{Room, Simulator, State};
 use crate::profile::{Nominal, Profile};
 use rand::SeedableRng;
 use rand::rngs::ChaCha12Rng;
@@ -25,7 +25,7 @@ pub fn estimate(
 ) -> (f64, f64) {
     let made: u64 = (0..samples.div_ceil(BLOCK))
         .into_par_iter()
-        .map(|block| {
+        .map_init(Room::default, |room, block| {
             let mut random = ChaCha12Rng::seed_from_u64(seed);
             random.set_stream(block);
             let count = BLOCK.min(samples - block * BLOCK);
@@ -37,7 +37,7 @@ pub fn estimate(
                 })
                 .collect();
             simulator
-                .verdicts(&starts)
+                .verdicts(&starts, room)
                 .iter()
                 .filter(|verdict| verdict.made)
                 .count() as u64

@@ -8,7 +8,7 @@
 //! not (0.0006).
 
 use super::{Progress, normal};
-use crate::dynamics::{Aim, Simulator};
+use crate::dynamics::{Aim, Room, Simulator};
 use crate::plan::{Axis, Plan};
 use crate::profile::{Nominal, Profile};
 use rayon::prelude::*;
@@ -78,13 +78,14 @@ impl Table {
         let block = plan.backspin.count * nominals.len();
         let mut sums = vec![0.0; plan.pitch.count * plan.polar.count * block];
         progress.begin("simulating", plan.shots);
-        sums.par_chunks_mut(block)
-            .enumerate()
-            .for_each(|(pair, block)| {
+        sums.par_chunks_mut(block).enumerate().for_each_init(
+            Room::default,
+            |room, (pair, block)| {
                 let cell = (pair / plan.polar.count, pair % plan.polar.count);
-                fill(profile, plan, simulator, &nominals, cell, block);
+                fill(profile, plan, (simulator, room), &nominals, cell, block);
                 progress.advance((plan.backspin.count * plan.speeds_per_line) as u64);
-            });
+            },
+        );
         progress.end();
         Self {
             plan: plan.clone(),
@@ -138,7 +139,7 @@ fn spread(low: f64, high: f64, count: usize) -> Vec<f64> {
 fn fill(
     profile: &Profile,
     plan: &Plan,
-    simulator: &Simulator,
+    (simulator, room): (&Simulator, &mut Room),
     nominals: &[(f64, f64)],
     (pitch, polar): (usize, usize),
     block: &mut [f64],
@@ -169,7 +170,7 @@ fn fill(
             starts.push(aim.state(speed, spin));
         }
     }
-    let verdicts = simulator.verdicts(&starts);
+    let verdicts = simulator.verdicts(&starts, room);
     for (i, (verdict, speed)) in verdicts.iter().zip(speeds).enumerate() {
         if verdict.made {
             let line = i / plan.speeds_per_line * nominals.len();
