@@ -1,13 +1,17 @@
-//! Shots per second of both integrators on the sample *foul* and from the side, one core, and their
-//! ratio, in one run: `cargo bench --bench shots`.
+//! Shots per second of both integrators on the sample *foul* and from the side, by lanes; one table
+//! and one whole `best`; ratios and agreement side by side; one and two threads:
+//! `cargo bench --bench shots`.
 #![allow(missing_docs, clippy::disallowed_methods)]
 
-use bankshot::dynamics::{Integrator, Release, Simulator};
+use bankshot::dynamics::{Integrator, Lanes, Release, Room, Simulator, State};
 use bankshot::physics::{FOOT_M, Physics};
+use bankshot::plan::Plan;
+use bankshot::probability::{Silent, Table, best};
 use bankshot::units::{DEGREE_RAD, REV_RAD};
-use criterion::{BatchSize, Criterion, Throughput};
+use criterion::{Criterion, Throughput};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -36,80 +40,176 @@ fn main() {
     let with = |integrator| Simulator::with_integrator(&physics, integrator).unwrap();
     let exact = with(Integrator::EXACT);
     let paper = with(Integrator::PAPER);
-    let paper_fine = with(Integrator::Paper {
-        dt_max_s: 0.001,
-        dt_min_s: 0.000_01,
-    });
-    let shots = 2000;
-    for (name, court, polar) in [
+    let shots = 20_000;
+    let samples = [
         ("foul", 0.0, 0.0),
         ("side direct", 67.5, 67.5),
         ("side bank", 67.5, 62.107),
-    ] {
-        let releases = sample(shots, court, polar);
+    ];
+    for (name, court, polar) in samples {
+        let starts = states(&sample(shots, court, polar));
         let mut group = criterion.benchmark_group(name);
         group.throughput(Throughput::Elements(shots as u64));
-        for (label, simulator) in [("exact", &exact), ("paper", &paper)] {
-            group.bench_function(label, |bencher| {
-                bencher.iter_batched(
-                    || (),
-                    |()| {
-                        releases
-                            .iter()
-                            .filter(|release| simulator.verdict(black_box(release)).made)
-                            .count()
-                    },
-                    BatchSize::SmallInput,
-                );
+        group.bench_function("paper, one at a time", |bencher| {
+            bencher.iter(|| count(black_box(&starts), |start| paper.verdict_from(*start).made));
+        });
+        for (lanes_name, lanes) in Lanes::available() {
+            let simulator = exact.clone().with_lanes(lanes);
+            let mut room = Room::default();
+            group.bench_function(format!("exact, {lanes_name}"), |bencher| {
+                bencher.iter(|| made(&simulator, black_box(&starts), &mut room));
             });
         }
         group.finish();
     }
-    report(
-        &sample(20_000, 0.0, 0.0),
-        &[
-            ("exact", &exact),
-            ("paper", &paper),
-            ("paper, fine", &paper_fine),
-        ],
-        &with,
-    );
+    whole(&mut criterion);
+    report(&states(&sample(20_000, 0.0, 0.0)), &with);
+    threads(&exact, &states(&sample(1_000_000, 0.0, 0.0)));
 }
 
-/// Rates and agreement side by side, taken in turn so that a drifting machine hits all alike.
-fn report(
-    releases: &[Release],
-    simulators: &[(&str, &Simulator)],
-    with: &dyn Fn(Integrator) -> Simulator,
-) {
-    let reference = with(Integrator::Exact {
-        steps_per_contact: 1000,
-    });
-    let truth: Vec<bool> = releases
-        .iter()
-        .map(|release| reference.verdict(release).made)
-        .collect();
-    let mut best = vec![f64::INFINITY; simulators.len()];
-    let mut agree = vec![0.0; simulators.len()];
-    for _ in 0..5 {
-        for (i, (_, simulator)) in simulators.iter().enumerate() {
-            let began = Instant::now();
-            let same = releases
+fn states(releases: &[Release]) -> Vec<State> {
+    releases.iter().map(Release::state).collect()
+}
+
+fn count(starts: &[State], made: impl Fn(&State) -> bool) -> usize {
+    starts.iter().filter(|start| made(start)).count()
+}
+
+/// Made shots, in batches.
+fn made(simulator: &Simulator, starts: &[State], room: &mut Room) -> usize {
+    let batches = starts.chunks(4096);
+    batches
+        .map(|batch| {
+            simulator
+                .verdicts(batch, room)
                 .iter()
-                .zip(&truth)
-                .filter(|(r, made)| simulator.verdict(r).made == **made)
-                .count();
-            best[i] = best[i].min(began.elapsed().as_secs_f64());
-            agree[i] = same as f64 / releases.len() as f64;
+                .filter(|v| v.made)
+                .count()
+        })
+        .sum()
+}
+
+/// One table and one whole `best` of the free throw.
+fn whole(criterion: &mut Criterion) {
+    let text = include_str!("../configs/free_throw.toml");
+    let profile = bankshot::profile::parse(text, "free_throw.toml").unwrap();
+    let plan = Plan::new(&profile).unwrap();
+    let simulator = Simulator::new(&profile.physics).unwrap();
+    let mut group = criterion.benchmark_group("free throw");
+    group.sample_size(10);
+    group.bench_function("table of 40^4", |bencher| {
+        bencher.iter(|| Table::build(&profile, &plan, &simulator, &Silent));
+    });
+    group.bench_function("best", |bencher| {
+        bencher.iter(|| best::find(&profile, &Silent).unwrap())
+    });
+    group.finish();
+}
+
+/// The least time of `runs` runs of each, taken in turn so that a drifting machine hits all alike.
+fn in_turn(runs: u32, tasks: &mut [(&str, Box<dyn FnMut() + '_>)]) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; tasks.len()];
+    for _ in 0..runs {
+        for (least, (_, task)) in least.iter_mut().zip(tasks.iter_mut()) {
+            let began = Instant::now();
+            task();
+            *least = least.min(began.elapsed().as_secs_f64());
         }
     }
-    println!("\nfoul, one core, {} shots", releases.len());
-    for (i, (name, _)) in simulators.iter().enumerate() {
+    least
+}
+
+/// Rates, agreement and ratios side by side.
+fn report(starts: &[State], with: &dyn Fn(Integrator) -> Simulator) {
+    let truth: Vec<bool> = {
+        let reference = with(Integrator::Exact {
+            steps_per_contact: 1000,
+        });
+        starts
+            .iter()
+            .map(|start| reference.verdict_from(*start).made)
+            .collect()
+    };
+    let simulators = [
+        ("exact, in lanes", with(Integrator::EXACT)),
+        (
+            "exact, scalar",
+            with(Integrator::EXACT).with_lanes(Lanes::SCALAR),
+        ),
+        ("paper, its steps", with(Integrator::PAPER)),
+        (
+            "paper, 1/0.05 ms",
+            with(Integrator::Paper {
+                dt_max_s: 0.001,
+                dt_min_s: 0.000_05,
+            }),
+        ),
+        (
+            "paper, 1/0.02 ms",
+            with(Integrator::Paper {
+                dt_max_s: 0.001,
+                dt_min_s: 0.000_02,
+            }),
+        ),
+    ];
+    let mut tasks: Vec<(&str, Box<dyn FnMut() + '_>)> = Vec::new();
+    for (name, simulator) in &simulators {
+        let mut room = Room::default();
+        tasks.push((
+            name,
+            Box::new(move || {
+                black_box(made(simulator, starts, &mut room));
+            }),
+        ));
+    }
+    let times = in_turn(3, &mut tasks);
+    println!("\nfoul, one core, {} shots", starts.len());
+    for ((name, simulator), time) in simulators.iter().zip(&times) {
+        let mut room = Room::default();
+        let same: usize = starts
+            .chunks(4096)
+            .zip(truth.chunks(4096))
+            .map(|(batch, truth)| {
+                let verdicts = simulator.verdicts(batch, &mut room);
+                verdicts
+                    .iter()
+                    .zip(truth)
+                    .filter(|(v, made)| v.made == **made)
+                    .count()
+            })
+            .sum();
         println!(
-            "{name:12} {:>9.0} shots/s   {:.3} % agree with tiny steps   exact is {:.2} times as fast",
-            releases.len() as f64 / best[i],
-            100.0 * agree[i],
-            best[i] / best[0]
+            "{name:18} {:>9.0} shots/s   {:.3} % agree with tiny steps   {:6.2} times the time of exact in lanes",
+            starts.len() as f64 / time,
+            100.0 * same as f64 / starts.len() as f64,
+            time / times[0]
         );
     }
+}
+
+/// Two threads against one on a batch of a million.
+fn threads(simulator: &Simulator, starts: &[State]) {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        move || {
+            pool.install(|| {
+                let made: usize = starts
+                    .par_chunks(4096)
+                    .map_init(Room::default, |room, batch| made(simulator, batch, room))
+                    .sum();
+                black_box(made);
+            });
+        }
+    };
+    let times = in_turn(4, &mut [("one", Box::new(on(1))), ("two", Box::new(on(2)))]);
+    println!(
+        "\n{} shots: {:.3} s on one thread, {:.3} s on two, ratio {:.2}",
+        starts.len(),
+        times[0],
+        times[1],
+        times[0] / times[1]
+    );
 }
