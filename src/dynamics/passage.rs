@@ -3,7 +3,7 @@
 //! A ball is made when it falls through `z = -R` within the ring, has been above the plane of the
 //! hoop, and its centre never rose through the hoop from below. The last condition is taken by the
 //! letter: a ball that dips below the plane inside the ring and is thrown up through it again is
-//! missed even where it then falls in (about one made shot in a hundred of the sample *foul*;
+//! missed even where it then falls in (6 of a thousand made shots of the sample *foul*;
 //! `docs/model.md` gives the measured effect).
 
 use super::state::{Law, State, Triple};

@@ -6,6 +6,7 @@
 mod fault;
 mod keys;
 mod read;
+mod world;
 
 pub use fault::{Fault, ProfileError};
 pub use read::{LARGEST_PROFILE_BYTES, parse, parse_physics};
