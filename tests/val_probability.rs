@@ -47,37 +47,59 @@ fn val_sobol_agrees_with_plain_monte_carlo() {
     }
 }
 
-#[test]
-fn val_table_agrees_with_sobol_at_its_nominals() {
-    // The shifted 40^4 table is good to 0.0007 rms; 0.004 is over five of that and of the Sobol error.
-    let profile = load("free_throw");
+/// The index of the value nearest to `x`.
+fn nearest(values: &[f64], x: f64) -> usize {
+    (0..values.len())
+        .min_by(|&a, &b| (values[a] - x).abs().total_cmp(&(values[b] - x).abs()))
+        .unwrap()
+}
+
+/// Table less Sobol at the nominals about the best direct and the best bank shot.
+fn table_errors(name: &str) -> Vec<f64> {
+    let profile = load(name);
     let plan = Plan::new(&profile).unwrap();
     let simulator = Simulator::new(&profile.physics).unwrap();
+    let best = best::find(&profile, &Silent).unwrap();
     let table = Table::build(&profile, &plan, &simulator, &Silent).probabilities(&profile);
     let sampler = Sampler::new(&profile, &simulator);
-    let nearest = |values: &[f64], x: f64| {
-        (0..values.len())
-            .min_by(|&a, &b| (values[a] - x).abs().total_cmp(&(values[b] - x).abs()))
-            .unwrap()
-    };
-    for shot in [
-        nominal(23.6, 53.5, 0.0, 3.0),
-        nominal(24.95, 54.5, 0.0, 2.0),
-        nominal(23.5, 50.0, 0.8, 1.0),
-    ] {
-        let index = [
+    let mut errors = Vec::new();
+    for shot in [best.direct.unwrap().nominal, best.bank.unwrap().nominal] {
+        let centre = [
             nearest(&table.pitch_rad, shot.pitch_rad),
             nearest(&table.polar_rad, shot.polar_rad),
             nearest(&table.backspin_rad_s, shot.backspin_rad_s),
             nearest(&table.speed_m_s, shot.speed_m_s),
         ];
-        let (p, at) = table.at(index);
-        let sobol = sampler.estimate(&at, 0.0004, 9, &Silent);
+        for (axis, step) in [(0, 0), (0, 1), (1, 1), (3, 1), (3, -1_isize)] {
+            let mut index = centre;
+            index[axis] = index[axis].saturating_add_signed(step);
+            let (p, at) = table.at(index);
+            let sobol = sampler.estimate(&at, 0.0004, 9, &Silent);
+            assert_eq!(sobol.unresolved, 0);
+            errors.push(p - sobol.probability);
+        }
+    }
+    errors
+}
+
+#[test]
+fn val_table_agrees_with_sobol_for_narrow_and_wide_shooters_in_front_and_at_the_side() {
+    // `cargo test --test val_probability val_table -- --nocapture` prints bias and spread. The table
+    // starts the search; what is reported is integrated by Sobol points. The bound is what a start
+    // needs: a fraction of what P loses within one step of the grid.
+    for name in ["elite", "free_throw", "novice", "bank_wing"] {
+        let errors = table_errors(name);
+        let n = errors.len() as f64;
+        let bias = errors.iter().sum::<f64>() / n;
+        let rms = (errors.iter().map(|error| error * error).sum::<f64>() / n).sqrt();
+        let worst = errors
+            .iter()
+            .fold(0.0_f64, |worst, error| worst.max(error.abs()));
+        println!("{name:12} bias {bias:+.5} rms {rms:.5} worst {worst:.5}");
         assert!(
-            (p - sobol.probability).abs() < 0.004,
-            "{at:?}: {p} {sobol:?}"
+            bias.abs() < 0.003 && rms < 0.005 && worst < 0.01,
+            "{name}: {bias} {rms} {worst}"
         );
-        assert_eq!(sobol.unresolved, 0);
     }
 }
 
