@@ -4,8 +4,8 @@
 //! and Eq. 25 factors into one small matrix per axis: entry (nominal, cell) is the normal density of
 //! the cell under the nominal's sigma, times the cell's width. Speed comes first, line by line, so
 //! each line can have its own bracket and its own shift of the speed grid: on one common grid the
-//! thin surfaces of `cond` alias with it (errors up to 0.018 in P), shifted from line to line they do
-//! not (0.0006).
+//! thin surfaces of `cond` alias with it (errors up to 0.018 in P); `docs/performance.md` has what is
+//! left with the shifts.
 
 use super::{Progress, normal};
 use crate::dynamics::{Aim, Room, Simulator};
