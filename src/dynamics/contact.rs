@@ -15,7 +15,8 @@ use crate::lane::{Lane, Mask};
 /// Slip below which the ball counts as not slipping, m/s.
 const NO_SLIP_M_S: f64 = 1e-9;
 /// Part of the slip, at the start of a step meant to end it, that may be left over; it is taken out by
-/// friction's own impulse. (0.05 needs a twentieth more steps and agrees no better.)
+/// friction's own impulse. (At 0.05 more
+/// steps are taken and no better agreement was seen.)
 const SLIP_LEFT: f64 = 0.2;
 /// The same as a speed: what the shortest step at the strongest friction overshoots by, m/s.
 const SLIP_ENDED_M_S: f64 = 2e-4;
