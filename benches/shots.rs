@@ -7,6 +7,7 @@ use bankshot::dynamics::{Integrator, Lanes, Release, Room, Simulator, State};
 use bankshot::physics::{FOOT_M, Physics};
 use bankshot::plan::Plan;
 use bankshot::probability::{Silent, Table, best};
+use bankshot::profile::Nominal;
 use bankshot::units::{DEGREE_RAD, REV_RAD};
 use criterion::{Criterion, Throughput};
 use rand::rngs::ChaCha12Rng;
@@ -97,8 +98,19 @@ fn whole(criterion: &mut Criterion) {
     let simulator = Simulator::new(&profile.physics).unwrap();
     let mut group = criterion.benchmark_group("free throw");
     group.sample_size(10);
-    group.bench_function("table of 40^4", |bencher| {
+    group.bench_function("table of the search", |bencher| {
         bencher.iter(|| Table::build(&profile, &plan, &simulator, &Silent));
+    });
+    let centre = Nominal {
+        speed_m_s: 23.6 * FOOT_M,
+        pitch_rad: 53.5 * DEGREE_RAD,
+        polar_rad: 0.0,
+        backspin_rad_s: 3.0 * REV_RAD,
+    };
+    let window = plan.around(&profile, &centre).unwrap();
+    group.bench_function("table of a window", |bencher| {
+        bencher
+            .iter(|| Table::build(&profile, &window, &simulator, &Silent).probabilities(&profile));
     });
     group.bench_function("best", |bencher| {
         bencher.iter(|| best::find(&profile, &Silent).unwrap())

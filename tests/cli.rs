@@ -142,7 +142,7 @@ fn contract_check_and_plan_of_every_shipped_profile() {
         .assert()
         .success()
         .stdout(
-            predicate::str::contains("shots       2560000")
+            predicate::str::contains("870912 in each window")
                 .and(predicate::str::contains("; 0 of those were made")),
         );
 }

@@ -7,6 +7,8 @@ use bankshot::probability::estimate::Sampler;
 use bankshot::probability::{Silent, Table, monte_carlo};
 use bankshot::profile::{self, Nominal, Profile};
 use bankshot::units::{DEGREE_RAD, REV_RAD};
+use rand::rngs::ChaCha12Rng;
+use rand::{RngExt, SeedableRng};
 
 fn load(name: &str) -> Profile {
     let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -47,89 +49,91 @@ fn val_sobol_agrees_with_plain_monte_carlo() {
     }
 }
 
-/// The index of the value nearest to `x`.
-fn nearest(values: &[f64], x: f64) -> usize {
-    (0..values.len())
-        .min_by(|&a, &b| (values[a] - x).abs().total_cmp(&(values[b] - x).abs()))
-        .unwrap()
-}
+/// Places and shooters by which the table is judged: narrow and wide, in front and at the side.
+const JUDGED: [(&str, f64); 6] = [
+    ("elite", 0.0),
+    ("elite", 67.5),
+    ("novice", 0.0),
+    ("novice", 67.5),
+    ("free_throw", 0.0),
+    ("bank_wing", 50.0),
+];
 
-#[test]
-fn val_table_agrees_with_sobol_at_its_nominals() {
-    // The shifted 40^4 table is good to 0.0007 rms; 0.004 is over five of that and of the Sobol error.
-    let profile = load("free_throw");
-    let plan = Plan::new(&profile).unwrap();
-    let simulator = Simulator::new(&profile.physics).unwrap();
-    let table = Table::build(&profile, &plan, &simulator, &Silent).probabilities(&profile);
-    let sampler = Sampler::new(&profile, &simulator);
-    for shot in [
-        nominal(23.6, 53.5, 0.0, 3.0),
-        nominal(24.95, 54.5, 0.0, 2.0),
-        nominal(23.5, 50.0, 0.8, 1.0),
-    ] {
-        let index = [
-            nearest(&table.pitch_rad, shot.pitch_rad),
-            nearest(&table.polar_rad, shot.polar_rad),
-            nearest(&table.backspin_rad_s, shot.backspin_rad_s),
-            nearest(&table.speed_m_s, shot.speed_m_s),
-        ];
-        let (p, at) = table.at(index);
-        let sobol = sampler.estimate(&at, 0.0004, 9, &Silent);
-        assert!(
-            (p - sobol.probability).abs() < 0.004,
-            "{at:?}: {p} {sobol:?}"
-        );
-        assert_eq!(sobol.unresolved, 0);
-    }
-}
-
-/// Table less Sobol at the nominals about the best direct and the best bank shot.
-fn table_errors(name: &str) -> Vec<f64> {
-    let profile = load(name);
-    let plan = Plan::new(&profile).unwrap();
-    let simulator = Simulator::new(&profile.physics).unwrap();
-    let best = best::find(&profile, &Silent).unwrap();
-    let table = Table::build(&profile, &plan, &simulator, &Silent).probabilities(&profile);
-    let sampler = Sampler::new(&profile, &simulator);
-    let mut errors = Vec::new();
-    for shot in [best.direct.unwrap().nominal, best.bank.unwrap().nominal] {
-        let centre = [
-            nearest(&table.pitch_rad, shot.pitch_rad),
-            nearest(&table.polar_rad, shot.polar_rad),
-            nearest(&table.backspin_rad_s, shot.backspin_rad_s),
-            nearest(&table.speed_m_s, shot.speed_m_s),
-        ];
-        for (axis, step) in [(0, 0), (0, 1), (1, 1), (3, 1), (3, -1_isize)] {
-            let mut index = centre;
-            index[axis] = index[axis].saturating_add_signed(step);
-            let (p, at) = table.at(index);
-            let sobol = sampler.estimate(&at, 0.0004, 9, &Silent);
-            assert_eq!(sobol.unresolved, 0);
-            errors.push(p - sobol.probability);
+/// Table less Sobol at the centres of `windows` windows about each of the best direct and bank shots.
+fn table_errors(windows: u64) -> Vec<f64> {
+    let mut random = ChaCha12Rng::seed_from_u64(99);
+    let mut all = Vec::new();
+    for (name, angle_deg) in JUDGED {
+        let mut profile = load(name);
+        profile.place.angle_rad = angle_deg * DEGREE_RAD;
+        let simulator = Simulator::new(&profile.physics).unwrap();
+        let plan = Plan::new(&profile).unwrap();
+        let sampler = Sampler::new(&profile, &simulator);
+        let best = best::find(&profile, &Silent).unwrap();
+        let mut errors = Vec::new();
+        for shot in [best.direct.unwrap().nominal, best.bank.unwrap().nominal] {
+            for window in 0..windows {
+                let sigma = &profile.shooter.errors;
+                let mut within = |reach: f64| reach * (2.0 * random.random::<f64>() - 1.0);
+                let centre = Nominal {
+                    speed_m_s: shot.speed_m_s + within(0.5 * sigma.speed_m_s(shot.speed_m_s)),
+                    pitch_rad: shot.pitch_rad + within(0.5 * sigma.c20_rad),
+                    polar_rad: shot.polar_rad + within(0.3 * sigma.c30_rad),
+                    backspin_rad_s: shot.backspin_rad_s - within(2.0).abs(),
+                };
+                let window_plan = plan.around(&profile, &centre).unwrap();
+                let table = Table::build(&profile, &window_plan, &simulator, &Silent);
+                let table = table.probabilities(&profile);
+                let (p, at) = table.at(table.index_of(&centre));
+                let sobol = sampler.estimate(&at, 0.0004, 1000 + window, &Silent);
+                assert_eq!(sobol.unresolved, 0);
+                errors.push(p - sobol.probability);
+            }
         }
+        let [bias, rms, worst] = spread(&errors);
+        println!("{name:12} {angle_deg:4} deg: bias {bias:+.5} rms {rms:.5} worst {worst:.5}");
+        all.extend(errors);
     }
-    errors
+    let [bias, rms, worst] = spread(&all);
+    println!(
+        "all {:4}             : bias {bias:+.5} rms {rms:.5} worst {worst:.5}",
+        all.len()
+    );
+    all
 }
 
 #[test]
 fn val_table_agrees_with_sobol_for_narrow_and_wide_shooters_in_front_and_at_the_side() {
-    // `cargo test --test val_probability val_table -- --nocapture` prints bias and spread. The table
-    // starts the search; what is reported is integrated by Sobol points. The bound is what a start
-    // needs: a fraction of what P loses within one step of the grid.
-    for name in ["elite", "free_throw", "novice", "bank_wing"] {
-        let errors = table_errors(name);
-        let n = errors.len() as f64;
-        let bias = errors.iter().sum::<f64>() / n;
-        let rms = (errors.iter().map(|error| error * error).sum::<f64>() / n).sqrt();
-        let worst = errors
+    // The table's rms error is 0.001 at most (`campaign_table` measures it on 72 windows; the
+    // reference's 0.0004 is included). Twelve windows scatter about that: 1.6 times it would be exceeded
+    // by chance in 1 of 1000 choices of windows, three times it by any one of twelve in 1 of 30.
+    let [bias, rms, worst] = spread(&table_errors(1));
+    assert!(
+        bias.abs() < 0.001 && rms < 0.0016 && worst < 0.003,
+        "{bias} {rms} {worst}"
+    );
+}
+
+#[test]
+#[ignore = "a campaign of 4 minutes: cargo test --test val_probability campaign_table -- --ignored --nocapture"]
+fn campaign_table_is_good_to_a_thousandth() {
+    let [bias, rms, worst] = spread(&table_errors(6));
+    assert!(
+        bias.abs() < 0.0004 && rms < 0.001 && worst < 0.004,
+        "{bias} {rms} {worst}"
+    );
+}
+
+/// Mean, root of the mean square, and largest size.
+fn spread(errors: &[f64]) -> [f64; 3] {
+    let n = errors.len() as f64;
+    [
+        errors.iter().sum::<f64>() / n,
+        (errors.iter().map(|error| error * error).sum::<f64>() / n).sqrt(),
+        errors
             .iter()
-            .fold(0.0_f64, |worst, error| worst.max(error.abs()));
-        println!("{name:12} bias {bias:+.5} rms {rms:.5} worst {worst:.5}");
-        assert!(
-            bias.abs() < 0.003 && rms < 0.005 && worst < 0.01,
-            "{name}: {bias} {rms} {worst}"
-        );
-    }
+            .fold(0.0_f64, |worst, error| worst.max(error.abs())),
+    ]
 }
 
 #[test]

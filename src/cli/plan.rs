@@ -46,8 +46,10 @@ pub(crate) fn load(path: &Path) -> Result<Profile, Failure> {
     Ok(profile::parse(&text, &path.display().to_string())?)
 }
 
-/// Shots that the search for the best and the final integrals take, about.
-const SEARCH_SHOTS: u64 = 3_000_000;
+/// Shots that the climbs and the final integrals take, about.
+const SEARCH_SHOTS: u64 = 1_000_000;
+/// Windows that a search takes, about: one for each kind.
+const WINDOWS: u64 = 2;
 
 pub(crate) fn check(options: &CheckOptions) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
@@ -71,7 +73,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     let wide = (options.wide_sample > 0)
         .then(|| plan.wide_sample(&profile, &simulator, options.wide_sample));
     let middle = Nominal {
-        speed_m_s: plan.nominal_speed.low,
+        speed_m_s: plan.nominal.speed.low,
         pitch_rad: 0.5 * (plan.pitch.low + plan.pitch.high),
         polar_rad: profile.place.angle_rad,
         backspin_rad_s: 0.5 * profile.shooter.max_backspin_rad_s,
@@ -110,16 +112,17 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         )
     };
     let mut text = format!(
-        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} {long}/s\nshots       {}\nmemory      {:.0} MiB\ntime        about {:.1} s on {} threads, the search for the best included\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
+        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} {long}/s\nshots       {} in the search, {} in each window about a best\nmemory      {:.0} MiB\ntime        about {:.1} s on {} threads, the search for the best included\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
         deg(plan.pitch),
         deg(plan.polar),
         plan.backspin.low / REV_RAD,
         plan.backspin.high / REV_RAD,
         plan.backspin.count,
         plan.speeds_per_line,
-        plan.nominal_speed.low / foot,
-        plan.nominal_speed.high / foot,
+        plan.nominal.speed.low / foot,
+        plan.nominal.speed.high / foot,
         plan.shots,
+        profile.grid.points(),
         plan.memory_bytes as f64 / f64::from(1 << 20),
         seconds,
         rayon::current_num_threads(),
@@ -154,11 +157,12 @@ fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
             speed_m_s: least + part(0.323_447_311) * (most - least),
             pitch_rad,
             polar_rad,
-            backspin_rad_s: plan.backspin.value(i as usize % plan.backspin.count),
+            backspin_rad_s: plan.backspin.value(i as usize % plan.backspin.count, 0.5),
         };
         starts.push(profile.release(&nominal).state());
     }
     std::hint::black_box(simulator.verdicts(&starts, &mut Room::default()));
     let per_shot = began.elapsed().as_secs_f64() / f64::from(SHOTS);
-    per_shot * (plan.shots + SEARCH_SHOTS) as f64 / rayon::current_num_threads() as f64
+    per_shot * (plan.shots + WINDOWS * profile.grid.points() + SEARCH_SHOTS) as f64
+        / rayon::current_num_threads() as f64
 }

@@ -19,12 +19,21 @@ use serde::Serialize;
 
 /// Standard deviations by which pitch and backspin are widened beyond the nominal values.
 pub const MARGIN_SIGMAS: f64 = 4.5;
+/// The same for all axes of a window, where the mass beyond, 3e-5 on each side for a nominal shot at an
+/// end and far less for the others, does not matter.
+const WINDOW_MARGIN_SIGMAS: f64 = 4.0;
 /// Least widening of the backspin, rad/s.
 const LEAST_SPIN_MARGIN_RAD_S: f64 = 0.3;
 /// Largest table that is built, in bytes.
 pub const LARGEST_TABLE_BYTES: f64 = 2.0 * (1u64 << 30) as f64;
 /// Most nominal speeds that are considered.
 pub const MOST_NOMINAL_SPEEDS: usize = 400;
+/// A window's nominal values reach this many standard deviations from its centre.
+const WINDOW_SIGMAS: f64 = 1.0;
+/// Least reach of a window's nominal values: speed (m/s), angles (rad), backspin (rad/s).
+const LEAST_WINDOW: [f64; 3] = [0.02, 0.005, 3.0];
+/// Nominal values of a window along speed, pitch angle and polar angle, and along backspin.
+const WINDOW_STATIONS: (usize, usize) = (31, 13);
 
 /// Evenly spaced values of one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -33,7 +42,7 @@ pub struct Axis {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// Number of cells; values are the cells' centres.
+    /// Number of cells.
     pub count: usize,
 }
 
@@ -44,34 +53,97 @@ impl Axis {
         (self.high - self.low) / self.count as f64
     }
 
-    /// Centre of cell `i`.
+    /// The value in cell `i`, `shift` (0 to 1) of a cell from its lower end.
     #[must_use]
-    pub fn value(&self, i: usize) -> f64 {
-        self.low + (i as f64 + 0.5) * self.step()
+    pub fn value(&self, i: usize, shift: f64) -> f64 {
+        self.low + (i as f64 + shift) * self.step()
     }
 
-    /// The centres of all cells.
-    pub fn values(&self) -> impl Iterator<Item = f64> + use<> {
+    /// A value in each cell, `shift` (0 to 1) of a cell from its lower end.
+    pub fn values(&self, shift: f64) -> impl Iterator<Item = f64> + Clone + use<> {
         let axis = *self;
-        (0..axis.count).map(move |i| axis.value(i))
+        (0..axis.count).map(move |i| axis.value(i, shift))
     }
 }
 
-/// What will be simulated from one place.
+/// Evenly spaced nominal values, both ends included.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Stations {
+    /// The first.
+    pub low: f64,
+    /// The last.
+    pub high: f64,
+    /// How many; one where the ends are the same.
+    pub count: usize,
+}
+
+impl Stations {
+    fn new(low: f64, high: f64, count: usize) -> Self {
+        let count = if low < high { count.max(2) } else { 1 };
+        Self { low, high, count }
+    }
+
+    /// All values.
+    pub fn values(&self) -> impl Iterator<Item = f64> + Clone + use<> {
+        let Self { low, high, count } = *self;
+        let step = (high - low) / count.saturating_sub(1).max(1) as f64;
+        (0..count).map(move |i| low + i as f64 * step)
+    }
+}
+
+/// The nominal shots whose P a table gives.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Nominals {
+    /// Speeds, m/s.
+    pub speed: Stations,
+    /// Pitch angles, rad.
+    pub pitch: Stations,
+    /// Polar angles, rad.
+    pub polar: Stations,
+    /// Backspins, rad/s.
+    pub backspin: Stations,
+}
+
+impl Nominals {
+    /// Does a nominal shot lie at an end of an axis beyond which the `next` window would reach?
+    #[must_use]
+    pub fn is_at_edge(&self, nominal: &Nominal, next: &Self) -> bool {
+        let at_edge = |x: f64, here: Stations, next: Stations| {
+            let slack = 1e-6 * (here.high - here.low);
+            let beyond = 0.25 * (here.high - here.low);
+            (x <= here.low + slack && next.low < here.low - beyond)
+                || (x >= here.high - slack && next.high > here.high + beyond)
+        };
+        at_edge(nominal.speed_m_s, self.speed, next.speed)
+            || at_edge(nominal.pitch_rad, self.pitch, next.pitch)
+            || at_edge(nominal.polar_rad, self.polar, next.polar)
+            || at_edge(nominal.backspin_rad_s, self.backspin, next.backspin)
+    }
+}
+
+/// One table of shots: what will be simulated from a place, and for which nominal shots.
+///
+/// [`Plan::new`] covers everything the shooter may intend, coarsely, to find where the good shots are;
+/// [`Plan::around`] covers what the errors can lead to from the nominal shots about one of them, finely.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Plan {
     /// The releases that can go in.
     pub bracket: Bracket,
     /// Table axis of the pitch angle, rad.
     pub pitch: Axis,
-    /// Table axis of the polar angle, rad.
+    /// Table axis of the polar angle, rad. Where `mirrored`, those on one side.
     pub polar: Axis,
     /// Table axis of the backspin, rad/s.
     pub backspin: Axis,
     /// Points on each line of speeds.
     pub speeds_per_line: usize,
-    /// Nominal speeds, m/s.
-    pub nominal_speed: Axis,
+    /// Least and greatest speed of the lines, m/s; each line's own bracket may be narrower.
+    pub speed_m_s: (f64, f64),
+    /// Straight in front of the hoop a shot and its mirror image have the same end, so one side is
+    /// simulated for both.
+    pub mirrored: bool,
+    /// The nominal shots.
+    pub nominal: Nominals,
     /// Shots in the table.
     pub shots: u64,
     /// Peak memory of the table, bytes.
@@ -101,23 +173,166 @@ pub enum PlanError {
 }
 
 /// Bytes that the table and its products need at their peak.
-fn memory_bytes(grid: &Grid, nominal_speeds: usize) -> f64 {
-    let lines = grid.pitch as f64 * grid.polar as f64 * grid.backspin as f64;
-    2.0 * 8.0 * lines * nominal_speeds as f64
+fn memory_bytes(grid: &Grid, nominal: &Nominals) -> f64 {
+    let inner = nominal.backspin.count as f64 * nominal.speed.count as f64;
+    let sums = grid.pitch as f64 * grid.polar as f64;
+    let by_polar = grid.pitch as f64 * nominal.polar.count as f64;
+    let values = nominal.pitch.count as f64 * nominal.polar.count as f64;
+    8.0 * inner * (sums + by_polar).max(by_polar + values)
 }
 
 impl Plan {
-    /// Plans the table for a profile's place and shooter.
+    /// Plans the table of the search for a profile's place and shooter.
     ///
     /// # Errors
     /// When the table would be too large, or no release reaches the hoop.
     pub fn new(profile: &Profile) -> Result<Self, PlanError> {
         let bracket = Bracket::new(profile).ok_or(PlanError::OutOfReach)?;
-        let grid = profile.grid;
+        let grid = profile.grid.of_search();
         let errors = &profile.shooter.errors;
         let search = &profile.search;
-        let nominal_speed = nominal_speeds(profile, &bracket).ok_or(PlanError::OutOfReach)?;
-        let memory = memory_bytes(&grid, nominal_speed.count);
+        let speed = nominal_speeds(profile, &bracket).ok_or(PlanError::OutOfReach)?;
+        let pitch_margin = MARGIN_SIGMAS * errors.c20_rad;
+        let top_spin = profile.shooter.max_backspin_rad_s;
+        let spin_margin = MARGIN_SIGMAS * errors.backspin_rad_s(top_spin).max(errors.c40_rad_s);
+        // Without spin and its error the axis would have no width.
+        let spin_margin = spin_margin.max(LEAST_SPIN_MARGIN_RAD_S);
+        let right_angle = 0.5 * std::f64::consts::PI;
+        let mirrored = profile.place.angle_rad == 0.0;
+        let polar = if mirrored {
+            (0.0, bracket.polar_rad.1.max(-bracket.polar_rad.0))
+        } else {
+            bracket.polar_rad
+        };
+        let nominal = Nominals {
+            speed,
+            pitch: Stations::new(search.pitch_min_rad, search.pitch_max_rad, grid.pitch),
+            polar: Stations::new(polar.0, polar.1, grid.polar),
+            backspin: Stations::new(0.0, top_spin, grid.backspin),
+        };
+        Self {
+            pitch: Axis {
+                low: (search.pitch_min_rad - pitch_margin).max(-right_angle),
+                high: (search.pitch_max_rad + pitch_margin).min(right_angle),
+                count: grid.pitch,
+            },
+            polar: Axis {
+                low: polar.0,
+                high: polar.1,
+                count: grid.polar,
+            },
+            backspin: Axis {
+                low: -spin_margin,
+                high: top_spin + spin_margin,
+                count: grid.backspin,
+            },
+            speeds_per_line: grid.speed,
+            speed_m_s: (0.0, bracket.speed_max_m_s),
+            mirrored,
+            nominal,
+            bracket,
+            shots: 0,
+            memory_bytes: 0,
+        }
+        .counted(&grid)
+    }
+
+    /// Plans a window about a nominal shot: all that the errors can lead to from nominal shots within
+    /// a standard deviation of it, on the points of the profile's grid.
+    ///
+    /// # Errors
+    /// When the table would be too large.
+    pub fn around(&self, profile: &Profile, centre: &Nominal) -> Result<Self, PlanError> {
+        let errors = &profile.shooter.errors;
+        let search = &profile.search;
+        let grid = profile.grid;
+        let (most, most_spins) = WINDOW_STATIONS;
+        let window = |centre: f64, sigma: f64, least: f64, (low, high): (f64, f64), count| {
+            let reach = (WINDOW_SIGMAS * sigma).max(least);
+            let nominal = Stations::new(
+                (centre - reach).clamp(low, high),
+                (centre + reach).clamp(low, high),
+                count,
+            );
+            let margin = WINDOW_MARGIN_SIGMAS * sigma;
+            (nominal, (nominal.low - margin, nominal.high + margin))
+        };
+        let [least_speed, least_angle, least_spin] = LEAST_WINDOW;
+        let (speed, speed_m_s) = window(
+            centre.speed_m_s,
+            errors.speed_m_s(centre.speed_m_s),
+            least_speed,
+            (0.1, self.bracket.speed_max_m_s),
+            most,
+        );
+        let (pitch, pitch_rad) = window(
+            centre.pitch_rad,
+            errors.c20_rad,
+            least_angle,
+            (search.pitch_min_rad, search.pitch_max_rad),
+            most,
+        );
+        let (mut polar, mut polar_rad) = window(
+            centre.polar_rad,
+            errors.c30_rad,
+            least_angle,
+            self.bracket.polar_rad,
+            most,
+        );
+        let mirrored = self.mirrored && polar_rad.0 < 0.0 && polar_rad.1 > 0.0;
+        if mirrored {
+            polar = Stations::new(0.0, polar.high.max(-polar.low), most);
+            polar_rad = (0.0, polar_rad.1.max(-polar_rad.0));
+        }
+        let (backspin, spin_rad_s) = window(
+            centre.backspin_rad_s,
+            errors.backspin_rad_s(centre.backspin_rad_s),
+            least_spin,
+            (0.0, profile.shooter.max_backspin_rad_s),
+            most_spins,
+        );
+        let axis = |(low, high): (f64, f64), all: (f64, f64), count, least: f64| {
+            let (low, high) = (low.max(all.0), high.min(all.1));
+            let widen = (least - 0.5 * (high - low)).max(0.0);
+            Axis {
+                low: low - widen,
+                high: high + widen,
+                count,
+            }
+        };
+        Self {
+            pitch: axis(
+                pitch_rad,
+                (self.pitch.low, self.pitch.high),
+                grid.pitch,
+                0.0,
+            ),
+            polar: axis(polar_rad, self.bracket.polar_rad, grid.polar, 0.0),
+            backspin: axis(
+                spin_rad_s,
+                (f64::NEG_INFINITY, f64::INFINITY),
+                grid.backspin,
+                LEAST_SPIN_MARGIN_RAD_S,
+            ),
+            speeds_per_line: grid.speed,
+            speed_m_s,
+            mirrored,
+            nominal: Nominals {
+                speed,
+                pitch,
+                polar,
+                backspin,
+            },
+            bracket: self.bracket.clone(),
+            shots: 0,
+            memory_bytes: 0,
+        }
+        .counted(&grid)
+    }
+
+    /// With the numbers of shots and bytes, if they are not too large.
+    fn counted(self, grid: &Grid) -> Result<Self, PlanError> {
+        let memory = memory_bytes(grid, &self.nominal);
         let points =
             grid.speed as f64 * grid.pitch as f64 * grid.polar as f64 * grid.backspin as f64;
         if !(memory <= LARGEST_TABLE_BYTES && points < 1e12) {
@@ -128,35 +343,10 @@ impl Plan {
                 most_gib: LARGEST_TABLE_BYTES / gib,
             });
         }
-        let pitch_margin = MARGIN_SIGMAS * errors.c20_rad;
-        let top_spin = profile.shooter.max_backspin_rad_s;
-        let spin_margin = MARGIN_SIGMAS * errors.backspin_rad_s(top_spin).max(errors.c40_rad_s);
-        // Without spin and its error the axis would have no width.
-        let spin_margin = spin_margin.max(LEAST_SPIN_MARGIN_RAD_S);
-        let pitch = Axis {
-            low: (search.pitch_min_rad - pitch_margin).max(-0.5 * std::f64::consts::PI),
-            high: (search.pitch_max_rad + pitch_margin).min(0.5 * std::f64::consts::PI),
-            count: grid.pitch,
-        };
-        let polar = Axis {
-            low: bracket.polar_rad.0,
-            high: bracket.polar_rad.1,
-            count: grid.polar,
-        };
-        let backspin = Axis {
-            low: -spin_margin,
-            high: top_spin + spin_margin,
-            count: grid.backspin,
-        };
         Ok(Self {
-            bracket,
-            pitch,
-            polar,
-            backspin,
-            speeds_per_line: grid.speed,
-            nominal_speed,
             shots: points as u64,
             memory_bytes: memory as u64,
+            ..self
         })
     }
 
@@ -184,7 +374,7 @@ impl Plan {
 
 /// Nominal speeds: every speed of the bracket within the nominal pitch angles, about half a standard
 /// deviation apart.
-fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Axis> {
+fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Stations> {
     let search = &profile.search;
     let polar = 0.5 * (bracket.polar_rad.0 + bracket.polar_rad.1);
     let mut low = f64::INFINITY;
@@ -205,11 +395,11 @@ fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Axis> {
     let sigma = profile.shooter.errors.speed_m_s(low);
     let step = (0.5 * sigma).clamp(0.01, 0.06);
     let count = ((high - low) / step).ceil() as usize;
-    Some(Axis {
+    Some(Stations::new(
         low,
         high,
-        count: count.clamp(10, MOST_NOMINAL_SPEEDS),
-    })
+        count.clamp(10, MOST_NOMINAL_SPEEDS),
+    ))
 }
 
 /// A check of the bracket: shots outside it that went in nevertheless.
@@ -233,7 +423,7 @@ impl Plan {
         let (polar_low, polar_high) = self.bracket.polar_rad;
         let room = 20.0 * crate::units::DEGREE_RAD;
         let speeds = (
-            0.5 * self.nominal_speed.low,
+            0.5 * self.nominal.speed.low,
             1.3 * self.bracket.speed_max_m_s,
         );
         let (outside, made_outside) = (0..shots.div_ceil(BLOCK))

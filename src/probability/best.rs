@@ -1,13 +1,17 @@
 //! The best direct and the best bank shot from one place (Eq. 26), refined off the grid.
 //!
 //! A nominal shot is *bank* when its error-free flight touches the board first, else *direct*. Of
-//! each kind the table gives a few starts far apart; from each a pattern search climbs on P itself,
-//! integrated with the same Sobol points everywhere (common random numbers). P of the winner is
-//! computed afresh with independent scrambles, so it is not the largest of many noisy values.
+//! each kind a coarse table of everything the shooter may intend gives a few starts far apart; from
+//! each a pattern search climbs on P itself, integrated with the same Sobol points everywhere (common
+//! random numbers). About the highest top a finer table, a window, gives P of all nominal shots to
+//! about 0.001; while its best lies at the window's edge the window moves on. A parabola along each axis
+//! leaves its grid. P of the winner is computed afresh with independent scrambles, so it is not the
+//! largest of many noisy values.
 
+use super::Progress;
 use super::estimate::{Estimate, Sampler};
+use super::sobol::Key;
 use super::table::{Probabilities, Table};
-use super::{Progress, sobol};
 use crate::dynamics::{Outcome, Simulator, Touched};
 use crate::physics::PhysicsError;
 use crate::plan::{Plan, PlanError};
@@ -19,15 +23,22 @@ use serde::Serialize;
 const STARTS: usize = 3;
 /// Distance in pitch between starts, in nominal pitch angles of the table.
 const START_GAP: usize = 3;
-/// Sobol points of the climb's objective.
-const CLIMB_POINTS: u32 = 8192;
-/// Times the pattern's steps are halved.
-const HALVINGS: u32 = 3;
 /// Moves tried at most from one start.
 const MOST_MOVES: u32 = 200;
-/// First steps of the pattern: speed past the parabola through the hoop's centre (m/s), pitch (rad),
+
+/// Sobol points of the climb's objective.
+const CLIMB_POINTS: u32 = 2048;
+/// Sobol points by which the tops of the climbs are compared.
+const COMPARE_POINTS: u32 = 16384;
+/// First steps of the climb: speed past the parabola through the hoop's centre (m/s), pitch (rad),
 /// polar angle (rad), backspin (rad/s).
 const FIRST_STEPS: [f64; 4] = [0.06, 0.03, 0.01, 3.0];
+/// Times the steps are halved.
+const HALVINGS: u32 = 2;
+/// Windows that follow each other at most.
+const MOST_WINDOWS: u32 = 4;
+/// Part of a window's half width over which the parabola about its best is taken.
+const PARABOLA: f64 = 0.3;
 
 /// Which of the two kinds a nominal shot is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -66,8 +77,10 @@ pub struct BestShot {
     pub nominal: Nominal,
     /// Its probability.
     pub estimate: Estimate,
-    /// What the table said of its best nominal of this kind, before the climb.
+    /// The largest P of this kind in the table of the window about the best.
     pub table_probability: f64,
+    /// The plan of that table.
+    pub window: Plan,
     /// The error-free shot.
     pub outcome: Outcome,
     /// Where the error-free path, undisturbed, would pass the plane of the hoop: past the hoop's
@@ -116,18 +129,15 @@ pub enum BestError {
 pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestError> {
     let plan = Plan::new(profile)?;
     let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)?;
-    let table = Table::build(profile, &plan, &simulator, progress);
-    let probabilities = table.probabilities(profile);
     let search = Search {
         profile,
         plan: &plan,
         simulator: &simulator,
         progress,
     };
-    let tops = search.tops(&probabilities);
-    drop(probabilities);
-    let direct = search.best(ShotKind::Direct, &tops[0]);
-    let bank = search.best(ShotKind::Bank, &tops[1]);
+    let tops = search.tops(&search.table(&plan));
+    let direct = search.best(ShotKind::Direct, &tops[0])?;
+    let bank = search.best(ShotKind::Bank, &tops[1])?;
     Ok(Best { plan, direct, bank })
 }
 
@@ -176,41 +186,101 @@ impl Search<'_> {
         [0, 1].map(|kind| rows.iter().map(|row| row[kind]).collect())
     }
 
-    fn best(&self, kind: ShotKind, tops: &[Option<Top>]) -> Result<BestShot, NoShot> {
-        let starts = starts(tops);
-        let Some(&(table_probability, _)) = starts.first() else {
-            return Err(NoShot { kind });
-        };
+    fn table(&self, plan: &Plan) -> Probabilities {
+        Table::build(self.profile, plan, self.simulator, self.progress).probabilities(self.profile)
+    }
+
+    fn best(
+        &self,
+        kind: ShotKind,
+        tops: &[Option<Top>],
+    ) -> Result<Result<BestShot, NoShot>, PlanError> {
         let sampler = Sampler::new(self.profile, self.simulator);
-        let mut winner: Option<(u64, Nominal)> = None;
-        for (_, start) in starts {
-            let climbed = self.climb(kind, &sampler, start);
-            if winner.as_ref().is_none_or(|(most, _)| climbed.0 > *most) {
-                winner = Some(climbed);
-            }
-        }
-        let Some((_, nominal)) = winner.filter(|(made, _)| *made > 0) else {
-            return Err(NoShot { kind });
+        let scramble = sampler.scramble(Key {
+            seed: self.profile.search.seed,
+            // Of its own, so that the final estimate is independent of the climb.
+            replicate: u64::MAX,
+        });
+        let made = |points: u32, nominal: &Nominal| {
+            let counts = sampler.count(nominal, &scramble, (0, points));
+            counts.made()
         };
+        let hill = starts(tops)
+            .into_iter()
+            .map(|(_, start)| {
+                let top = self.climb(kind, start, |nominal| made(CLIMB_POINTS, nominal));
+                (made(COMPARE_POINTS, &top), top)
+            })
+            .reduce(|best, next| if next.0 > best.0 { next } else { best })
+            .filter(|(made, _)| *made > 0);
+        let Some((_, mut nominal)) = hill else {
+            return Ok(Err(NoShot { kind }));
+        };
+        let mut window = self.plan.around(self.profile, &nominal)?;
+        let mut table_probability = 0.0;
+        for _ in 0..MOST_WINDOWS {
+            let table = self.table(&window);
+            let tops = self.tops(&table);
+            let Some(&(p, top)) = starts(&tops[kind as usize]).first() else {
+                break;
+            };
+            table_probability = p;
+            nominal = self.off_the_grid(kind, &table, &top);
+            let next = self.plan.around(self.profile, &nominal)?;
+            if !window.nominal.is_at_edge(&top, &next.nominal) {
+                break;
+            }
+            window = next;
+        }
         let search = &self.profile.search;
         let estimate =
             sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
-        Ok(BestShot {
+        Ok(Ok(BestShot {
             nominal,
             estimate,
             table_probability,
+            window,
             outcome: self.simulator.shoot(&self.profile.release(&nominal)),
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
             at_limits: self.limits(&nominal),
-        })
+        }))
     }
 
-    /// Climbs from a start by a pattern search; gives the made shots of the top and the top.
-    fn climb(&self, kind: ShotKind, sampler: &Sampler<'_>, start: Nominal) -> (u64, Nominal) {
-        // Scrambles of their own, so that the final estimate is independent of the climb.
-        let key = sobol::key(self.profile.search.seed, u64::MAX);
-        let value = |nominal: &Nominal| sampler.count(nominal, key, 0, CLIMB_POINTS).made();
+    /// The top of the parabola through a table's best and two others, along each axis; the table's best
+    /// itself where the parabola has no top between them, or leads to the other kind.
+    fn off_the_grid(&self, kind: ShotKind, table: &Probabilities, top: &Nominal) -> Nominal {
+        let mut nominal = *top;
+        let index = table.index_of(top);
+        let axes = table.counts();
+        for axis in 0..axes.len() {
+            let reach = ((PARABOLA * 0.5 * axes[axis] as f64) as usize).max(1);
+            if index[axis] < reach || index[axis] + reach >= axes[axis] {
+                continue;
+            }
+            let at = |i: usize| {
+                let mut index = index;
+                index[axis] = i;
+                table.at(index)
+            };
+            let [low, middle, high] =
+                [index[axis] - reach, index[axis], index[axis] + reach].map(at);
+            let bend = low.0 - 2.0 * middle.0 + high.0;
+            if bend < 0.0 {
+                let part = (0.5 * (low.0 - high.0) / bend).clamp(-1.0, 1.0);
+                let reach = 0.5 * (axis_value(&high.1, axis) - axis_value(&low.1, axis));
+                *axis_value_mut(&mut nominal, axis) += part * reach;
+            }
+        }
+        if ShotKind::of(self.profile, self.simulator, &nominal) == kind {
+            nominal
+        } else {
+            *top
+        }
+    }
+
+    /// Climbs from a start by a pattern search on the number of shots made; gives the top.
+    fn climb(&self, kind: ShotKind, start: Nominal, value: impl Fn(&Nominal) -> u64) -> Nominal {
         let mut steps = FIRST_STEPS;
         let mut best = (value(&start), start);
         let mut moves = 0;
@@ -241,7 +311,7 @@ impl Search<'_> {
             self.progress.advance(1);
         }
         self.progress.end();
-        best
+        best.1
     }
 
     /// The nominal shot moved along one axis and kept within the limits. A move in pitch takes the
@@ -295,6 +365,21 @@ impl Search<'_> {
         .into_iter()
         .filter_map(|(name, at)| at.then_some(name))
         .collect()
+    }
+}
+
+/// A nominal value by the order of a table's axes: pitch, polar angle, backspin, speed.
+fn axis_value(nominal: &Nominal, axis: usize) -> f64 {
+    let mut nominal = *nominal;
+    *axis_value_mut(&mut nominal, axis)
+}
+
+fn axis_value_mut(nominal: &mut Nominal, axis: usize) -> &mut f64 {
+    match axis {
+        0 => &mut nominal.pitch_rad,
+        1 => &mut nominal.polar_rad,
+        2 => &mut nominal.backspin_rad_s,
+        _ => &mut nominal.speed_m_s,
     }
 }
 

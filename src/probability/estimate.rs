@@ -1,10 +1,12 @@
 //! The probability of one nominal shot, by scrambled Sobol points drawn from the normal.
 //!
 //! [`REPLICATES`] independent scrambles of the same number of points each give one mean; their mean
-//! is P and their scatter its standard error (Owen 1997). Made shots are counted as whole numbers,
-//! so the order in which blocks finish changes nothing.
+//! is P and their scatter its standard error (Owen 1997). Points are doubled until the error is met.
+//! An error that more than halves with that is a lucky scatter: no rule for a made or missed shot
+//! gains that much, so half the last error is stated instead. Made shots are counted as whole
+//! numbers, so the order in which blocks finish changes nothing.
 
-use super::sobol::{self, Sobol};
+use super::sobol::{Key, Scramble, Sobol};
 use super::{Progress, normal};
 use crate::dynamics::{Ending, Kind, Release, Room, Simulator, State};
 use crate::profile::{Nominal, Profile};
@@ -12,13 +14,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 /// Independent scrambles.
-pub const REPLICATES: u64 = 16;
+pub const REPLICATES: u64 = 32;
 /// Points of the first round of each replicate.
-const FIRST_POINTS: u32 = 1024;
-/// Points of one parallel block.
-const BLOCK: u32 = 2048;
+const FIRST_POINTS: u32 = 512;
+/// Least and most points of one parallel block: small enough to keep every thread busy, large enough for
+/// the lanes.
+const BLOCK: (u32, u32) = (256, 2048);
 /// Points of one replicate at most: the target is given up there.
-const MOST_POINTS: u32 = 1 << 22;
+const MOST_POINTS: u32 = 1 << 21;
 
 /// P of one nominal shot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -89,13 +92,19 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Release number `index` of the scramble `key` about a nominal shot.
+    /// A scramble of the points that releases are drawn by.
     #[must_use]
-    pub fn release(&self, nominal: &Nominal, index: u32, key: u64) -> Release {
+    pub fn scramble(&self, key: Key) -> Scramble {
+        self.sobol.scrambled(key)
+    }
+
+    /// Release number `index` of a scramble about a nominal shot.
+    #[must_use]
+    pub fn release(&self, nominal: &Nominal, index: u32, scramble: &Scramble) -> Release {
         let errors = &self.profile.shooter.errors;
         let draw = |dimension, sigma: f64| {
             if sigma > 0.0 {
-                sigma * normal::quantile(self.sobol.point(index, dimension, key))
+                sigma * normal::quantile(scramble.point(index, dimension))
             } else {
                 0.0
             }
@@ -113,12 +122,12 @@ impl<'a> Sampler<'a> {
     fn block(
         &self,
         nominal: &Nominal,
-        key: u64,
+        scramble: &Scramble,
         (from, to): (u32, u32),
         room: &mut Room,
     ) -> Counts {
         let starts: Vec<State> = (from..to)
-            .map(|index| self.release(nominal, index, key).state())
+            .map(|index| self.release(nominal, index, scramble).state())
             .collect();
         let mut counts = Counts::default();
         for verdict in self.simulator.verdicts(&starts, room) {
@@ -136,12 +145,18 @@ impl<'a> Sampler<'a> {
     }
 
     /// Counts of the points `from..to` of one scramble, on the current rayon pool.
-    pub(super) fn count(&self, nominal: &Nominal, key: u64, from: u32, to: u32) -> Counts {
+    pub(super) fn count(
+        &self,
+        nominal: &Nominal,
+        scramble: &Scramble,
+        (from, to): (u32, u32),
+    ) -> Counts {
+        let block = ((to - from) / 8).clamp(BLOCK.0, BLOCK.1);
         (from..to)
             .into_par_iter()
-            .step_by(BLOCK as usize)
+            .step_by(block as usize)
             .map_init(Room::default, |room, start| {
-                self.block(nominal, key, (start, (start + BLOCK).min(to)), room)
+                self.block(nominal, scramble, (start, (start + block).min(to)), room)
             })
             .reduce(Counts::default, Counts::plus)
     }
@@ -156,18 +171,19 @@ impl<'a> Sampler<'a> {
         seed: u64,
         progress: &dyn Progress,
     ) -> Estimate {
-        let keys: Vec<u64> = (0..REPLICATES)
-            .map(|replicate| sobol::key(seed, replicate))
+        let scrambles: Vec<Scramble> = (0..REPLICATES)
+            .map(|replicate| self.scramble(Key { seed, replicate }))
             .collect();
-        let mut counts = vec![Counts::default(); keys.len()];
+        let mut counts = vec![Counts::default(); scrambles.len()];
         let mut points = 0;
+        let mut last_error = 0.0;
         loop {
             let more = if points == 0 { FIRST_POINTS } else { points };
             progress.begin("integrating", u64::from(more) * REPLICATES);
-            let new: Vec<Counts> = keys
+            let new: Vec<Counts> = scrambles
                 .par_iter()
-                .map(|&key| {
-                    let counts = self.count(nominal, key, points, points + more);
+                .map(|scramble| {
+                    let counts = self.count(nominal, scramble, (points, points + more));
                     progress.advance(u64::from(more));
                     counts
                 })
@@ -177,7 +193,9 @@ impl<'a> Sampler<'a> {
                 *sum = sum.plus(new);
             }
             points += more;
-            let estimate = summarise(&counts, points);
+            let mut estimate = summarise(&counts, points);
+            estimate.standard_error = estimate.standard_error.max(0.5 * last_error);
+            last_error = estimate.standard_error;
             if estimate.standard_error <= target || points >= MOST_POINTS {
                 return estimate;
             }

@@ -92,7 +92,8 @@ pub struct Place {
     pub angle_rad: f64,
 }
 
-/// Points of the table along each axis.
+/// Points along each axis of the table about a best shot; the table of the search, which only has to
+/// find where to look, has two thirds of them along speed, pitch and polar angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Grid {
     /// Speeds on each line.
@@ -105,13 +106,33 @@ pub struct Grid {
     pub backspin: usize,
 }
 
+impl Grid {
+    /// Points in all.
+    #[must_use]
+    pub fn points(self) -> u64 {
+        self.speed as u64 * self.pitch as u64 * self.polar as u64 * self.backspin as u64
+    }
+
+    /// Points of the search's table.
+    #[must_use]
+    pub fn of_search(self) -> Self {
+        let fewer = |points: usize| (2 * points).div_ceil(3).max(1);
+        Self {
+            speed: fewer(self.speed),
+            pitch: fewer(self.pitch),
+            polar: fewer(self.polar),
+            backspin: self.backspin,
+        }
+    }
+}
+
 impl Default for Grid {
     fn default() -> Self {
         Self {
-            speed: 40,
-            pitch: 40,
-            polar: 40,
-            backspin: 40,
+            speed: 56,
+            pitch: 36,
+            polar: 36,
+            backspin: 12,
         }
     }
 }
