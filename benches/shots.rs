@@ -106,6 +106,7 @@ fn whole(criterion: &mut Criterion) {
         pitch_rad: 53.5 * DEGREE_RAD,
         polar_rad: 0.0,
         backspin_rad_s: 3.0 * REV_RAD,
+        ..Nominal::default()
     };
     let window = plan.around(&profile, &centre).unwrap();
     group.bench_function("table of a window", |bencher| {

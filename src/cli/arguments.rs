@@ -1,5 +1,6 @@
 //! What can be asked of the program.
 
+use super::nominal::NominalOptions;
 use bankshot::units::System;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -16,6 +17,7 @@ Exit codes:
 
 Examples:
   bankshot best configs/free_throw.toml
+  bankshot probability configs/nine_errors.toml
   bankshot plan configs/three_pointer.toml
   bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg'
   bankshot simulate releases.csv --output outcomes.csv";
@@ -43,6 +45,8 @@ pub(crate) enum Command {
     /// Say what `best` would simulate, how long it takes and how much memory it needs, and show that
     /// the bracket loses nothing.
     Plan(PlanOptions),
+    /// Integrate the probability of making one nominal shot, under any of nine errors.
+    Probability(ProbabilityOptions),
     /// Simulate the releases of a CSV file.
     Simulate(SimulateOptions),
     /// Follow one shot and say what happens.
@@ -96,6 +100,89 @@ pub(crate) struct PlanOptions {
     pub(crate) wide_sample: u64,
 }
 
+/// The ways to integrate P.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// Scrambled Sobol points drawn from the normal.
+    Sobol,
+    /// Plain random samples.
+    MonteCarlo,
+    /// Eq. 25 on four grids shifted from line to line (four errors only).
+    Grid,
+    /// Eq. 25 to the letter, on one common grid (four errors only).
+    PaperGrid,
+}
+
+impl Method {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Sobol => "sobol",
+            Self::MonteCarlo => "monte-carlo",
+            Self::Grid => "grid",
+            Self::PaperGrid => "paper-grid",
+        }
+    }
+
+    pub(crate) fn is_grid(self) -> bool {
+        matches!(self, Self::Grid | Self::PaperGrid)
+    }
+}
+
+fn standard_error(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1e-6..=0.5).contains(&value) => Ok(value),
+        _ => Err("must be a number from 0.000001 to 0.5".to_owned()),
+    }
+}
+
+fn sample(text: &str) -> Result<(u64, u64), String> {
+    let parts = text.split_once(':');
+    parts
+        .and_then(|(seed, index)| Some((seed.parse().ok()?, index.parse().ok()?)))
+        .ok_or_else(|| "must be two whole numbers, such as 1:2049".to_owned())
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The shot is the profile's [nominal] table, with the flags before it. The errors are those of
+[shooter.errors]: c10 to c42, and rifle_spin, side_spin, distance, court_angle, height as standard
+deviations; [shooter.correlation] says how they go together.
+
+Examples:
+  bankshot probability configs/free_throw.toml --speed '23.6 ft/s' --pitch '53.5 deg' --backspin '3 rev/s'
+  bankshot probability configs/nine_errors.toml --target 0.0003 --json
+  bankshot probability configs/nine_errors.toml --replay 1:2049")]
+pub(crate) struct ProbabilityOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) nominal: NominalOptions,
+    /// How P is integrated.
+    #[arg(long, value_enum, default_value_t = Method::Sobol)]
+    pub(crate) method: Method,
+    /// Standard error at which to stop [default: the profile's standard_error, else 0.001].
+    #[arg(long, value_name = "P", value_parser = standard_error)]
+    pub(crate) target: Option<f64>,
+    /// Shots at most, 64 or more.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(64..=1_000_000_000_000))]
+    pub(crate) budget: Option<u64>,
+    /// Values along each axis of a grid [default: 20 shifted, 40 to the letter].
+    #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=400))]
+    pub(crate) grid: Option<usize>,
+    /// Seed of the samples [default: the profile's].
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// Traces the shot behind sample number INDEX of a seed instead.
+    #[arg(long, value_name = "SEED:INDEX", value_parser = sample)]
+    pub(crate) replay: Option<(u64, u64)>,
+    /// Units of the answer [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<System>,
+    /// Print one JSON object instead of words.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
 /// The integrators by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum IntegratorName {
@@ -140,18 +227,8 @@ Examples:
 pub(crate) struct TraceOptions {
     /// The shooter's profile (for the place, the height and the physics).
     pub(crate) profile: PathBuf,
-    /// Speed of the release, such as '23.5 ft/s'.
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) speed: String,
-    /// Pitch angle of the release, such as '52 deg'.
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) pitch: String,
-    /// Polar angle of the release [default: towards the hoop's centre].
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) polar: Option<String>,
-    /// Backspin [default: none].
-    #[arg(long, allow_hyphen_values = true)]
-    pub(crate) backspin: Option<String>,
+    #[command(flatten)]
+    pub(crate) nominal: NominalOptions,
     /// Writes the trajectory as CSV; - for standard output (then nothing else is printed there).
     #[arg(long, short, value_name = "T.csv")]
     pub(crate) output: Option<PathBuf>,

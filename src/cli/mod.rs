@@ -3,7 +3,9 @@
 mod arguments;
 mod best;
 mod failure;
+mod nominal;
 mod plan;
+mod probability;
 mod progress;
 mod simulate;
 mod terminal;
@@ -59,6 +61,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Best(options) => best::run(options, arguments.quiet),
         Command::Check(options) => plan::check(options),
         Command::Plan(options) => plan::run(options, arguments.quiet),
+        Command::Probability(options) => probability::run(options, arguments.quiet),
         Command::Simulate(options) => simulate::run(options, arguments.quiet),
         Command::Trace(options) => trace::run(options, arguments.quiet),
         Command::Completions { shell } => {

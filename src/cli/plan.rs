@@ -77,6 +77,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         pitch_rad: 0.5 * (plan.pitch.low + plan.pitch.high),
         polar_rad: profile.place.angle_rad,
         backspin_rad_s: 0.5 * profile.shooter.max_backspin_rad_s,
+        ..Nominal::default()
     };
     let edge = Nominal {
         pitch_rad: profile.search.pitch_min_rad,
@@ -158,6 +159,7 @@ fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
             pitch_rad,
             polar_rad,
             backspin_rad_s: plan.backspin.value(i as usize % plan.backspin.count, 0.5),
+            ..Nominal::default()
         };
         starts.push(profile.release(&nominal).state());
     }

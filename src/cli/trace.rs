@@ -4,10 +4,11 @@ use super::arguments::TraceOptions;
 use super::failure::Failure;
 use super::plan::load;
 use super::terminal::{answer, answer_bytes, tell};
-use bankshot::dynamics::{Ending, EventKind, Kind, Outcome, Simulator, Touched, Trace, Triple};
+use bankshot::dynamics::{
+    Ending, EventKind, Kind, Outcome, Release, Simulator, Touched, Trace, Triple,
+};
 use bankshot::output::{self, files, number};
-use bankshot::profile::{Nominal, Profile};
-use bankshot::units::{self, DEGREE_RAD, Dimension, REV_RAD, System};
+use bankshot::units::{DEGREE_RAD, REV_RAD, System};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -17,7 +18,7 @@ const INTERVAL_S: f64 = 0.005;
 pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
     let profile = load(&options.profile)?;
     let system = options.units.unwrap_or(profile.output.units);
-    let nominal = nominal(options, &profile)?;
+    let nominal = options.nominal.resolve(&profile)?;
     let simulator =
         Simulator::with_integrator(&profile.physics, profile.integrator).map_err(Failure::usage)?;
     let trace = simulator.trace(&profile.release(&nominal), INTERVAL_S);
@@ -40,42 +41,19 @@ pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn nominal(options: &TraceOptions, profile: &Profile) -> Result<Nominal, Failure> {
-    let mut faults = Vec::new();
-    let mut read = |name: &str, text: &str, dimension| {
-        units::parse(text, dimension).unwrap_or_else(|error| {
-            faults.push(format!("--{name}: {error}"));
-            0.0
-        })
-    };
-    let speed_m_s = read("speed", &options.speed, Dimension::Speed);
-    let pitch_rad = read("pitch", &options.pitch, Dimension::Angle);
-    let polar_rad = options
-        .polar
-        .as_ref()
-        .map_or(profile.place.angle_rad, |text| {
-            read("polar", text, Dimension::Angle)
-        });
-    let backspin_rad_s = options
-        .backspin
-        .as_ref()
-        .map_or(0.0, |text| read("backspin", text, Dimension::Spin));
-    if !(0.0..=1000.0).contains(&speed_m_s) {
-        faults.push("--speed: must be from 0 to 1000 m/s".to_owned());
-    }
-    if !(backspin_rad_s.abs() <= 10_000.0) {
-        faults.push("--backspin: must be within 10000 rad/s".to_owned());
-    }
-    if faults.is_empty() {
-        Ok(Nominal {
-            speed_m_s,
-            pitch_rad,
-            polar_rad,
-            backspin_rad_s,
-        })
+/// Traces one release and says what happens.
+pub(crate) fn show(
+    simulator: &Simulator,
+    release: &Release,
+    system: System,
+    as_json: bool,
+) -> Result<u8, Failure> {
+    let trace = simulator.trace(release, INTERVAL_S);
+    answer(&if as_json {
+        format!("{:#}\n", json(&trace, system))
     } else {
-        Err(Failure::usage(faults.join("\n")))
-    }
+        words(&trace, system)
+    })
 }
 
 fn surface(touched: Touched) -> &'static str {

@@ -236,4 +236,7 @@ pub struct Outcome {
     pub apex_m: f64,
     /// Place of the centre at the first touch of the board (x, y, z), m.
     pub board_point_m: Option<(f64, f64, f64)>,
+    /// How far to the right of the hoop's centre, facing the hoop (of a bank shot: the board), the
+    /// undisturbed path (of a bank shot: the path off the board) meets the plane of the hoop, m.
+    pub aside_m: f64,
 }

@@ -85,6 +85,19 @@ impl Summary {
         self.was_inside |= (place.0 * place.0 + place.1 * place.1).sqrt() < self.ring_radius_m;
     }
 
+    /// Where the undisturbed path, or a bank shot's path off the board, meets the plane of the hoop:
+    /// beyond its centre, and aside of it to the right, facing the hoop or the board.
+    fn beyond_and_aside(&self) -> (f64, f64) {
+        let (x, y) = self.aim_m.unwrap_or((0.0, 0.0));
+        match self.first {
+            Some(Touched::Board) => (x, y),
+            _ => (
+                x * self.ahead.0 + y * self.ahead.1,
+                x * self.ahead.1 - y * self.ahead.0,
+            ),
+        }
+    }
+
     fn miss(&self, verdict: &Verdict) -> Kind {
         if verdict.ending == Ending::BehindBoard {
             return Kind::OverBoard;
@@ -92,17 +105,10 @@ impl Summary {
         if self.was_inside {
             return Kind::InAndOut;
         }
-        let Some(first) = self.first else {
+        if self.first.is_none() {
             return Kind::Airball;
-        };
-        let (x, y) = self.aim_m.unwrap_or((0.0, 0.0));
-        let (beyond, aside) = match first {
-            Touched::Board => (x, y),
-            Touched::Ring => (
-                x * self.ahead.0 + y * self.ahead.1,
-                x * self.ahead.1 - y * self.ahead.0,
-            ),
-        };
+        }
+        let (beyond, aside) = self.beyond_and_aside();
         if aside.abs() > beyond.abs() {
             Kind::Wide
         } else if beyond > 0.0 {
@@ -125,6 +131,7 @@ impl Summary {
             entry: self.entry,
             apex_m: self.apex_m,
             board_point_m: self.board_point_m,
+            aside_m: self.beyond_and_aside().1,
         }
     }
 }

@@ -31,7 +31,7 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: System) -> Record 
         ("shots".into(), estimate.shots.into()),
         ("share_swish".into(), number(estimate.shares.swish)),
         ("share_ring".into(), number(estimate.shares.ring)),
-        ("share_board".into(), number(estimate.shares.board)),
+        ("share_board".into(), number(estimate.shares.banked())),
         ("unresolved".into(), estimate.unresolved.into()),
         ("error_free_kind".into(), outcome.kind.name().into()),
         (
@@ -192,7 +192,9 @@ pub fn table(profile: &Profile, best: &Best, units: System) -> String {
             ),
             format!(
                 "{:.2} / {:.2} / {:.2}",
-                shares.swish, shares.ring, shares.board
+                shares.swish,
+                shares.ring,
+                shares.banked()
             ),
             shot.outcome.entry.map_or_else(String::new, |entry| {
                 format!("{:.1}", entry.angle_rad / DEGREE_RAD)

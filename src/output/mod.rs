@@ -3,6 +3,7 @@
 
 pub mod best;
 pub mod files;
+pub mod probability;
 pub mod releases;
 
 use serde_json::Value;

@@ -439,6 +439,7 @@ impl Plan {
                         pitch_rad: between(self.pitch.low, self.pitch.high),
                         polar_rad: between(polar_low - room, polar_high + room),
                         backspin_rad_s: between(self.backspin.low, self.backspin.high),
+                        ..Nominal::default()
                     };
                     let Nominal {
                         speed_m_s,

@@ -7,6 +7,8 @@
 
 pub mod best;
 pub mod estimate;
+pub mod grid;
+pub mod misses;
 pub mod monte_carlo;
 pub mod normal;
 pub mod sobol;

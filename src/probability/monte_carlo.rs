@@ -4,7 +4,9 @@
 //! Each block of samples has a random stream of its own, keyed by (seed, block), so the number of
 //! threads changes nothing.
 
-use crate::dynamics::{Room, Simulator, State};
+use super::Progress;
+use super::estimate::{About, Counts, Estimate, summarise};
+use crate::dynamics::{Release, Room, Simulator, State};
 use crate::profile::{Nominal, Profile};
 use rand::SeedableRng;
 use rand::rngs::ChaCha12Rng;
@@ -14,6 +16,32 @@ use rayon::prelude::*;
 /// Samples of one stream.
 const BLOCK: u64 = 4096;
 
+/// Samples of the pilot from which the number of samples is taken.
+const PILOT: u64 = 4 * BLOCK;
+
+/// P to the standard error `target`, with `budget` samples at most. A pilot says how many it takes; it is
+/// the beginning of the same streams.
+#[must_use]
+pub fn estimate_within(
+    profile: &Profile,
+    simulator: &Simulator,
+    nominal: &Nominal,
+    target: f64,
+    budget: u64,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Estimate {
+    let mut samples = PILOT.min(budget);
+    loop {
+        let found = estimate(profile, simulator, nominal, samples, seed, progress);
+        if found.standard_error <= target || samples >= budget {
+            return found;
+        }
+        let times = (found.standard_error / target).powi(2) * 1.02;
+        samples = ((samples as f64 * times) as u64).clamp(samples + 1, budget);
+    }
+}
+
 /// P and its binomial standard error from `samples` shots.
 #[must_use]
 pub fn estimate(
@@ -22,44 +50,52 @@ pub fn estimate(
     nominal: &Nominal,
     samples: u64,
     seed: u64,
-) -> (f64, f64) {
-    let made: u64 = (0..samples.div_ceil(BLOCK))
+    progress: &dyn Progress,
+) -> Estimate {
+    let about = About::new(profile, nominal);
+    progress.begin("sampling", samples);
+    let counts = (0..samples.div_ceil(BLOCK))
         .into_par_iter()
         .map_init(Room::default, |room, block| {
-            let mut random = ChaCha12Rng::seed_from_u64(seed);
-            random.set_stream(block);
+            let mut random = stream(seed, block);
             let count = BLOCK.min(samples - block * BLOCK);
             let starts: Vec<State> = (0..count)
-                .map(|_| {
-                    profile
-                        .release(&draw(profile, nominal, &mut random))
-                        .state()
-                })
+                .map(|_| draw(&about, &mut random).state())
                 .collect();
-            simulator
-                .verdicts(&starts, room)
-                .iter()
-                .filter(|verdict| verdict.made)
-                .count() as u64
+            let counts = Counts::of(simulator.verdicts(&starts, room));
+            progress.advance(count);
+            counts
         })
-        .sum();
-    let p = made as f64 / samples as f64;
-    (p, (p * (1.0 - p) / samples as f64).sqrt())
+        .reduce(Counts::default, Counts::plus);
+    progress.end();
+    let found = summarise(&[counts], samples);
+    let p = found.probability;
+    Estimate {
+        standard_error: (p * (1.0 - p) / samples as f64).sqrt(),
+        certain: about.is_certain(),
+        ..found
+    }
 }
 
-fn draw(profile: &Profile, nominal: &Nominal, random: &mut ChaCha12Rng) -> Nominal {
-    let errors = &profile.shooter.errors;
-    let mut normal = |mean: f64, sigma: f64| {
-        let z: f64 = StandardNormal.sample(random);
-        mean + sigma * z
-    };
-    Nominal {
-        speed_m_s: normal(nominal.speed_m_s, errors.speed_m_s(nominal.speed_m_s)),
-        pitch_rad: normal(nominal.pitch_rad, errors.c20_rad),
-        polar_rad: normal(nominal.polar_rad, errors.c30_rad),
-        backspin_rad_s: normal(
-            nominal.backspin_rad_s,
-            errors.backspin_rad_s(nominal.backspin_rad_s),
-        ),
+/// Sample number `index` of a seed.
+#[must_use]
+pub fn sample(profile: &Profile, nominal: &Nominal, seed: u64, index: u64) -> Release {
+    let about = About::new(profile, nominal);
+    let mut random = stream(seed, index / BLOCK);
+    for _ in 0..index % BLOCK {
+        let _ = draw(&about, &mut random);
     }
+    draw(&about, &mut random)
+}
+
+fn stream(seed: u64, block: u64) -> ChaCha12Rng {
+    let mut random = ChaCha12Rng::seed_from_u64(seed);
+    random.set_stream(block);
+    random
+}
+
+/// Nine normals for every sample, whether they count or not, so that a sample's errors do not depend on
+/// which others there are.
+fn draw(about: &About, random: &mut ChaCha12Rng) -> Release {
+    about.with_normals(std::array::from_fn(|_| StandardNormal.sample(random)))
 }

@@ -36,6 +36,26 @@ pub struct Table {
     sums: Vec<f64>,
 }
 
+/// Where on their axes the points of a line lie, in parts of a cell.
+pub(super) mod points_of_line {
+    use super::{POLAR_SHIFT, SPEED_SHIFT, SPIN_SHIFT, shift};
+
+    /// The polar angles of a pitch angle.
+    pub(crate) fn polar(pitch: usize) -> f64 {
+        shift([pitch], [POLAR_SHIFT])
+    }
+
+    /// The backspins of a pitch angle and a polar angle.
+    pub(crate) fn spin(pitch: usize, polar: usize) -> f64 {
+        shift([pitch, polar], SPIN_SHIFT)
+    }
+
+    /// The speeds of a line.
+    pub(crate) fn speed(pitch: usize, polar: usize, spin: usize) -> f64 {
+        shift([pitch, polar, spin], SPEED_SHIFT)
+    }
+}
+
 /// The shift of a cell's points, in parts of a cell, 0 to 1.
 fn shift<const N: usize>(cells: [usize; N], per_step: [f64; N]) -> f64 {
     cells
@@ -99,6 +119,7 @@ impl Probabilities {
             pitch_rad: self.pitch_rad[pitch],
             polar_rad: self.polar_rad[polar],
             backspin_rad_s: self.backspin_rad_s[backspin],
+            ..Nominal::default()
         };
         (self.values[index], nominal)
     }
@@ -202,7 +223,7 @@ impl Builder<'_> {
     fn fill(&self, (pitch, polar): (usize, usize), block: &mut [f64], place: &mut Workplace) {
         let plan = self.plan;
         let pitch_rad = plan.pitch.value(pitch, 0.5);
-        let polar_rad = plan.polar.value(polar, shift([pitch], [POLAR_SHIFT]));
+        let polar_rad = plan.polar.value(polar, points_of_line::polar(pitch));
         let Some((least, most)) = plan.bracket.speeds_m_s(pitch_rad, polar_rad) else {
             return;
         };
@@ -219,12 +240,13 @@ impl Builder<'_> {
             pitch_rad,
             polar_rad,
             backspin_rad_s: 0.0,
+            ..Nominal::default()
         }));
         place.starts.clear();
         place.speeds.clear();
-        let spins = plan.backspin.values(shift([pitch, polar], SPIN_SHIFT));
+        let spins = plan.backspin.values(points_of_line::spin(pitch, polar));
         for (spin, spin_rad_s) in spins.clone().enumerate() {
-            for speed in line.values(shift([pitch, polar, spin], SPEED_SHIFT)) {
+            for speed in line.values(points_of_line::speed(pitch, polar, spin)) {
                 place.speeds.push(speed);
                 place.starts.push(aim.state(speed, spin_rad_s));
             }
@@ -259,7 +281,7 @@ impl Builder<'_> {
 
 /// Weight of a point of an axis for a nominal value with its standard deviation: the normal density
 /// times the cell's width.
-fn weight(x: f64, (nominal, sigma): (f64, f64), step: f64) -> f64 {
+pub(super) fn weight(x: f64, (nominal, sigma): (f64, f64), step: f64) -> f64 {
     let sigma = sigma.max(LEAST_SIGMA_CELLS * step);
     if (x - nominal).abs() <= REACH_SIGMAS * sigma {
         normal::density(x, nominal, sigma) * step
@@ -294,7 +316,7 @@ fn weights(axis: &Axis, shift: f64, nominals: &[f64], sigma: f64) -> Matrix {
 
 /// The matrix of the polar angles of one pitch angle; a mirrored axis counts for both sides.
 fn polar_weights(plan: &Plan, pitch: usize, nominals: &[f64], errors: &Errors) -> Matrix {
-    let (axis, shift) = (&plan.polar, shift([pitch], [POLAR_SHIFT]));
+    let (axis, shift) = (&plan.polar, points_of_line::polar(pitch));
     let mut matrix = weights(axis, shift, nominals, errors.c30_rad);
     if plan.mirrored {
         let opposite: Vec<f64> = nominals.iter().map(|polar| -polar).collect();

@@ -53,6 +53,15 @@ impl<'t, 'i> Keys<'t, 'i> {
         }
     }
 
+    /// A fault of the whole table.
+    pub(super) fn here(&self, message: impl Into<String>) -> Fault {
+        Fault {
+            span: self.span.clone(),
+            key: self.path.clone(),
+            message: message.into(),
+        }
+    }
+
     /// The table under `key`; an empty one where it is absent.
     pub(super) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Keys<'t, 'i> {
         let found = self.get(key);

@@ -3,13 +3,15 @@
 //! `read` turns TOML into a [`Profile`] or into every fault it has, each with its line. The rest of
 //! the crate accepts only the checked form.
 
+mod errors;
 mod fault;
 mod keys;
 mod read;
 mod world;
 
+pub use errors::{Correlation, ERROR_NAMES, ERRORS, Errors};
 pub use fault::{Fault, ProfileError};
-pub use read::{LARGEST_PROFILE_BYTES, parse, parse_physics};
+pub use read::{LARGEST_PROFILE_BYTES, intended, parse, parse_physics};
 
 use crate::dynamics::{Integrator, Release};
 use crate::physics::Physics;
@@ -23,6 +25,8 @@ pub struct Profile {
     pub shooter: Shooter,
     /// From where.
     pub place: Place,
+    /// The nominal shot, or parts of it.
+    pub nominal: Intent,
     /// The world.
     pub physics: Physics,
     /// How the equations are integrated.
@@ -46,41 +50,6 @@ pub struct Shooter {
     pub max_backspin_rad_s: f64,
     /// Release errors.
     pub errors: Errors,
-}
-
-/// Standard deviations of the release errors as functions of the nominal values (Eq. 28).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Errors {
-    /// Speed: `c10 + c11 v + c12 v^2`; c10 in m/s.
-    pub c10_m_s: f64,
-    /// c11, a bare number.
-    pub c11: f64,
-    /// c12, s/m.
-    pub c12_s_m: f64,
-    /// Pitch angle, rad.
-    pub c20_rad: f64,
-    /// Polar angle, rad.
-    pub c30_rad: f64,
-    /// Backspin: `c40 + c41 w + c42 w^2`; c40 in rad/s.
-    pub c40_rad_s: f64,
-    /// c41, a bare number.
-    pub c41: f64,
-    /// c42, s/rad.
-    pub c42_s_rad: f64,
-}
-
-impl Errors {
-    /// Standard deviation of the speed at the nominal speed, m/s.
-    #[must_use]
-    pub fn speed_m_s(&self, nominal_m_s: f64) -> f64 {
-        self.c10_m_s + self.c11 * nominal_m_s + self.c12_s_m * nominal_m_s * nominal_m_s
-    }
-
-    /// Standard deviation of the backspin at the nominal backspin, rad/s.
-    #[must_use]
-    pub fn backspin_rad_s(&self, nominal_rad_s: f64) -> f64 {
-        self.c40_rad_s + self.c41 * nominal_rad_s + self.c42_s_rad * nominal_rad_s * nominal_rad_s
-    }
 }
 
 /// A place on the court, seen from the hoop's axis.
@@ -190,7 +159,7 @@ impl Default for Output {
 }
 
 /// A nominal shot: what the shooter means to do.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Nominal {
     /// Speed, m/s.
     pub speed_m_s: f64,
@@ -200,6 +169,27 @@ pub struct Nominal {
     pub polar_rad: f64,
     /// Backspin, rad/s.
     pub backspin_rad_s: f64,
+    /// Spin about the level direction of the shot, rad/s.
+    pub rifle_spin_rad_s: f64,
+    /// Spin about the vertical, rad/s.
+    pub side_spin_rad_s: f64,
+}
+
+/// What a profile's `[nominal]` table gives of a nominal shot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Intent {
+    /// Speed, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Pitch angle, rad.
+    pub pitch_rad: Option<f64>,
+    /// Polar angle, rad.
+    pub polar_rad: Option<f64>,
+    /// Backspin, rad/s.
+    pub backspin_rad_s: Option<f64>,
+    /// Spin about the level direction of the shot, rad/s.
+    pub rifle_spin_rad_s: Option<f64>,
+    /// Spin about the vertical, rad/s.
+    pub side_spin_rad_s: Option<f64>,
 }
 
 impl Profile {
@@ -220,8 +210,8 @@ impl Profile {
             pitch_rad: nominal.pitch_rad,
             polar_rad: nominal.polar_rad,
             backspin_rad_s: nominal.backspin_rad_s,
-            rifle_spin_rad_s: 0.0,
-            side_spin_rad_s: 0.0,
+            rifle_spin_rad_s: nominal.rifle_spin_rad_s,
+            side_spin_rad_s: nominal.side_spin_rad_s,
         }
     }
 

@@ -3,11 +3,14 @@
 use super::fault::{Fault, ProfileError};
 use super::keys::Keys;
 use super::world::read_physics;
-use super::{Errors, Grid, Output, Place, Profile, Search, Shooter};
+use super::{
+    Correlation, ERROR_NAMES, Errors, Grid, Intent, Output, Place, Profile, Search, Shooter,
+};
 use crate::dynamics::Integrator;
 use crate::physics::Physics;
 use crate::units::{Dimension, System};
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 use toml::de::DeTable;
 
 /// Largest profile that is read, in bytes.
@@ -45,6 +48,7 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
         let mut keys = root;
         let shooter = read_shooter(&mut keys, faults);
         let place_at = keys.table("location", faults);
+        let nominal = read_nominal(&mut keys, faults);
         let (physics, integrator) = read_physics(&mut keys, faults);
         let place = read_place(place_at, &physics, faults);
         let grid = read_grid(&mut keys, faults);
@@ -64,6 +68,7 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
         Some(Profile {
             shooter: shooter?,
             place: place?,
+            nominal,
             physics,
             integrator,
             grid,
@@ -170,6 +175,11 @@ fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shoo
     let mut table = keys.table("errors", faults);
     let errors = read_errors(&mut table, spin.unwrap_or(0.0), faults);
     table.finish(faults);
+    let correlation = read_correlation(&mut keys, faults);
+    let errors = errors.map(|errors| Errors {
+        correlation,
+        ..errors
+    });
     keys.finish(faults);
     Some(Shooter {
         name,
@@ -211,7 +221,33 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
     let c42 = keys
         .quantity("c42", Dimension::PerSpin, faults)
         .unwrap_or(0.0);
+    let mut more = |key, dimension, most: f64, allowed: &str, faults: &mut Vec<Fault>| {
+        let value = keys.quantity(key, dimension, faults);
+        check(
+            keys,
+            key,
+            value,
+            |s| (0.0..=most).contains(&s),
+            allowed,
+            faults,
+        )
+        .unwrap_or(0.0)
+    };
+    let spin_range = "from 0 to 200 rad/s (31.8 rev/s)";
+    let rifle_spin_rad_s = more("rifle_spin", Dimension::Spin, 200.0, spin_range, faults);
+    let side_spin_rad_s = more("side_spin", Dimension::Spin, 200.0, spin_range, faults);
+    let length_range = "from 0 to 1 m (3.28 ft)";
+    let distance_m = more("distance", Dimension::Length, 1.0, length_range, faults);
+    let height_m = more("height", Dimension::Length, 1.0, length_range, faults);
+    let angle_range = "from 0 to 0.5 rad (28.6 deg)";
+    let court_angle_rad = more("court_angle", Dimension::Angle, 0.5, angle_range, faults);
     let errors = Errors {
+        rifle_spin_rad_s,
+        side_spin_rad_s,
+        distance_m,
+        court_angle_rad,
+        height_m,
+        correlation: Correlation::NONE,
         c10_m_s: c10?,
         c11,
         c12_s_m: c12,
@@ -238,6 +274,77 @@ fn read_errors(keys: &mut Keys<'_, '_>, max_spin: f64, faults: &mut Vec<Fault>) 
         ));
     }
     (faults.len() == before).then_some(errors)
+}
+
+/// `[shooter.correlation]`: keys such as `speed_pitch`, each a number from -1 to 1.
+fn read_correlation(shooter: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Correlation {
+    let mut keys = shooter.table("correlation", faults);
+    let mut pairs = Vec::new();
+    for (i, j, key) in PAIRS.iter() {
+        let value = keys.quantity(key, Dimension::Number, faults);
+        let value = check(
+            &keys,
+            key,
+            value,
+            |r| (-1.0..=1.0).contains(&r),
+            "from -1 to 1",
+            faults,
+        );
+        pairs.extend(value.map(|value| (*i, *j, value)));
+    }
+    let here = keys.here("these coefficients are impossible together: the matrix of correlations is not positive semi-definite");
+    keys.finish(faults);
+    Correlation::new(&pairs).unwrap_or_else(|| {
+        faults.push(here);
+        Correlation::NONE
+    })
+}
+
+/// The keys of `[shooter.correlation]` with the places of their two errors, in the order of
+/// [`ERROR_NAMES`].
+static PAIRS: LazyLock<Vec<(usize, usize, &'static str)>> = LazyLock::new(|| {
+    let mut pairs = Vec::new();
+    for (i, first) in ERROR_NAMES.iter().enumerate() {
+        for (j, second) in ERROR_NAMES.iter().enumerate().skip(i + 1) {
+            // 36 short names, once in the life of the program.
+            let key: &'static str = format!("{first}_{second}").leak();
+            pairs.push((i, j, key));
+        }
+    }
+    pairs
+});
+
+/// `[nominal]`: what the shooter means to do.
+fn read_nominal(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Intent {
+    let mut keys = root.table("nominal", faults);
+    let mut read = |key: &'static str, dimension| {
+        let value = keys.quantity(key, dimension, faults);
+        let (holds, allowed): (fn(f64) -> bool, &str) = intended(dimension);
+        check(&keys, key, value, holds, allowed, faults)
+    };
+    let intent = Intent {
+        speed_m_s: read("speed", Dimension::Speed),
+        pitch_rad: read("pitch", Dimension::Angle),
+        polar_rad: read("polar", Dimension::Angle),
+        backspin_rad_s: read("backspin", Dimension::Spin),
+        rifle_spin_rad_s: read("rifle_spin", Dimension::Spin),
+        side_spin_rad_s: read("side_spin", Dimension::Spin),
+    };
+    keys.finish(faults);
+    intent
+}
+
+/// What a nominal value may be.
+#[must_use]
+pub fn intended(dimension: Dimension) -> (fn(f64) -> bool, &'static str) {
+    match dimension {
+        Dimension::Speed => (
+            |v| v > 0.0 && v <= FASTEST_M_S,
+            "above 0 and at most 40 m/s",
+        ),
+        Dimension::Angle => (|a| a.abs() <= PI, "between -180 and 180 deg"),
+        _ => (|w| w.abs() <= 200.0, "within 200 rad/s (31.8 rev/s)"),
+    }
 }
 
 fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>) -> Option<Place> {
