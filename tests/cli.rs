@@ -711,3 +711,100 @@ fn contract_ctrl_c_leaves_no_file() {
     assert!(names(folder.path()).is_empty());
     drop(input);
 }
+
+/// `probability` of the nine errors with the given flags.
+fn probability(flags: &[&str]) -> std::process::Output {
+    bankshot()
+        .args(["probability", "configs/nine_errors.toml", "--quiet"])
+        .args(flags)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn contract_probability_gives_p_with_its_error_and_shares() {
+    let output = probability(&["--target", "0.004", "--json"]);
+    assert!(output.status.success(), "{output:?}");
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let p = answer["probability"].as_f64().unwrap();
+    assert!((0.6..0.66).contains(&p), "{p}");
+    assert!(answer["standard_error"].as_f64().unwrap() <= 0.004);
+    assert!(answer["shots"].as_u64().unwrap() >= 16384);
+    let shares = answer["shares"].as_object().unwrap();
+    let sum: f64 = shares.values().map(|share| share.as_f64().unwrap()).sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{shares:?}");
+    // A flag goes before the profile's [nominal].
+    let short = probability(&["--speed", "20 ft/s", "--target", "0.01"]);
+    assert!(String::from_utf8_lossy(&short.stdout).starts_with("P = 0.0000"));
+}
+
+#[test]
+fn contract_probability_with_too_small_a_budget_gives_p_so_far() {
+    for method in ["sobol", "monte-carlo"] {
+        let flags = ["--method", method, "--budget", "2000", "--target", "0.0001"];
+        let output = probability(&flags);
+        assert_eq!(output.status.code(), Some(1), "{output:?}");
+        assert!(String::from_utf8_lossy(&output.stdout).starts_with("P = 0.6"));
+    }
+}
+
+#[test]
+fn contract_probability_refuses_what_cannot_be() {
+    for (flags, says) in [
+        (&["--budget", "0"][..], "64"),
+        (&["--method", "guess"], "possible values"),
+        (&["--target", "0"], "0.000001 to 0.5"),
+        (&["--target", "nan"], "0.000001 to 0.5"),
+        (&["--method", "grid"], "Eq. 25"),
+        (&["--grid", "20"], "only the methods"),
+        (&["--replay", "1"], "such as 1:2049"),
+        (&["--speed", "23"], "--speed"),
+        (&["--side-spin", "3 ft"], "--side-spin"),
+    ] {
+        let output = probability(flags);
+        assert_eq!(output.status.code(), Some(2), "{flags:?} {output:?}");
+        assert!(output.stdout.is_empty());
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(error.contains(says), "{flags:?}: {error}");
+    }
+}
+
+#[test]
+fn contract_impossible_correlations_are_refused_with_their_place() {
+    const NINE: &str = include_str!("../configs/nine_errors.toml");
+    let line = "speed_pitch = -0.25            # from -1 to 1; any pair of the nine";
+    assert!(NINE.contains(line));
+    let folder = TempDir::new().unwrap();
+    for (text, says) in [
+        ("speed_pitch = 1.5", "from -1 to 1"),
+        ("pitch_speed = 0.5", "not a key here"),
+        (
+            "speed_pitch = 0.9\nspeed_polar = 0.9\npitch_polar = -0.9",
+            "not positive semi-definite",
+        ),
+    ] {
+        let profile = file(&folder, "p.toml", NINE.replace(line, text));
+        bankshot()
+            .arg("check")
+            .arg(&profile)
+            .assert()
+            .code(2)
+            .stderr(predicate::str::contains(says).and(predicate::str::contains("p.toml")));
+    }
+}
+
+#[test]
+fn contract_replay_traces_the_sample() {
+    let traced = probability(&["--replay", "1:2049", "--json"]);
+    assert!(traced.status.success());
+    let answer: serde_json::Value = serde_json::from_slice(&traced.stdout).unwrap();
+    assert_eq!(answer["events"][0]["event"], "release");
+    assert_eq!(
+        probability(&["--replay", "1:2049", "--json"]).stdout,
+        traced.stdout
+    );
+    assert_ne!(
+        probability(&["--replay", "1:2050", "--json"]).stdout,
+        traced.stdout
+    );
+}

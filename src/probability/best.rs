@@ -232,6 +232,10 @@ impl Search<'_> {
             }
             window = next;
         }
+        if !self.profile.shooter.errors.are_of_eq_25() {
+            // The table knows four independent errors; the samples know them all.
+            nominal = self.climb(kind, nominal, |nominal| made(COMPARE_POINTS, nominal));
+        }
         let search = &self.profile.search;
         let estimate =
             sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
