@@ -29,7 +29,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let text = if options.json {
         format!("{:#}\n", output::best::json(&profile, &best, units))
     } else {
-        output::best::table(&profile, &best, units)
+        output::best::table(&profile, &best, units) + &output::best::lessons(&profile, &best, units)
     };
     answer(&text)?;
     if !quiet {

@@ -2,6 +2,7 @@
 
 use super::{Record, number, object, provenance};
 use crate::probability::best::{Best, BestShot, NoShot, ShotKind};
+use crate::probability::lessons::{Changed, Difference};
 use crate::profile::Profile;
 use crate::units::{DEGREE_RAD, REV_RAD, System};
 use comfy_table::{CellAlignment, Table, presets};
@@ -65,6 +66,138 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: System) -> Record 
     fields
 }
 
+/// What a shooter learns from a shot, with units in the names.
+fn lessons_record(shot: &BestShot, units: System) -> Value {
+    let (long, foot) = units.length();
+    let difference = |gain: &Difference| {
+        vec![
+            ("gain".to_owned(), number(gain.by)),
+            ("standard_error".to_owned(), number(gain.standard_error)),
+        ]
+    };
+    let lessons = &shot.lessons;
+    let scales = [
+        (format!("speed_{long}_s"), foot),
+        ("pitch_deg".to_owned(), DEGREE_RAD),
+        ("polar_deg".to_owned(), DEGREE_RAD),
+    ];
+    let windows = scales
+        .into_iter()
+        .zip(&lessons.windows)
+        .map(|((name, scale), window)| {
+            let ends = window.ends.map_or(Value::Null, |(low, high)| {
+                vec![number(low / scale), number(high / scale)].into()
+            });
+            (name, ends)
+        })
+        .collect();
+    let costs: Vec<Value> = lessons
+        .costs
+        .iter()
+        .map(|cost| {
+            object(vec![
+                ("error".to_owned(), cost.error.into()),
+                ("without".to_owned(), object(difference(&cost.without))),
+                (
+                    "a_tenth_less".to_owned(),
+                    object(difference(&cost.a_tenth_less)),
+                ),
+            ])
+        })
+        .collect();
+    let changed = |name: &str, scale: f64, all: &[Changed]| -> Value {
+        let records = all.iter().map(|changed| {
+            let mut record = vec![(name.to_owned(), number(changed.value / scale))];
+            record.extend(difference(&changed.gain));
+            object(record)
+        });
+        records.collect::<Vec<_>>().into()
+    };
+    object(vec![
+        ("windows".to_owned(), object(windows)),
+        ("costs".to_owned(), costs.into()),
+        (
+            "spins".to_owned(),
+            changed("backspin_rev_s", REV_RAD, &lessons.spins),
+        ),
+        (
+            "heights".to_owned(),
+            changed(&format!("release_height_{long}"), foot, &lessons.heights),
+        ),
+    ])
+}
+
+/// What a shooter learns from the best shots, in words.
+#[must_use]
+pub fn lessons(profile: &Profile, best: &Best, units: System) -> String {
+    let (long, foot) = units.length();
+    let points = |gain: &Difference| {
+        format!(
+            "{:+.1} ± {:.1}",
+            100.0 * gain.by,
+            100.0 * gain.standard_error
+        )
+    };
+    let mut text = String::new();
+    for (kind, shot) in shots(best) {
+        let Ok(shot) = shot else { continue };
+        let lessons = &shot.lessons;
+        let [speed, pitch, polar] = lessons.windows.map(|window| window.width());
+        text.push_str(&format!(
+            "{}, in points of P (0.01):\n  window   speed {:.2} {long}/s, pitch {:.1} deg, polar {:.1} deg wide, the others held\n",
+            kind.name(),
+            speed / foot,
+            pitch / DEGREE_RAD,
+            polar / DEGREE_RAD
+        ));
+        let costs: Vec<String> = lessons
+            .costs
+            .iter()
+            .map(|cost| {
+                format!(
+                    "{:11} {}, with a tenth less {}\n",
+                    cost.error.replace('_', " "),
+                    points(&cost.without),
+                    points(&cost.a_tenth_less)
+                )
+            })
+            .collect();
+        for (i, cost) in costs.iter().enumerate() {
+            text.push_str(if i == 0 { "  without  " } else { "           " });
+            text.push_str(cost);
+        }
+        if let Some(worth) = lessons.spin_is_worth() {
+            let sure = worth.by > 2.0 * worth.standard_error;
+            text.push_str(&format!(
+                "  spin     {} over none{}\n",
+                points(&worth),
+                if sure { "" } else { ": not worth it here" }
+            ));
+        }
+        let heights: Vec<String> = lessons
+            .heights
+            .iter()
+            .map(|changed| {
+                let by = changed.value - profile.shooter.release_height_m;
+                format!("{:+.2} {long} {}", by / foot, points(&changed.gain))
+            })
+            .collect();
+        text.push_str(&format!(
+            "  height   {} (pitch held, speed aimed anew)\n",
+            heights.join(", ")
+        ));
+    }
+    if let (Ok(direct), Ok(bank)) = (&best.direct, &best.bank) {
+        let (direct, bank) = (&direct.estimate, &bank.estimate);
+        let gain = Difference {
+            by: bank.probability - direct.probability,
+            standard_error: bank.standard_error.hypot(direct.standard_error),
+        };
+        text.push_str(&format!("bank less direct: {}\n", points(&gain)));
+    }
+    text
+}
+
 /// The whole answer as one JSON object.
 #[must_use]
 pub fn json(profile: &Profile, best: &Best, units: System) -> Value {
@@ -90,14 +223,27 @@ pub fn json(profile: &Profile, best: &Best, units: System) -> Value {
     ] {
         match shot {
             Ok(shot) => {
-                let value = object(shot_record(profile, shot, units));
-                record.push((kind.name().to_owned(), value));
+                let mut value = shot_record(profile, shot, units);
+                value.push(("lessons".to_owned(), lessons_record(shot, units)));
+                record.push((kind.name().to_owned(), object(value)));
             }
             Err(reason) => {
                 record.push((kind.name().to_owned(), Value::Null));
                 record.push((format!("{}_reason", kind.name()), reason.to_string().into()));
             }
         }
+    }
+    if let (Ok(direct), Ok(bank)) = (&best.direct, &best.bank) {
+        let (direct, bank) = (&direct.estimate, &bank.estimate);
+        let error = bank.standard_error.hypot(direct.standard_error);
+        let gain = vec![
+            (
+                "gain".to_owned(),
+                number(bank.probability - direct.probability),
+            ),
+            ("standard_error".to_owned(), number(error)),
+        ];
+        record.push(("bank_less_direct".to_owned(), object(gain)));
     }
     record.extend(provenance(&profile.hash()));
     record.push(("seed".to_owned(), profile.search.seed.into()));

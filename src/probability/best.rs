@@ -10,6 +10,7 @@
 
 use super::Progress;
 use super::estimate::{Estimate, Sampler};
+use super::lessons::{self, Lessons};
 use super::sobol::Key;
 use super::table::{Probabilities, Table};
 use crate::dynamics::{Outcome, Simulator, Touched};
@@ -83,6 +84,8 @@ pub struct BestShot {
     pub window: Plan,
     /// The error-free shot.
     pub outcome: Outcome,
+    /// What the shooter learns from it.
+    pub lessons: Lessons,
     /// Where the error-free path, undisturbed, would pass the plane of the hoop: past the hoop's
     /// centre along the shot's own direction, m (positive is long).
     pub aim_past_centre_m: Option<f64>,
@@ -245,6 +248,7 @@ impl Search<'_> {
             table_probability,
             window,
             outcome: self.simulator.shoot(&self.profile.release(&nominal)),
+            lessons: lessons::draw(self.profile, self.simulator, &nominal, self.progress),
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
             at_limits: self.limits(&nominal),

@@ -8,6 +8,7 @@
 pub mod best;
 pub mod estimate;
 pub mod grid;
+pub mod lessons;
 pub mod misses;
 pub mod monte_carlo;
 pub mod normal;

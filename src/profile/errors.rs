@@ -83,6 +83,29 @@ impl Errors {
         ]
     }
 
+    /// Makes one error, by its place in [`ERROR_NAMES`], `times` as large.
+    pub fn scale(&mut self, error: usize, times: f64) {
+        match error {
+            0 => {
+                self.c10_m_s *= times;
+                self.c11 *= times;
+                self.c12_s_m *= times;
+            }
+            1 => self.c20_rad *= times,
+            2 => self.c30_rad *= times,
+            3 => {
+                self.c40_rad_s *= times;
+                self.c41 *= times;
+                self.c42_s_rad *= times;
+            }
+            4 => self.rifle_spin_rad_s *= times,
+            5 => self.side_spin_rad_s *= times,
+            6 => self.distance_m *= times,
+            7 => self.court_angle_rad *= times,
+            _ => self.height_m *= times,
+        }
+    }
+
     /// Are there only the four errors of Eq. 25, and independent?
     #[must_use]
     pub fn are_of_eq_25(&self) -> bool {
