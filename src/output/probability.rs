@@ -164,7 +164,7 @@ pub fn words(answer: &Answer<'_>) -> String {
         )
     } else {
         format!(
-            "P = {:.4}, {shots} shots by {} (its error is not known; up to 0.02 with n = 40)\n",
+            "P = {:.4}, {shots} shots by {} (its error is not known: 0.004 to 0.02 was seen with n about 40)\n",
             estimate.probability, answer.method
         )
     };
