@@ -234,3 +234,76 @@ fn prop_best_is_not_below_its_own_table() {
         );
     }
 }
+
+#[test]
+#[ignore = "a campaign of 5 minutes: cargo test --test val_probability campaign_best -- --ignored --nocapture"]
+fn campaign_best_is_within_three_thousandths_of_a_brute_force_search() {
+    // Brute force: a table of 3.6 million shots over everything the shooter may intend, and the thirty best of
+    // its nominal shots of each kind, no two of them neighbours, integrated to 0.0005.
+    let places = [
+        ("free_throw", 13.75, 0.0),
+        ("free_throw", 6.0, 30.0),
+        ("free_throw", 9.0, 60.0),
+        ("bank_wing", 12.0, 50.0),
+        ("bank_wing", 18.0, 50.0),
+        ("elite", 20.0, 0.0),
+        ("elite", 15.0, 75.0),
+        ("novice", 10.0, 20.0),
+        ("school", 13.75, -45.0),
+        ("three_pointer", 22.0, 10.0),
+    ];
+    for (name, distance_ft, angle_deg) in places {
+        let mut profile = load(name);
+        profile.place.distance_m = distance_ft * 0.3048;
+        profile.place.angle_rad = angle_deg * DEGREE_RAD;
+        profile.search = profile::Search {
+            standard_error: 0.0005,
+            ..profile::Search::around(profile.place.distance_m, profile.height_above_hoop_m())
+        };
+        let simulator = Simulator::new(&profile.physics).unwrap();
+        let sampler = Sampler::new(&profile, &simulator);
+        let best = best::find(&profile, &Silent).unwrap();
+        let mut wide = profile.clone();
+        wide.grid = profile::Grid {
+            speed: 120,
+            pitch: 90,
+            polar: 84,
+            backspin: 10,
+        };
+        let plan = Plan::new(&wide).unwrap();
+        let table = Table::build(&wide, &plan, &simulator, &Silent).probabilities(&wide);
+        let mut order: Vec<usize> = (0..table.values.len()).collect();
+        order.sort_by(|&a, &b| table.values[b].total_cmp(&table.values[a]));
+        let counts = table.counts();
+        let index_of = |i: usize| {
+            let (rest, speed) = (i / counts[3], i % counts[3]);
+            let (rest, spin) = (rest / counts[2], rest % counts[2]);
+            [rest / counts[1], rest % counts[1], spin, speed]
+        };
+        for (kind, found) in [(ShotKind::Direct, best.direct), (ShotKind::Bank, best.bank)] {
+            let mut chosen: Vec<[usize; 4]> = Vec::new();
+            let mut brute = 0.0_f64;
+            for &i in &order {
+                let index = index_of(i);
+                let near = |other: &[usize; 4]| (0..4).all(|k| index[k].abs_diff(other[k]) <= 1);
+                let (p, shot) = table.at(index);
+                if chosen.len() == 30 || p == 0.0 {
+                    break;
+                }
+                if chosen.iter().any(near) || ShotKind::of(&profile, &simulator, &shot) != kind {
+                    continue;
+                }
+                chosen.push(index);
+                let estimate = sampler.estimate(&shot, 0.0005, 31, &Silent);
+                brute = brute.max(estimate.probability);
+            }
+            let p = found.map_or(0.0, |shot| shot.estimate.probability);
+            println!(
+                "{name:13} {distance_ft:5} ft {angle_deg:5} deg {:6}: best {p:.4}, brute force {brute:.4}, {:+.4}",
+                kind.name(),
+                p - brute
+            );
+            assert!(p > brute - 0.003, "{name} {kind:?}: {p} {brute}");
+        }
+    }
+}

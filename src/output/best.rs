@@ -132,11 +132,10 @@ fn lessons_record(shot: &BestShot, units: System) -> Value {
 pub fn lessons(profile: &Profile, best: &Best, units: System) -> String {
     let (long, foot) = units.length();
     let points = |gain: &Difference| {
-        format!(
-            "{:+.1} ± {:.1}",
-            100.0 * gain.by,
-            100.0 * gain.standard_error
-        )
+        // Nothing is not negative.
+        let by = 100.0 * gain.by;
+        let by = if by.abs() < 0.05 { 0.0 } else { by };
+        format!("{by:+.1} ± {:.1}", 100.0 * gain.standard_error)
     };
     let mut text = String::new();
     for (kind, shot) in shots(best) {

@@ -106,6 +106,7 @@ pub fn shifted(
         probability,
         standard_error: (square / (count * (count - 1.0))).sqrt(),
         shots: sums.iter().map(|sum| sum.shots).sum(),
+        certain: axes.iter().all(|axis| axis.count == 1),
         ..Estimate::default()
     }
 }
