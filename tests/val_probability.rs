@@ -127,6 +127,29 @@ fn campaign_table_is_good_to_a_thousandth() {
     );
 }
 
+#[test]
+fn val_table_agrees_with_sobol_at_its_nominals() {
+    let profile = load("free_throw");
+    let simulator = Simulator::new(&profile.physics).unwrap();
+    let plan = Plan::new(&profile).unwrap();
+    let sampler = Sampler::new(&profile, &simulator);
+    for shot in [
+        nominal(23.6, 53.5, 0.0, 3.0),
+        nominal(24.95, 54.5, 0.0, 2.0),
+        nominal(23.5, 50.0, 0.8, 1.0),
+    ] {
+        let window = plan.around(&profile, &shot).unwrap();
+        let table = Table::build(&profile, &window, &simulator, &Silent).probabilities(&profile);
+        let (p, at) = table.at(table.index_of(&shot));
+        let sobol = sampler.estimate(&at, 0.0004, 9, &Silent);
+        assert!(
+            (p - sobol.probability).abs() < 0.004,
+            "{at:?}: {p} {sobol:?}"
+        );
+        assert_eq!(sobol.unresolved, 0);
+    }
+}
+
 /// Mean, root of the mean square, and largest size.
 fn spread(errors: &[f64]) -> [f64; 3] {
     let n = errors.len() as f64;

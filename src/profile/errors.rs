@@ -5,8 +5,8 @@ use serde::Serialize;
 
 /// Number of the errors.
 pub const ERRORS: usize = 9;
-/// The errors in the order in which they are drawn: five of Eq. 23's nine are written into the profile
-/// as coefficients of Eq. 28, the others as standard deviations.
+/// The nine errors of Eq. 23 in the order in which they are drawn: a profile gives the first four as
+/// coefficients of Eq. 28, the others as standard deviations.
 pub const ERROR_NAMES: [&str; ERRORS] = [
     "speed",
     "pitch",

@@ -11,7 +11,7 @@ mod world;
 
 pub use errors::{Correlation, ERROR_NAMES, ERRORS, Errors};
 pub use fault::{Fault, ProfileError};
-pub use read::{LARGEST_PROFILE_BYTES, intended, parse, parse_physics};
+pub use read::{LARGEST_PROFILE_BYTES, parse, parse_physics};
 
 use crate::dynamics::{Integrator, Release};
 use crate::physics::Physics;

@@ -335,8 +335,7 @@ fn read_nominal(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Intent {
 }
 
 /// What a nominal value may be.
-#[must_use]
-pub fn intended(dimension: Dimension) -> (fn(f64) -> bool, &'static str) {
+fn intended(dimension: Dimension) -> (fn(f64) -> bool, &'static str) {
     match dimension {
         Dimension::Speed => (
             |v| v > 0.0 && v <= FASTEST_M_S,
