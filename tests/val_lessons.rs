@@ -1,24 +1,15 @@
 //! What a shooter learns from a shot, against separate estimates.
 
+mod common;
+
 use bankshot::dynamics::Simulator;
 use bankshot::probability::estimate::Sampler;
 use bankshot::probability::{Silent, lessons};
 use bankshot::profile::{self, Nominal, Profile};
-use bankshot::units::{DEGREE_RAD, REV_RAD};
-
-fn load(name: &str) -> Profile {
-    let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    profile::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
-}
+use common::{load, nominal};
 
 fn free_throw() -> (Profile, Nominal) {
-    let nominal = Nominal {
-        speed_m_s: 23.6 * 0.3048,
-        pitch_rad: 53.5 * DEGREE_RAD,
-        backspin_rad_s: 3.0 * REV_RAD,
-        ..Nominal::default()
-    };
-    (load("free_throw"), nominal)
+    (load("free_throw"), nominal(23.6, 53.5, 0.0, 3.0))
 }
 
 #[test]

@@ -1,30 +1,18 @@
 //! P under all nine errors: methods against each other, correlations, stated errors, threads and lanes.
 
+mod common;
+
 use bankshot::dynamics::{Lanes, Simulator, State};
 use bankshot::plan::Plan;
 use bankshot::probability::estimate::{About, Sampler};
 use bankshot::probability::sobol::Key;
 use bankshot::probability::{Silent, grid, misses, monte_carlo};
-use bankshot::profile::{self, Correlation, Nominal, Profile};
-use bankshot::units::{DEGREE_RAD, REV_RAD};
+use bankshot::profile::{Correlation, Nominal, Profile};
+use bankshot::units::DEGREE_RAD;
+use common::{load, nominal};
 use rand::SeedableRng;
 use rand::rngs::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
-
-fn load(name: &str) -> Profile {
-    let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    profile::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
-}
-
-fn nominal(speed_ft_s: f64, pitch_deg: f64, polar_deg: f64, backspin_rev_s: f64) -> Nominal {
-    Nominal {
-        speed_m_s: speed_ft_s * 0.3048,
-        pitch_rad: pitch_deg * DEGREE_RAD,
-        polar_rad: polar_deg * DEGREE_RAD,
-        backspin_rad_s: backspin_rev_s * REV_RAD,
-        ..Nominal::default()
-    }
-}
 
 fn nine() -> (Profile, Nominal) {
     let profile = load("nine_errors");

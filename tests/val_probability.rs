@@ -1,29 +1,17 @@
 //! Probabilities: table, Sobol and Monte Carlo against each other, the bracket, the thread count.
 
+mod common;
+
 use bankshot::dynamics::{Kind, Simulator};
 use bankshot::plan::Plan;
 use bankshot::probability::best::{self, ShotKind};
 use bankshot::probability::estimate::Sampler;
 use bankshot::probability::{Silent, Table, monte_carlo};
 use bankshot::profile::{self, Nominal, Profile};
-use bankshot::units::{DEGREE_RAD, REV_RAD};
+use bankshot::units::DEGREE_RAD;
+use common::{load, nominal};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
-
-fn load(name: &str) -> Profile {
-    let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    profile::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
-}
-
-fn nominal(speed_ft_s: f64, pitch_deg: f64, polar_deg: f64, backspin_rev_s: f64) -> Nominal {
-    Nominal {
-        speed_m_s: speed_ft_s * 0.3048,
-        pitch_rad: pitch_deg * DEGREE_RAD,
-        polar_rad: polar_deg * DEGREE_RAD,
-        backspin_rad_s: backspin_rev_s * REV_RAD,
-        ..Nominal::default()
-    }
-}
 
 #[test]
 fn val_sobol_agrees_with_plain_monte_carlo() {

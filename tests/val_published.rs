@@ -1,18 +1,16 @@
 //! Side by side with published results: `docs/validation.md` is what this campaign prints.
 #![allow(clippy::disallowed_methods)]
 
+mod common;
+
 use bankshot::dynamics::Simulator;
 use bankshot::plan::Plan;
 use bankshot::probability::best;
 use bankshot::probability::estimate::Sampler;
 use bankshot::probability::{Silent, grid, monte_carlo};
-use bankshot::profile::{self, Nominal, Profile};
-use bankshot::units::{DEGREE_RAD, REV_RAD};
-
-fn load(name: &str) -> Profile {
-    let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    profile::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
-}
+use bankshot::profile::{self, Profile};
+use bankshot::units::DEGREE_RAD;
+use common::{load, nominal};
 
 fn at(profile: &Profile, distance_m: f64, angle_deg: f64, release_height_m: f64) -> Profile {
     let mut profile = profile.clone();
@@ -34,18 +32,27 @@ fn centre_speed(profile: &Profile, pitch_rad: f64) -> f64 {
     s / pitch_rad.cos() * (0.5 * profile.physics.gravity_m_s2 / over).sqrt()
 }
 
+/// Pearson's coefficient.
+fn correlation(pairs: &[(f64, f64)]) -> f64 {
+    let n = pairs.len() as f64;
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / n;
+    let (x, y) = (mean(&|pair| pair.0), mean(&|pair| pair.1));
+    let about = |of: &dyn Fn(f64, f64) -> f64| {
+        pairs
+            .iter()
+            .map(|pair| of(pair.0 - x, pair.1 - y))
+            .sum::<f64>()
+    };
+    about(&|x, y| x * y) / (about(&|x, _| x * x) * about(&|_, y| y * y)).sqrt()
+}
+
 #[test]
 #[ignore = "a campaign of 2 minutes: cargo test --test val_published -- --ignored --nocapture"]
 fn campaign_published() {
     let college = load("free_throw");
     let simulator = Simulator::new(&college.physics).unwrap();
     let plan = Plan::new(&college).unwrap();
-    let shot = Nominal {
-        speed_m_s: 23.6 * 0.3048,
-        pitch_rad: 53.5 * DEGREE_RAD,
-        backspin_rad_s: 3.0 * REV_RAD,
-        ..Nominal::default()
-    };
+    let shot = nominal(23.6, 53.5, 0.0, 3.0);
 
     println!("## Methods: 23.6 ft/s, 53.5 deg, 3 rev/s, free throw");
     let sobol = Sampler::new(&college, &simulator).estimate(&shot, 0.0003, 1, &Silent);
@@ -101,6 +108,30 @@ fn campaign_published() {
         best.nominal.pitch_rad / DEGREE_RAD,
         best.nominal.speed_m_s,
         best.estimate.probability
+    );
+
+    println!("## Slegers 2021: free throws from 4.19 m by the scatter of speed and of pitch");
+    // Their players' scatter: 0.05 to 0.13 m/s, and 1.3 deg give or take 0.26.
+    let mut found = Vec::new();
+    for speed_m_s in [0.05, 0.07, 0.09, 0.11, 0.13] {
+        for pitch_deg in [1.04, 1.3, 1.56] {
+            let mut player = at(&college, 4.19, 0.0, 7.0 * 0.3048);
+            player.shooter.errors.c10_m_s = speed_m_s;
+            player.shooter.errors.c20_rad = pitch_deg * DEGREE_RAD;
+            let best = best::find(&player, &Silent).unwrap().direct.unwrap();
+            let p = best.estimate.probability;
+            println!("| {speed_m_s} m/s | {pitch_deg} deg | {p:.3} |");
+            found.push((speed_m_s, pitch_deg, p));
+        }
+    }
+    let (speed, pitch): (Vec<_>, Vec<_>) = (
+        found.iter().map(|&(speed, _, p)| (speed, p)).collect(),
+        found.iter().map(|&(_, pitch, p)| (pitch, p)).collect(),
+    );
+    println!(
+        "correlation of P with the scatter of speed {:.2}, of pitch {:.2}",
+        correlation(&speed),
+        correlation(&pitch)
     );
 
     println!("## Silverberg, Tran and Adams 2011: bank less direct");

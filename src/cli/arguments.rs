@@ -67,7 +67,8 @@ Examples:
   bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
   bankshot best configs/bank_wing.toml --units metric --out /tmp/runs
 
-Writes OUT/<name>-<hash>/ with best_shots.csv, best_shots.json, plan.json and provenance.json.")]
+Writes OUT/<name>-<hash>/ with best_shots.csv, best_shots.json, curves.csv (P along each part of the
+best shots), lessons.csv, plan.json and provenance.json.")]
 pub(crate) struct BestOptions {
     /// The shooter's profile.
     pub(crate) profile: PathBuf,

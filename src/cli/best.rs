@@ -92,6 +92,8 @@ fn write(folder: &Path, profile: &Profile, best: &Best, units: System) -> Result
             "best_shots.json",
             json(&output::best::json(profile, best, units)),
         ),
+        ("curves.csv", output::best::curves_csv(best, units)),
+        ("lessons.csv", output::best::lessons_csv(best, units)),
         ("plan.json", json(&plan)),
         ("provenance.json", json(&output::object(provenance))),
     ];

@@ -27,6 +27,10 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: System) -> Record 
             "backspin_rev_s".into(),
             number(nominal.backspin_rad_s / REV_RAD),
         ),
+        (
+            "side_spin_rev_s".into(),
+            number(nominal.side_spin_rad_s / REV_RAD),
+        ),
         ("probability".into(), number(estimate.probability)),
         ("standard_error".into(), number(estimate.standard_error)),
         ("shots".into(), estimate.shots.into()),
@@ -125,6 +129,119 @@ fn lessons_record(shot: &BestShot, units: System) -> Value {
             changed(&format!("release_height_{long}"), foot, &lessons.heights),
         ),
     ])
+}
+
+/// P along each part of the best shots: `kind, nominal, unit, value, probability`.
+#[must_use]
+pub fn curves_csv(best: &Best, units: System) -> Vec<u8> {
+    let (long, foot) = units.length();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut write = |row: [&str; 5]| {
+        // Writing to memory does not fail.
+        let _ = writer.write_record(row);
+    };
+    write(["kind", "nominal", "unit", "value", "probability"]);
+    for (kind, shot) in shots(best) {
+        let Ok(shot) = shot else { continue };
+        for curve in &shot.curves {
+            let (unit, scale) = match curve.nominal {
+                "speed" => (format!("{long}/s"), foot),
+                "pitch" | "polar" => ("deg".to_owned(), DEGREE_RAD),
+                _ => ("rev/s".to_owned(), REV_RAD),
+            };
+            for (value, p) in &curve.points {
+                let (value, p) = ((value / scale).to_string(), p.to_string());
+                write([kind.name(), curve.nominal, &unit, &value, &p]);
+            }
+        }
+    }
+    writer.into_inner().unwrap_or_default()
+}
+
+/// What a shooter learns from the best shots: `kind, lesson, of, unit, value, gain, standard_error`, the gains in P.
+/// A lesson is `window_low` and `window_high` (no gain), `without` and `a_tenth_less` of an error, or
+/// another `backspin` or `release_height`.
+#[must_use]
+pub fn lessons_csv(best: &Best, units: System) -> Vec<u8> {
+    let (long, foot) = units.length();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let header = [
+        "kind",
+        "lesson",
+        "of",
+        "unit",
+        "value",
+        "gain",
+        "standard_error",
+    ];
+    // Writing to memory does not fail.
+    let _ = writer.write_record(header);
+    for (kind, shot) in shots(best) {
+        let Ok(shot) = shot else { continue };
+        let lessons = &shot.lessons;
+        let mut write =
+            |lesson: &str, of: &str, unit: &str, value: Option<f64>, gain: Option<&Difference>| {
+                let text = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
+                let (by, error) = (
+                    gain.map(|gain| gain.by),
+                    gain.map(|gain| gain.standard_error),
+                );
+                let numbers = [value, by, error].map(text);
+                let words = [kind.name(), lesson, of, unit].map(str::to_owned);
+                let _ = writer.write_record(words.iter().chain(&numbers));
+            };
+        let speed = format!("{long}/s");
+        let axes = [
+            ("speed", speed.as_str(), foot),
+            ("pitch", "deg", DEGREE_RAD),
+            ("polar", "deg", DEGREE_RAD),
+        ];
+        for ((of, unit, scale), window) in axes.into_iter().zip(&lessons.windows) {
+            write(
+                "window_low",
+                of,
+                unit,
+                window.ends.map(|ends| ends.0 / scale),
+                None,
+            );
+            write(
+                "window_high",
+                of,
+                unit,
+                window.ends.map(|ends| ends.1 / scale),
+                None,
+            );
+        }
+        for cost in &lessons.costs {
+            write("without", cost.error, "", None, Some(&cost.without));
+            write(
+                "a_tenth_less",
+                cost.error,
+                "",
+                None,
+                Some(&cost.a_tenth_less),
+            );
+        }
+        for spin in &lessons.spins {
+            write(
+                "backspin",
+                "backspin",
+                "rev/s",
+                Some(spin.value / REV_RAD),
+                Some(&spin.gain),
+            );
+        }
+        for height in &lessons.heights {
+            write(
+                "release_height",
+                "height",
+                long,
+                Some(height.value / foot),
+                Some(&height.gain),
+            );
+        }
+    }
+    writer.into_inner().unwrap_or_default()
 }
 
 /// What a shooter learns from the best shots, in words.
@@ -313,8 +430,9 @@ pub fn table(profile: &Profile, best: &Best, units: System) -> String {
         let aim = match (kind, shot.outcome.board_point_m, shot.aim_past_centre_m) {
             (ShotKind::Bank, Some((_, y, z)), _) => {
                 format!(
-                    "board, {:.1} {short} above ring,\n{}",
-                    z / inch,
+                    "board, {:.1} {short} {} ring,\n{}",
+                    z.abs() / inch,
+                    if z < 0.0 { "below" } else { "above" },
                     aside(y / inch, short)
                 )
             }
@@ -346,6 +464,14 @@ pub fn table(profile: &Profile, best: &Best, units: System) -> String {
             }),
             aim,
         ]);
+        if nominal.side_spin_rad_s != 0.0 || nominal.rifle_spin_rad_s != 0.0 {
+            notes.push(format!(
+                "{}: with a side spin of {:.2} rev/s and a rifle spin of {:.2} rev/s.",
+                kind.name(),
+                nominal.side_spin_rad_s / REV_RAD,
+                nominal.rifle_spin_rad_s / REV_RAD
+            ));
+        }
         if !shot.at_limits.is_empty() {
             notes.push(format!(
                 "{}: the best lies at a limit: {}.",

@@ -78,9 +78,15 @@ pub struct Stations {
 }
 
 impl Stations {
-    fn new(low: f64, high: f64, count: usize) -> Self {
+    /// `count` values from `low` to `high`, two at least where these differ.
+    #[must_use]
+    pub fn new(low: f64, high: f64, count: usize) -> Self {
         let count = if low < high { count.max(2) } else { 1 };
         Self { low, high, count }
+    }
+
+    fn one(value: f64) -> Self {
+        Self::new(value, value, 1)
     }
 
     /// All values.
@@ -102,6 +108,10 @@ pub struct Nominals {
     pub polar: Stations,
     /// Backspins, rad/s.
     pub backspin: Stations,
+    /// Spin about the level direction of the shot, one for all, rad/s.
+    pub rifle_spin_rad_s: f64,
+    /// Spin about the vertical, one for all, rad/s.
+    pub side_spin_rad_s: f64,
 }
 
 impl Nominals {
@@ -172,6 +182,10 @@ pub enum PlanError {
     OutOfReach,
 }
 
+fn about(centre: f64, margin: f64) -> (f64, f64) {
+    (centre - margin, centre + margin)
+}
+
 /// Bytes that the table and its products need at their peak.
 fn memory_bytes(grid: &Grid, nominal: &Nominals) -> f64 {
     let inner = nominal.backspin.count as f64 * nominal.speed.count as f64;
@@ -187,28 +201,67 @@ impl Plan {
     /// # Errors
     /// When the table would be too large, or no release reaches the hoop.
     pub fn new(profile: &Profile) -> Result<Self, PlanError> {
+        let held = profile.held();
+        let side_spin_rad_s = if profile.search.choose.side_spin {
+            0.0
+        } else {
+            held.side_spin_rad_s
+        };
+        Self::with_side_spin(profile, side_spin_rad_s)
+    }
+
+    /// As [`Plan::new`], for nominal shots with this spin about the vertical.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_side_spin(profile: &Profile, side_spin_rad_s: f64) -> Result<Self, PlanError> {
         let bracket = Bracket::new(profile).ok_or(PlanError::OutOfReach)?;
         let grid = profile.grid.of_search();
         let errors = &profile.shooter.errors;
         let search = &profile.search;
-        let speed = nominal_speeds(profile, &bracket).ok_or(PlanError::OutOfReach)?;
-        let pitch_margin = MARGIN_SIGMAS * errors.c20_rad;
-        let top_spin = profile.shooter.max_backspin_rad_s;
-        let spin_margin = MARGIN_SIGMAS * errors.backspin_rad_s(top_spin).max(errors.c40_rad_s);
+        let choose = search.choose;
+        let held = profile.held();
+        let in_reach = nominal_speeds(profile, &bracket).ok_or(PlanError::OutOfReach)?;
+        let (speed, speed_m_s) = if choose.speed {
+            (in_reach, (0.0, bracket.speed_max_m_s))
+        } else {
+            let margin = MARGIN_SIGMAS * errors.speed_m_s(held.speed_m_s) + LEAST_WINDOW[0];
+            (Stations::one(held.speed_m_s), about(held.speed_m_s, margin))
+        };
+        // A held value without an error would leave its axis no width.
+        let least_margin = if search.choose.pitch {
+            0.0
+        } else {
+            LEAST_WINDOW[1]
+        };
+        let pitch_margin = MARGIN_SIGMAS * errors.c20_rad + least_margin;
+        let (low_spin, top_spin) = profile.backspins_rad_s();
+        let spin_margin = MARGIN_SIGMAS
+            * errors
+                .backspin_rad_s(top_spin)
+                .max(errors.backspin_rad_s(low_spin));
         // Without spin and its error the axis would have no width.
         let spin_margin = spin_margin.max(LEAST_SPIN_MARGIN_RAD_S);
         let right_angle = 0.5 * std::f64::consts::PI;
-        let mirrored = profile.place.angle_rad == 0.0;
-        let polar = if mirrored {
-            (0.0, bracket.polar_rad.1.max(-bracket.polar_rad.0))
+        let without_a_side = held.rifle_spin_rad_s == 0.0 && side_spin_rad_s == 0.0;
+        let mirrored = profile.place.angle_rad == 0.0 && without_a_side && choose.polar;
+        let (nominal_polar, polar) = if mirrored {
+            let one_side = (0.0, bracket.polar_rad.1.max(-bracket.polar_rad.0));
+            (Stations::new(one_side.0, one_side.1, grid.polar), one_side)
+        } else if choose.polar {
+            let (low, high) = bracket.polar_rad;
+            (Stations::new(low, high, grid.polar), bracket.polar_rad)
         } else {
-            bracket.polar_rad
+            let margin = MARGIN_SIGMAS * errors.c30_rad + LEAST_WINDOW[1];
+            (Stations::one(held.polar_rad), about(held.polar_rad, margin))
         };
         let nominal = Nominals {
             speed,
             pitch: Stations::new(search.pitch_min_rad, search.pitch_max_rad, grid.pitch),
-            polar: Stations::new(polar.0, polar.1, grid.polar),
-            backspin: Stations::new(0.0, top_spin, grid.backspin),
+            polar: nominal_polar,
+            backspin: Stations::new(low_spin, top_spin, grid.backspin),
+            rifle_spin_rad_s: held.rifle_spin_rad_s,
+            side_spin_rad_s,
         };
         Self {
             pitch: Axis {
@@ -222,12 +275,12 @@ impl Plan {
                 count: grid.polar,
             },
             backspin: Axis {
-                low: -spin_margin,
+                low: low_spin - spin_margin,
                 high: top_spin + spin_margin,
                 count: grid.backspin,
             },
             speeds_per_line: grid.speed,
-            speed_m_s: (0.0, bracket.speed_max_m_s),
+            speed_m_s,
             mirrored,
             nominal,
             bracket,
@@ -258,11 +311,18 @@ impl Plan {
             (nominal, (nominal.low - margin, nominal.high + margin))
         };
         let [least_speed, least_angle, least_spin] = LEAST_WINDOW;
+        let choose = search.choose;
+        let range =
+            |chosen: bool, all: (f64, f64), held: f64| if chosen { all } else { (held, held) };
         let (speed, speed_m_s) = window(
             centre.speed_m_s,
             errors.speed_m_s(centre.speed_m_s),
             least_speed,
-            (0.1, self.bracket.speed_max_m_s),
+            range(
+                choose.speed,
+                (0.1, self.bracket.speed_max_m_s),
+                centre.speed_m_s,
+            ),
             most,
         );
         let (pitch, pitch_rad) = window(
@@ -276,10 +336,11 @@ impl Plan {
             centre.polar_rad,
             errors.c30_rad,
             least_angle,
-            self.bracket.polar_rad,
+            range(choose.polar, self.bracket.polar_rad, centre.polar_rad),
             most,
         );
-        let mirrored = self.mirrored && polar_rad.0 < 0.0 && polar_rad.1 > 0.0;
+        let without_a_side = centre.rifle_spin_rad_s == 0.0 && centre.side_spin_rad_s == 0.0;
+        let mirrored = self.mirrored && without_a_side && polar_rad.0 < 0.0 && polar_rad.1 > 0.0;
         if mirrored {
             polar = Stations::new(0.0, polar.high.max(-polar.low), most);
             polar_rad = (0.0, polar_rad.1.max(-polar_rad.0));
@@ -288,7 +349,7 @@ impl Plan {
             centre.backspin_rad_s,
             errors.backspin_rad_s(centre.backspin_rad_s),
             least_spin,
-            (0.0, profile.shooter.max_backspin_rad_s),
+            profile.backspins_rad_s(),
             most_spins,
         );
         let axis = |(low, high): (f64, f64), all: (f64, f64), count, least: f64| {
@@ -305,9 +366,14 @@ impl Plan {
                 pitch_rad,
                 (self.pitch.low, self.pitch.high),
                 grid.pitch,
-                0.0,
+                0.5 * least_angle,
             ),
-            polar: axis(polar_rad, self.bracket.polar_rad, grid.polar, 0.0),
+            polar: axis(
+                polar_rad,
+                self.bracket.polar_rad,
+                grid.polar,
+                0.5 * least_angle,
+            ),
             backspin: axis(
                 spin_rad_s,
                 (f64::NEG_INFINITY, f64::INFINITY),
@@ -315,13 +381,22 @@ impl Plan {
                 LEAST_SPIN_MARGIN_RAD_S,
             ),
             speeds_per_line: grid.speed,
-            speed_m_s,
+            speed_m_s: if choose.speed {
+                speed_m_s
+            } else {
+                about(
+                    centre.speed_m_s,
+                    0.5 * (speed_m_s.1 - speed_m_s.0) + least_speed,
+                )
+            },
             mirrored,
             nominal: Nominals {
                 speed,
                 pitch,
                 polar,
                 backspin,
+                rifle_spin_rad_s: centre.rifle_spin_rad_s,
+                side_spin_rad_s: centre.side_spin_rad_s,
             },
             bracket: self.bracket.clone(),
             shots: 0,

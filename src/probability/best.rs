@@ -9,6 +9,7 @@
 //! largest of many noisy values.
 
 use super::Progress;
+use super::curves::{self, Curve};
 use super::estimate::{Estimate, Sampler};
 use super::lessons::{self, Lessons};
 use super::sobol::Key;
@@ -16,7 +17,7 @@ use super::table::{Probabilities, Table};
 use crate::dynamics::{Outcome, Simulator, Touched};
 use crate::physics::PhysicsError;
 use crate::plan::{Plan, PlanError};
-use crate::profile::{Nominal, Profile};
+use crate::profile::{CHOICES, Nominal, Profile};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -32,8 +33,8 @@ const CLIMB_POINTS: u32 = 2048;
 /// Sobol points by which the tops of the climbs are compared.
 const COMPARE_POINTS: u32 = 16384;
 /// First steps of the climb: speed past the parabola through the hoop's centre (m/s), pitch (rad),
-/// polar angle (rad), backspin (rad/s).
-const FIRST_STEPS: [f64; 4] = [0.06, 0.03, 0.01, 3.0];
+/// polar angle (rad), backspin (rad/s), side spin (rad/s).
+const FIRST_STEPS: [f64; CHOICES.len()] = [0.06, 0.03, 0.01, 3.0, 3.0];
 /// Times the steps are halved.
 const HALVINGS: u32 = 2;
 /// Windows that follow each other at most.
@@ -84,6 +85,8 @@ pub struct BestShot {
     pub window: Plan,
     /// The error-free shot.
     pub outcome: Outcome,
+    /// P along each part of it.
+    pub curves: Vec<Curve>,
     /// What the shooter learns from it.
     pub lessons: Lessons,
     /// Where the error-free path, undisturbed, would pass the plane of the hoop: past the hoop's
@@ -138,10 +141,28 @@ pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestErro
         simulator: &simulator,
         progress,
     };
-    let tops = search.tops(&search.table(&plan));
-    let direct = search.best(ShotKind::Direct, &tops[0])?;
-    let bank = search.best(ShotKind::Bank, &tops[1])?;
+    let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
+    for side_spin_rad_s in side_spins(profile, &plan) {
+        let plan = Plan::with_side_spin(profile, side_spin_rad_s)?;
+        let tops = search.tops(&search.table(&plan));
+        for (starts, tops) in starts.iter_mut().zip(tops) {
+            starts.extend(apart(&tops).into_iter().map(|(_, nominal)| nominal));
+        }
+    }
+    let direct = search.best(ShotKind::Direct, &starts[0])?;
+    let bank = search.best(ShotKind::Bank, &starts[1])?;
     Ok(Best { plan, direct, bank })
+}
+
+/// The side spins from which the search starts: the held one; or none and the limits, of which one is
+/// enough where the other is its mirror image.
+fn side_spins(profile: &Profile, plan: &Plan) -> Vec<f64> {
+    let most = profile.shooter.max_side_spin_rad_s;
+    match (profile.search.choose.side_spin, plan.mirrored) {
+        (false, _) => vec![plan.nominal.side_spin_rad_s],
+        (true, true) => vec![0.0, most],
+        (true, false) => vec![0.0, most, -most],
+    }
 }
 
 /// A nominal shot of the table with its P.
@@ -196,7 +217,7 @@ impl Search<'_> {
     fn best(
         &self,
         kind: ShotKind,
-        tops: &[Option<Top>],
+        starts: &[Nominal],
     ) -> Result<Result<BestShot, NoShot>, PlanError> {
         let sampler = Sampler::new(self.profile, self.simulator);
         let scramble = sampler.scramble(Key {
@@ -208,9 +229,9 @@ impl Search<'_> {
             let counts = sampler.count(nominal, &scramble, (0, points));
             counts.made()
         };
-        let hill = starts(tops)
-            .into_iter()
-            .map(|(_, start)| {
+        let hill = starts
+            .iter()
+            .map(|&start| {
                 let top = self.climb(kind, start, |nominal| made(CLIMB_POINTS, nominal));
                 (made(COMPARE_POINTS, &top), top)
             })
@@ -221,23 +242,27 @@ impl Search<'_> {
         };
         let mut window = self.plan.around(self.profile, &nominal)?;
         let mut table_probability = 0.0;
+        let mut curves = Vec::new();
         for _ in 0..MOST_WINDOWS {
             let table = self.table(&window);
             let tops = self.tops(&table);
-            let Some(&(p, top)) = starts(&tops[kind as usize]).first() else {
+            let Some(&(p, top)) = apart(&tops[kind as usize]).first() else {
                 break;
             };
             table_probability = p;
             nominal = self.off_the_grid(kind, &table, &top);
+            curves = curves::from_table(&table, &nominal);
             let next = self.plan.around(self.profile, &nominal)?;
             if !window.nominal.is_at_edge(&top, &next.nominal) {
                 break;
             }
             window = next;
         }
-        if !self.profile.shooter.errors.are_of_eq_25() {
-            // The table knows four independent errors; the samples know them all.
+        if !self.profile.shooter.errors.are_of_eq_25() || self.profile.search.choose.side_spin {
+            // The table knows four independent errors and one side spin; the samples know them all.
             nominal = self.climb(kind, nominal, |nominal| made(COMPARE_POINTS, nominal));
+            window = self.plan.around(self.profile, &nominal)?;
+            curves = curves::from_samples(self.profile, &sampler, &scramble, &window, &nominal);
         }
         let search = &self.profile.search;
         let estimate =
@@ -248,6 +273,7 @@ impl Search<'_> {
             table_probability,
             window,
             outcome: self.simulator.shoot(&self.profile.release(&nominal)),
+            curves,
             lessons: lessons::draw(self.profile, self.simulator, &nominal, self.progress),
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
@@ -290,6 +316,7 @@ impl Search<'_> {
     /// Climbs from a start by a pattern search on the number of shots made; gives the top.
     fn climb(&self, kind: ShotKind, start: Nominal, value: impl Fn(&Nominal) -> u64) -> Nominal {
         let mut steps = FIRST_STEPS;
+        let chosen = self.profile.search.choose.flags();
         let mut best = (value(&start), start);
         let mut moves = 0;
         self.progress.begin("climbing", u64::from(HALVINGS + 1));
@@ -298,6 +325,9 @@ impl Search<'_> {
             while moved && moves < MOST_MOVES {
                 moved = false;
                 for (axis, &step) in steps.iter().enumerate() {
+                    if !chosen[axis] {
+                        continue;
+                    }
                     for sign in [1.0, -1.0] {
                         let next = self.moved(&best.1, axis, sign * step);
                         if next == best.1
@@ -334,7 +364,7 @@ impl Search<'_> {
                     (from.pitch_rad + by).clamp(search.pitch_min_rad, search.pitch_max_rad);
                 let before = centre_speed_m_s(self.profile, from.pitch_rad);
                 let after = centre_speed_m_s(self.profile, to.pitch_rad);
-                if let Some((before, after)) = before.zip(after) {
+                if let Some((before, after)) = before.zip(after).filter(|_| search.choose.speed) {
                     to.speed_m_s += after - before;
                 }
             }
@@ -342,32 +372,50 @@ impl Search<'_> {
                 let (low, high) = self.plan.bracket.polar_rad;
                 to.polar_rad = (from.polar_rad + by).clamp(low, high);
             }
-            _ => {
+            3 => {
                 let most = self.profile.shooter.max_backspin_rad_s;
                 to.backspin_rad_s = (from.backspin_rad_s + by).clamp(0.0, most);
             }
+            _ => {
+                let most = self.profile.shooter.max_side_spin_rad_s;
+                to.side_spin_rad_s = (from.side_spin_rad_s + by).clamp(-most, most);
+            }
         }
-        to.speed_m_s = to.speed_m_s.clamp(0.1, self.plan.bracket.speed_max_m_s);
+        if search.choose.speed {
+            to.speed_m_s = to.speed_m_s.clamp(0.1, self.plan.bracket.speed_max_m_s);
+        }
         to
     }
 
     fn limits(&self, nominal: &Nominal) -> Vec<&'static str> {
         let search = &self.profile.search;
-        let most_spin = self.profile.shooter.max_backspin_rad_s;
+        let choose = search.choose;
+        let (least_spin, most_spin) = self.profile.backspins_rad_s();
+        let most_side_spin = self.profile.shooter.max_side_spin_rad_s;
         [
-            ("pitch_min", nominal.pitch_rad <= search.pitch_min_rad),
-            ("pitch_max", nominal.pitch_rad >= search.pitch_max_rad),
+            (
+                "pitch_min",
+                choose.pitch && nominal.pitch_rad <= search.pitch_min_rad,
+            ),
+            (
+                "pitch_max",
+                choose.pitch && nominal.pitch_rad >= search.pitch_max_rad,
+            ),
             (
                 "no backspin",
-                most_spin > 0.0 && nominal.backspin_rad_s <= 0.0,
+                most_spin > least_spin && nominal.backspin_rad_s <= least_spin,
             ),
             (
                 "max_backspin",
-                most_spin > 0.0 && nominal.backspin_rad_s >= most_spin,
+                most_spin > least_spin && nominal.backspin_rad_s >= most_spin,
+            ),
+            (
+                "max_side_spin",
+                choose.side_spin && nominal.side_spin_rad_s.abs() >= most_side_spin,
             ),
             (
                 "speed_max",
-                nominal.speed_m_s >= self.plan.bracket.speed_max_m_s,
+                choose.speed && nominal.speed_m_s >= self.plan.bracket.speed_max_m_s,
             ),
         ]
         .into_iter()
@@ -392,7 +440,7 @@ fn axis_value_mut(nominal: &mut Nominal, axis: usize) -> &mut f64 {
 }
 
 /// The best of the tops, and others at least [`START_GAP`] pitch angles away from those before.
-fn starts(tops: &[Option<Top>]) -> Vec<Top> {
+fn apart(tops: &[Option<Top>]) -> Vec<Top> {
     let mut order: Vec<(usize, Top)> = tops
         .iter()
         .enumerate()

@@ -6,6 +6,7 @@
 //! the normal, and the module `best` joins the two into Eq. 26.
 
 pub mod best;
+pub mod curves;
 pub mod estimate;
 pub mod grid;
 pub mod lessons;

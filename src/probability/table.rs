@@ -78,6 +78,10 @@ pub struct Probabilities {
     pub speed_m_s: Vec<f64>,
     /// `[pitch][polar][backspin][speed]`, 0 to 1.
     pub values: Vec<f64>,
+    /// Spin about the level direction of the shot, rad/s.
+    pub rifle_spin_rad_s: f64,
+    /// Spin about the vertical, rad/s.
+    pub side_spin_rad_s: f64,
 }
 
 impl Probabilities {
@@ -119,7 +123,8 @@ impl Probabilities {
             pitch_rad: self.pitch_rad[pitch],
             polar_rad: self.polar_rad[polar],
             backspin_rad_s: self.backspin_rad_s[backspin],
-            ..Nominal::default()
+            rifle_spin_rad_s: self.rifle_spin_rad_s,
+            side_spin_rad_s: self.side_spin_rad_s,
         };
         (self.values[index], nominal)
     }
@@ -176,6 +181,8 @@ impl Table {
             pitch,
             polar,
             backspin,
+            rifle_spin_rad_s,
+            side_spin_rad_s,
         } = plan.nominal;
         let pitch_rad: Vec<f64> = pitch.values().collect();
         let polar_rad: Vec<f64> = polar.values().collect();
@@ -194,6 +201,8 @@ impl Table {
             backspin_rad_s: backspin.values().collect(),
             speed_m_s: speed.values().collect(),
             values,
+            rifle_spin_rad_s,
+            side_spin_rad_s,
         }
     }
 }
@@ -240,7 +249,8 @@ impl Builder<'_> {
             pitch_rad,
             polar_rad,
             backspin_rad_s: 0.0,
-            ..Nominal::default()
+            rifle_spin_rad_s: plan.nominal.rifle_spin_rad_s,
+            side_spin_rad_s: plan.nominal.side_spin_rad_s,
         }));
         place.starts.clear();
         place.speeds.clear();

@@ -156,6 +156,31 @@ impl<'t, 'i> Keys<'t, 'i> {
         }
     }
 
+    /// A list of texts, if it is there.
+    pub(super) fn texts(
+        &mut self,
+        key: &'static str,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Vec<String>> {
+        let texts = match self.get(key)?.get_ref() {
+            DeValue::Array(items) => items
+                .iter()
+                .map(|item| match item.get_ref() {
+                    DeValue::String(text) => Some(text.to_string()),
+                    _ => None,
+                })
+                .collect(),
+            _ => None,
+        };
+        if texts.is_none() {
+            faults.push(self.fault(
+                key,
+                "must be a list of texts, such as [\"speed\", \"pitch\"]",
+            ));
+        }
+        texts
+    }
+
     /// A whole number within `range`.
     pub(super) fn count(
         &mut self,

@@ -6,7 +6,9 @@
 mod errors;
 mod fault;
 mod keys;
+mod place;
 mod read;
+mod search;
 mod world;
 
 pub use errors::{Correlation, ERROR_NAMES, ERRORS, Errors};
@@ -48,6 +50,8 @@ pub struct Shooter {
     pub release_height_m: f64,
     /// Largest nominal backspin, rad/s.
     pub max_backspin_rad_s: f64,
+    /// Largest nominal side spin either way, rad/s.
+    pub max_side_spin_rad_s: f64,
     /// Release errors.
     pub errors: Errors,
 }
@@ -106,10 +110,71 @@ impl Default for Grid {
     }
 }
 
+/// The parts of a nominal shot that a search can choose.
+pub const CHOICES: [&str; 5] = ["speed", "pitch", "polar", "backspin", "side_spin"];
+
+/// Which parts of a nominal shot the search chooses; the others are held at the profile's `[nominal]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Choice {
+    /// Speed.
+    pub speed: bool,
+    /// Pitch angle.
+    pub pitch: bool,
+    /// Polar angle.
+    pub polar: bool,
+    /// Backspin.
+    pub backspin: bool,
+    /// Spin about the vertical.
+    pub side_spin: bool,
+}
+
+impl Default for Choice {
+    /// All but side spin.
+    fn default() -> Self {
+        Self {
+            speed: true,
+            pitch: true,
+            polar: true,
+            backspin: true,
+            side_spin: false,
+        }
+    }
+}
+
+impl Choice {
+    /// By the order of [`CHOICES`].
+    #[must_use]
+    pub fn flags(&self) -> [bool; CHOICES.len()] {
+        [
+            self.speed,
+            self.pitch,
+            self.polar,
+            self.backspin,
+            self.side_spin,
+        ]
+    }
+
+    /// Only those of [`CHOICES`] that are named.
+    #[must_use]
+    pub fn only(names: &[&str]) -> Self {
+        let [speed, pitch, polar, backspin, side_spin] =
+            CHOICES.map(|choice| names.contains(&choice));
+        Self {
+            speed,
+            pitch,
+            polar,
+            backspin,
+            side_spin,
+        }
+    }
+}
+
 /// Bounds and precision of the search for the best shot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Search {
-    /// Smallest nominal pitch angle, rad.
+    /// What is searched.
+    pub choose: Choice,
+    /// Smallest nominal pitch angle, rad; with the pitch held, that.
     pub pitch_min_rad: f64,
     /// Largest nominal pitch angle, rad.
     pub pitch_max_rad: f64,
@@ -130,6 +195,7 @@ impl Search {
         let deg = crate::units::DEGREE_RAD;
         let least = 45.0 * deg + 0.5 * libm::atan2(-height_above_hoop_m, distance_m);
         Self {
+            choose: Choice::default(),
             pitch_min_rad: (least - 8.0 * deg).clamp(deg, 80.0 * deg),
             pitch_max_rad: (least + 14.0 * deg).clamp(9.0 * deg, 85.0 * deg),
             speed_max_m_s: None,
@@ -197,6 +263,31 @@ impl Profile {
     #[must_use]
     pub fn height_above_hoop_m(&self) -> f64 {
         self.shooter.release_height_m - self.physics.hoop_height_m
+    }
+
+    /// Least and largest nominal backspin, rad/s.
+    #[must_use]
+    pub fn backspins_rad_s(&self) -> (f64, f64) {
+        if self.search.choose.backspin {
+            (0.0, self.shooter.max_backspin_rad_s)
+        } else {
+            let held = self.held().backspin_rad_s;
+            (held, held)
+        }
+    }
+
+    /// The `[nominal]` shot, as far as it is given: towards the hoop and without spin where it is not.
+    #[must_use]
+    pub fn held(&self) -> Nominal {
+        let intent = &self.nominal;
+        Nominal {
+            speed_m_s: intent.speed_m_s.unwrap_or(0.0),
+            pitch_rad: intent.pitch_rad.unwrap_or(0.0),
+            polar_rad: intent.polar_rad.unwrap_or(self.place.angle_rad),
+            backspin_rad_s: intent.backspin_rad_s.unwrap_or(0.0),
+            rifle_spin_rad_s: intent.rifle_spin_rad_s.unwrap_or(0.0),
+            side_spin_rad_s: intent.side_spin_rad_s.unwrap_or(0.0),
+        }
     }
 
     /// The release of a nominal shot from this place, without errors.

@@ -2,13 +2,13 @@
 
 use super::fault::{Fault, ProfileError};
 use super::keys::Keys;
+use super::place::read_place;
+use super::search::{hold, read_grid, read_output, read_search};
 use super::world::read_physics;
-use super::{
-    Correlation, ERROR_NAMES, Errors, Grid, Intent, Output, Place, Profile, Search, Shooter,
-};
+use super::{Correlation, ERROR_NAMES, Errors, Intent, Profile, Search, Shooter};
 use crate::dynamics::Integrator;
 use crate::physics::Physics;
-use crate::units::{Dimension, System};
+use crate::units::Dimension;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 use toml::de::DeTable;
@@ -16,7 +16,7 @@ use toml::de::DeTable;
 /// Largest profile that is read, in bytes.
 pub const LARGEST_PROFILE_BYTES: u64 = 16 * 1024 * 1024;
 /// Greatest speed that a search may be given, m/s.
-const FASTEST_M_S: f64 = 40.0;
+pub(super) const FASTEST_M_S: f64 = 40.0;
 /// Longest name of a shooter, in characters.
 const LONGEST_NAME: usize = 500;
 
@@ -58,15 +58,17 @@ pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
                 shooter.release_height_m - physics.hoop_height_m,
             )
         });
-        let search = read_search(
+        let (search, searched) = read_search(
             &mut keys,
             usual.unwrap_or_else(|| Search::around(4.0, -1.0)),
             faults,
         );
         let output = read_output(&mut keys, faults);
         keys.finish(faults);
+        let shooter = shooter?;
+        let search = hold(search, &shooter, &nominal, &searched, faults);
         Some(Profile {
-            shooter: shooter?,
+            shooter,
             place: place?,
             nominal,
             physics,
@@ -172,6 +174,15 @@ fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shoo
         "0 to 200 rad/s (31.8 rev/s)",
         faults,
     );
+    let side_spin = keys.quantity("max_side_spin", Dimension::Spin, faults);
+    let side_spin = check(
+        &keys,
+        "max_side_spin",
+        side_spin,
+        |w| (0.0..=200.0).contains(&w),
+        "0 to 200 rad/s (31.8 rev/s)",
+        faults,
+    );
     let mut table = keys.table("errors", faults);
     let errors = read_errors(&mut table, spin.unwrap_or(0.0), faults);
     table.finish(faults);
@@ -185,6 +196,7 @@ fn read_shooter(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Shoo
         name,
         release_height_m: height?,
         max_backspin_rad_s: spin?,
+        max_side_spin_rad_s: side_spin.unwrap_or(0.0),
         errors: errors?,
     })
 }
@@ -344,173 +356,4 @@ fn intended(dimension: Dimension) -> (fn(f64) -> bool, &'static str) {
         Dimension::Angle => (|a| a.abs() <= PI, "between -180 and 180 deg"),
         _ => (|w| w.abs() <= 200.0, "within 200 rad/s (31.8 rev/s)"),
     }
-}
-
-fn read_place(mut keys: Keys<'_, '_>, physics: &Physics, faults: &mut Vec<Fault>) -> Option<Place> {
-    let cartesian = keys.has("x") || keys.has("y");
-    let polar = keys.has("distance") || keys.has("angle");
-    let (x, y, at) = if cartesian {
-        if polar {
-            faults.push(keys.fault("x", "give either distance and angle, or x and y"));
-        }
-        let _ = (
-            keys.quantity("distance", Dimension::Length, faults),
-            keys.quantity("angle", Dimension::Angle, faults),
-        );
-        let x = keys.required("x", Dimension::Length, faults);
-        let y = keys.required("y", Dimension::Length, faults);
-        let at = keys.fault("x", "");
-        keys.finish(faults);
-        (x?, y?, at)
-    } else {
-        let distance = keys.required("distance", Dimension::Length, faults);
-        let distance = check(&keys, "distance", distance, |d| d > 0.0, "above 0", faults);
-        let angle = keys.required("angle", Dimension::Angle, faults);
-        let angle = check(
-            &keys,
-            "angle",
-            angle,
-            |a| a.abs() <= PI,
-            "between -180 and 180 deg",
-            faults,
-        );
-        let place = distance.zip(angle);
-        let span_of = keys.fault("distance", "");
-        // Known here, though not given.
-        let _ = (
-            keys.quantity("x", Dimension::Length, faults),
-            keys.quantity("y", Dimension::Length, faults),
-        );
-        keys.finish(faults);
-        let (distance_m, angle_rad) = place?;
-        let place = Place {
-            distance_m,
-            angle_rad,
-        };
-        return check_place(place, physics, &span_of, faults);
-    };
-    let place = Place {
-        distance_m: (x * x + y * y).sqrt(),
-        angle_rad: libm::atan2(y, x),
-    };
-    check_place(place, physics, &at, faults)
-}
-
-fn check_place(
-    place: Place,
-    physics: &Physics,
-    at: &Fault,
-    faults: &mut Vec<Fault>,
-) -> Option<Place> {
-    let foot = crate::physics::FOOT_M;
-    let reach = physics.ring_radius_m + physics.ball_radius_m;
-    let fault = |message: String| Fault {
-        message,
-        ..at.clone()
-    };
-    let x = place.distance_m * libm::cos(place.angle_rad);
-    let in_front = physics.ball_radius_m - physics.board_distance_m;
-    if !(place.distance_m > reach) {
-        faults.push(fault(format!(
-            "the place is inside the ring's reach; the distance must be more than {:.2} ft ({reach:.3} m)",
-            reach / foot
-        )));
-        return None;
-    }
-    if !(x > in_front) {
-        faults.push(fault(format!(
-            "the place is behind the board (x = {:.2} ft); x = distance cos(angle) must be more than {:.2} ft ({in_front:.3} m)",
-            x / foot,
-            in_front / foot
-        )));
-        return None;
-    }
-    if !(place.distance_m < 40.0) {
-        faults.push(fault("the distance must be below 40 m (131 ft)".to_owned()));
-        return None;
-    }
-    Some(place)
-}
-
-fn read_grid(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Grid {
-    let mut keys = root.table("grid", faults);
-    let mut grid = Grid::default();
-    for (key, place) in [
-        ("speed", &mut grid.speed),
-        ("pitch", &mut grid.pitch),
-        ("polar", &mut grid.polar),
-        ("backspin", &mut grid.backspin),
-    ] {
-        if let Some(count) = keys.count(key, 2..=100_000, faults) {
-            *place = usize::try_from(count).unwrap_or(usize::MAX);
-        }
-    }
-    keys.finish(faults);
-    grid
-}
-
-fn read_search(root: &mut Keys<'_, '_>, usual: Search, faults: &mut Vec<Fault>) -> Search {
-    let mut keys = root.table("search", faults);
-    let mut search = usual;
-    let deg = crate::units::DEGREE_RAD;
-    let pitch = |a: f64| (deg..=89.0 * deg).contains(&a);
-    for (key, place) in [
-        ("pitch_min", &mut search.pitch_min_rad),
-        ("pitch_max", &mut search.pitch_max_rad),
-    ] {
-        let value = keys.quantity(key, Dimension::Angle, faults);
-        if let Some(value) = check(&keys, key, value, pitch, "from 1 to 89 deg", faults) {
-            *place = value;
-        }
-    }
-    if !(search.pitch_min_rad < search.pitch_max_rad) {
-        let most = search.pitch_max_rad / deg;
-        faults.push(keys.fault(
-            "pitch_min",
-            format!("must be less than pitch_max ({most:.1} deg)"),
-        ));
-    }
-    let speed = keys.quantity("speed_max", Dimension::Speed, faults);
-    search.speed_max_m_s = check(
-        &keys,
-        "speed_max",
-        speed,
-        |v| v > 0.0 && v <= FASTEST_M_S,
-        "above 0 and at most 40 m/s",
-        faults,
-    );
-    let error = keys.quantity("standard_error", Dimension::Number, faults);
-    if let Some(error) = check(
-        &keys,
-        "standard_error",
-        error,
-        |e| (1e-5..=0.1).contains(&e),
-        "from 0.00001 to 0.1",
-        faults,
-    ) {
-        search.standard_error = error;
-    }
-    if let Some(seed) = keys.count("seed", 0..=u64::MAX, faults) {
-        search.seed = seed;
-    }
-    keys.finish(faults);
-    search
-}
-
-fn read_output(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Output {
-    let mut keys = root.table("output", faults);
-    let mut output = Output::default();
-    if let Some(folder) = keys.text("folder", faults) {
-        if folder.is_empty() || folder.contains('\0') {
-            faults.push(keys.fault("folder", "must be the name of a folder"));
-        }
-        output.folder = folder;
-    }
-    match keys.text("units", faults).as_deref() {
-        None | Some("imperial") => {}
-        Some("metric") => output.units = System::Metric,
-        Some(_) => faults.push(keys.fault("units", "must be \"imperial\" or \"metric\"")),
-    }
-    keys.finish(faults);
-    output
 }

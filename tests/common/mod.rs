@@ -3,9 +3,27 @@
 
 use bankshot::dynamics::{Integrator, Release, Simulator};
 use bankshot::physics::{FOOT_M, Physics};
+use bankshot::profile::{self, Nominal, Profile};
 use bankshot::units::{DEGREE_RAD, REV_RAD};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
+
+/// A profile of `configs/`.
+pub fn load(name: &str) -> Profile {
+    let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    profile::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
+}
+
+/// A nominal shot without rifle and side spin, in the units of the paper.
+pub fn nominal(speed_ft_s: f64, pitch_deg: f64, polar_deg: f64, backspin_rev_s: f64) -> Nominal {
+    Nominal {
+        speed_m_s: speed_ft_s * 0.3048,
+        pitch_rad: pitch_deg * DEGREE_RAD,
+        polar_rad: polar_deg * DEGREE_RAD,
+        backspin_rad_s: backspin_rev_s * REV_RAD,
+        ..Nominal::default()
+    }
+}
 
 /// A release 13.75 ft from the hoop, 3 ft below it, in the units of the paper.
 pub fn release(
