@@ -2,7 +2,7 @@
 //!
 //! Data flows one way: a [`profile`] is checked, a [`plan`] says which releases are worth trying,
 //! [`dynamics`] simulates them, [`probability`] reduces them to probabilities and best shots, and
-//! [`output`] writes those down. No module imports one further down that line.
+//! [`output`] writes those down; a [`sweep`] does so for every place of a [`court`]. No module imports one further down that line.
 //!
 //! The model is that of "Numerical Analysis of the Basketball Shot" (J. Dyn. Sys. Meas. Control,
 //! DOI 10.1115/1.1636193), with its errata; `docs/model.md` has the equations.
@@ -47,6 +47,9 @@ pub mod physics;
 // Quantities with their units, at the border of the program.
 pub mod units;
 
+// The lines of a court.
+pub mod court;
+
 mod lane;
 
 // The ball in flight and in contact: from a release to made or missed.
@@ -63,3 +66,6 @@ pub mod probability;
 
 // Records, tables and files.
 pub mod output;
+
+// Best shots at many places, on disk as they come.
+pub mod sweep;

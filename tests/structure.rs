@@ -4,15 +4,17 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms in the order of the data; each may use those before it.
-const LINE: [&str; 8] = [
+const LINE: [&str; 10] = [
     "lane",
     "physics",
     "units",
+    "court",
     "dynamics",
     "profile",
     "plan",
     "probability",
     "output",
+    "sweep",
 ];
 /// Mathematics of the normal distribution, used by the plan to bound what lies outside it.
 const ALLOWED: [(&str, &str); 1] = [("plan", "probability::normal")];

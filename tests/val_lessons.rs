@@ -3,8 +3,9 @@
 mod common;
 
 use bankshot::dynamics::Simulator;
+use bankshot::probability::Silent;
 use bankshot::probability::estimate::Sampler;
-use bankshot::probability::{Silent, lessons};
+use bankshot::probability::lessons::{self, Topics};
 use bankshot::profile::{self, Nominal, Profile};
 use common::{load, nominal};
 
@@ -17,7 +18,7 @@ fn val_what_an_error_costs_is_the_difference_of_two_separate_estimates() {
     // Eight comparisons at 4.5 standard errors.
     let (profile, shot) = free_throw();
     let simulator = Simulator::new(&profile.physics).unwrap();
-    let learned = lessons::draw(&profile, &simulator, &shot, &Silent);
+    let learned = lessons::draw(&profile, &simulator, &shot, Topics::ALL, &Silent);
     assert_eq!(learned.costs.len(), 4);
     assert_eq!(learned.costs[0].error, "speed");
     let p =
@@ -49,7 +50,7 @@ fn val_what_an_error_costs_is_the_difference_of_two_separate_estimates() {
 fn prop_windows_end_where_the_shot_is_missed_and_mirror() {
     let (profile, shot) = free_throw();
     let simulator = Simulator::new(&profile.physics).unwrap();
-    let learned = lessons::draw(&profile, &simulator, &shot, &Silent);
+    let learned = lessons::draw(&profile, &simulator, &shot, Topics::ALL, &Silent);
     let made = |shot: &Nominal| simulator.verdict(&profile.release(shot)).made;
     let (low, high) = learned.windows[0].ends.unwrap();
     let at = |speed_m_s: f64| Nominal { speed_m_s, ..shot };
@@ -68,7 +69,7 @@ fn val_backspin_helps_a_free_throw_and_more_of_it_helps_more() {
     // The paper (Figs. 12 and 13) finds wider bands with 3 rev/s than without.
     let (profile, shot) = free_throw();
     let simulator = Simulator::new(&profile.physics).unwrap();
-    let learned = lessons::draw(&profile, &simulator, &shot, &Silent);
+    let learned = lessons::draw(&profile, &simulator, &shot, Topics::ALL, &Silent);
     let gains: Vec<f64> = learned
         .spins
         .iter()

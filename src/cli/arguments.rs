@@ -1,6 +1,8 @@
 //! What can be asked of the program.
 
 use super::nominal::NominalOptions;
+use bankshot::sweep::jobs::Shard;
+use bankshot::sweep::run::Fault;
 use bankshot::units::System;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -10,15 +12,18 @@ Exit codes:
   0   everything asked for is there
   1   ran, but missed the standard error asked for
   2   usage or configuration refused; nothing was written
-  3   incomplete: some rows failed, the others are done
+  3   incomplete: some rows or jobs are missing or failed, the others are done
+  4   data damaged, foreign or contradictory
   70  a bug
   74  input or output failed
+  75  stopped, or the folder is in use by another run; run again
   130 stopped by Ctrl-C; no file is left half written
 
 Examples:
   bankshot best configs/free_throw.toml
   bankshot probability configs/nine_errors.toml
   bankshot plan configs/three_pointer.toml
+  bankshot sweep configs/quick_sweep.toml
   bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg'
   bankshot simulate releases.csv --output outcomes.csv";
 
@@ -42,13 +47,23 @@ pub(crate) enum Command {
     Best(BestOptions),
     /// Check a profile and say what is wrong with it, all faults at once.
     Check(CheckOptions),
-    /// Say what `best` would simulate, how long it takes and how much memory it needs, and show that
-    /// the bracket loses nothing.
+    /// Say what `best` or `sweep` would simulate, how long it takes and how much memory it needs, and show
+    /// that the bracket loses nothing.
     Plan(PlanOptions),
     /// Integrate the probability of making one nominal shot, under any of nine errors.
     Probability(ProbabilityOptions),
     /// Simulate the releases of a CSV file.
     Simulate(SimulateOptions),
+    /// Find the best shots at every place of a region; run again, it goes on where it stopped.
+    Sweep(SweepOptions),
+    /// Say how far a sweep has come.
+    Status(FolderOptions),
+    /// Check every result of a sweep, and compute a part of them again.
+    Verify(VerifyOptions),
+    /// Print the shards of a sweep with missing jobs, as `sbatch --array` takes them.
+    Missing(MissingOptions),
+    /// Join the shards of a sweep into its tables.
+    Merge(MergeOptions),
     /// Follow one shot and say what happens.
     Trace(TraceOptions),
     /// Print a completion script for a shell.
@@ -182,6 +197,66 @@ pub(crate) struct ProbabilityOptions {
     /// Print one JSON object instead of words.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The folder holds store/*.sqlite (every result as it comes; query it while it runs) and, once whole,
+best_shots.csv, best_shots.parquet and provenance.json. Run again with the same configuration, it
+computes only what is missing.
+
+Examples:
+  bankshot plan configs/half_court.toml
+  bankshot sweep configs/half_court.toml --out half_court
+  bankshot sweep configs/half_court.toml --out /shared/half_court --shard 3/64")]
+pub(crate) struct SweepOptions {
+    /// The sweep: a [sweep] table and a shooter.
+    pub(crate) sweep: PathBuf,
+    /// Folder of the sweep [default: one named after it, under the configuration's folder or results].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Only part I of N; all parts may share the folder, and run on any machine.
+    #[arg(long, value_name = "I/N", value_parser = super::sweep::shard)]
+    pub(crate) shard: Option<Shard>,
+    /// Compute the jobs that failed again.
+    #[arg(long)]
+    pub(crate) retry_failed: bool,
+    /// Fails on purpose, for tests.
+    #[arg(long, hide = true, value_parser = super::sweep::fault)]
+    pub(crate) fault: Option<Fault>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct FolderOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct VerifyOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+    /// Computes this part of the jobs again and compares every bit, such as 1%.
+    #[arg(long, value_name = "PART", value_parser = super::sweep::part)]
+    pub(crate) recompute: Option<f64>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct MissingOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+    /// Into how many shards the sweep is divided.
+    #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1_000_000))]
+    pub(crate) shards: usize,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct MergeOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+    /// Into how many shards it was divided, to say which to submit again.
+    #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1_000_000))]
+    pub(crate) shards: Option<usize>,
 }
 
 /// The integrators by name.

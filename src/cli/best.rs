@@ -22,7 +22,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from(&profile.output.folder));
-    let folder = parent.join(folder_name(&profile));
+    let folder = parent.join(named_folder(&profile.shooter.name, &profile.hash()));
     prepare(&folder)?;
     let best = best::find(&profile, &Bars::new(quiet))?;
     write(&folder, &profile, &best, units)?;
@@ -48,10 +48,8 @@ fn exit_code(profile: &Profile, best: &Best) -> u8 {
 }
 
 /// `<name>-<hash>`, the name reduced to letters, digits and dashes: names never become paths.
-fn folder_name(profile: &Profile) -> String {
-    let mut name: String = profile
-        .shooter
-        .name
+pub(crate) fn named_folder(name: &str, hash: &str) -> String {
+    let mut name: String = name
         .chars()
         .map(|c| {
             if c.is_ascii_alphanumeric() {
@@ -67,7 +65,7 @@ fn folder_name(profile: &Profile) -> String {
     }
     let name = name.trim_matches('-');
     let name = if name.is_empty() { "shooter" } else { name };
-    format!("{name}-{}", &profile.hash()[..12])
+    format!("{name}-{}", &hash[..12])
 }
 
 /// Makes the folder and finds out, before any computing, whether it can be written to.

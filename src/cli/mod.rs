@@ -7,7 +7,9 @@ mod nominal;
 mod plan;
 mod probability;
 mod progress;
+mod signals;
 mod simulate;
+mod sweep;
 mod terminal;
 mod trace;
 
@@ -29,7 +31,7 @@ pub(crate) fn main() -> ExitCode {
             });
         }
     };
-    clean_up_on_interrupt();
+    signals::watch();
     let result = std::panic::catch_unwind(|| run(&arguments));
     match result {
         Ok(Ok(code)) => ExitCode::from(code),
@@ -46,15 +48,6 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
-/// Ctrl-C removes the files that are not finished and ends the program.
-fn clean_up_on_interrupt() {
-    // Without a handler the default one ends the program too; only the temporary file would stay.
-    let _ = ctrlc::set_handler(|| {
-        bankshot::output::files::discard_pending();
-        std::process::exit(i32::from(code::INTERRUPTED));
-    });
-}
-
 fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
@@ -63,6 +56,11 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Plan(options) => plan::run(options, arguments.quiet),
         Command::Probability(options) => probability::run(options, arguments.quiet),
         Command::Simulate(options) => simulate::run(options, arguments.quiet),
+        Command::Sweep(options) => sweep::run(options, arguments.quiet),
+        Command::Status(options) => sweep::status(options),
+        Command::Verify(options) => sweep::verify(options, arguments.quiet),
+        Command::Missing(options) => sweep::missing(options),
+        Command::Merge(options) => sweep::merge(options, arguments.quiet),
         Command::Trace(options) => trace::run(options, arguments.quiet),
         Command::Completions { shell } => {
             let mut script = Vec::new();

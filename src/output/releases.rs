@@ -70,6 +70,61 @@ pub struct Layout {
     places: [Option<(usize, &'static str, f64)>; 9],
 }
 
+/// The places of a CSV text with the columns x and y, or distance and court_angle, with their units: (x, y), m.
+///
+/// # Errors
+/// What is wrong, with its row.
+pub fn places(text: &str) -> Result<Vec<(f64, f64)>, String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    let find = |columns: [(&'static str, f64); 2]| {
+        columns.into_iter().find_map(|(name, unit)| {
+            let place = header.iter().position(|column| column == name)?;
+            Some((place, name, unit))
+        })
+    };
+    let [distance, angle] = [PARAMETERS[0].columns, PARAMETERS[1].columns].map(find);
+    let [x, y] = [
+        [("x_ft", FOOT_M), ("x_m", 1.0)],
+        [("y_ft", FOOT_M), ("y_m", 1.0)],
+    ]
+    .map(find);
+    let (first, second, polar) = match (x.zip(y), distance.zip(angle)) {
+        (Some((x, y)), None) => (x, y, false),
+        (None, Some((distance, angle))) => (distance, angle, true),
+        _ => {
+            return Err(
+                "needs the columns x_ft and y_ft, or distance_ft and court_angle_deg (or x_m, y_m, distance_m, court_angle_rad)"
+                    .to_owned(),
+            );
+        }
+    };
+    let mut places = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| error.to_string())?;
+        let number = |(place, name, unit): (usize, &str, f64)| {
+            let text = record.get(place).unwrap_or_default();
+            match text.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value * unit),
+                _ => Err(format!(
+                    "row {}: {name} must be a number, not \"{text}\"",
+                    row + 1
+                )),
+            }
+        };
+        let (first, second) = (number(first)?, number(second)?);
+        places.push(if polar {
+            let (sin, cos) = libm::sincos(second);
+            (first * cos, first * sin)
+        } else {
+            (first, second)
+        });
+    }
+    Ok(places)
+}
+
 /// Why a header cannot be used: all reasons at once.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}", .0.join("\n"))]

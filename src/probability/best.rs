@@ -11,7 +11,7 @@
 use super::Progress;
 use super::curves::{self, Curve};
 use super::estimate::{Estimate, Sampler};
-use super::lessons::{self, Lessons};
+use super::lessons::{self, Lessons, Topics};
 use super::sobol::Key;
 use super::table::{Probabilities, Table};
 use crate::dynamics::{Outcome, Simulator, Touched};
@@ -133,12 +133,34 @@ pub enum BestError {
 /// # Errors
 /// When the physics cannot be simulated or the plan is refused.
 pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestError> {
+    let (plan, mut shots) = find_kinds(profile, &KINDS, Topics::ALL, progress)?;
+    let nothing = |kind| Err(NoShot { kind });
+    let bank = shots.pop().unwrap_or_else(|| nothing(ShotKind::Bank));
+    let direct = shots.pop().unwrap_or_else(|| nothing(ShotKind::Direct));
+    Ok(Best { plan, direct, bank })
+}
+
+/// Both kinds, in the order of their numbers.
+pub const KINDS: [ShotKind; 2] = [ShotKind::Direct, ShotKind::Bank];
+
+/// Finds the best shots of some kinds, in their order, and draws the lessons of some topics; what is
+/// found of a kind does not depend on the others.
+///
+/// # Errors
+/// As [`find`].
+pub fn find_kinds(
+    profile: &Profile,
+    kinds: &[ShotKind],
+    topics: Topics,
+    progress: &dyn Progress,
+) -> Result<(Plan, Vec<Result<BestShot, NoShot>>), BestError> {
     let plan = Plan::new(profile)?;
     let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)?;
     let search = Search {
         profile,
         plan: &plan,
         simulator: &simulator,
+        topics,
         progress,
     };
     let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
@@ -149,9 +171,11 @@ pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<Best, BestErro
             starts.extend(apart(&tops).into_iter().map(|(_, nominal)| nominal));
         }
     }
-    let direct = search.best(ShotKind::Direct, &starts[0])?;
-    let bank = search.best(ShotKind::Bank, &starts[1])?;
-    Ok(Best { plan, direct, bank })
+    let shots = kinds
+        .iter()
+        .map(|&kind| search.best(kind, &starts[kind as usize]))
+        .collect::<Result<_, _>>()?;
+    Ok((plan, shots))
 }
 
 /// The side spins from which the search starts: the held one; or none and the limits, of which one is
@@ -172,6 +196,7 @@ struct Search<'a> {
     profile: &'a Profile,
     plan: &'a Plan,
     simulator: &'a Simulator,
+    topics: Topics,
     progress: &'a dyn Progress,
 }
 
@@ -274,7 +299,13 @@ impl Search<'_> {
             window,
             outcome: self.simulator.shoot(&self.profile.release(&nominal)),
             curves,
-            lessons: lessons::draw(self.profile, self.simulator, &nominal, self.progress),
+            lessons: lessons::draw(
+                self.profile,
+                self.simulator,
+                &nominal,
+                self.topics,
+                self.progress,
+            ),
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
             at_limits: self.limits(&nominal),

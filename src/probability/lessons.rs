@@ -102,23 +102,60 @@ impl Lessons {
     }
 }
 
-/// Draws the lessons from a nominal shot.
+/// Which lessons are drawn; the others stay empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Topics {
+    /// The windows.
+    pub windows: bool,
+    /// What each error costs.
+    pub costs: bool,
+    /// What spin is worth.
+    pub spins: bool,
+    /// What height is worth.
+    pub heights: bool,
+}
+
+impl Topics {
+    /// Everything.
+    pub const ALL: Self = Self {
+        windows: true,
+        costs: true,
+        spins: true,
+        heights: true,
+    };
+    /// Nothing.
+    pub const NONE: Self = Self {
+        windows: false,
+        costs: false,
+        spins: false,
+        heights: false,
+    };
+}
+
+/// Draws the lessons of some topics from a nominal shot.
 #[must_use]
 pub fn draw(
     profile: &Profile,
     simulator: &Simulator,
     nominal: &Nominal,
+    topics: Topics,
     progress: &dyn Progress,
 ) -> Lessons {
     let teacher = Teacher {
         profile,
         simulator,
-        own: means(profile, simulator, nominal, REPLICATES as usize),
+        own: if topics.costs || topics.spins || topics.heights {
+            means(profile, simulator, nominal, REPLICATES as usize)
+        } else {
+            Vec::new()
+        },
     };
-    let present = (0..ERRORS).filter(|&k| profile.shooter.errors.sigmas(nominal)[k] > 0.0);
+    let present =
+        (0..ERRORS).filter(|&k| topics.costs && profile.shooter.errors.sigmas(nominal)[k] > 0.0);
+    let heights_m: &[f64] = if topics.heights { &HEIGHTS_M } else { &[] };
     let top = profile.shooter.max_backspin_rad_s;
-    let spins = if top > 0.0 { SPINS } else { 0 };
-    progress.begin("comparing", (ERRORS + spins + HEIGHTS_M.len()) as u64);
+    let spins = if topics.spins && top > 0.0 { SPINS } else { 0 };
+    progress.begin("comparing", (ERRORS + spins + heights_m.len()) as u64);
     let mut costs: Vec<Cost> = present
         .map(|k| {
             progress.advance(1);
@@ -144,7 +181,7 @@ pub fn draw(
             }
         })
         .collect();
-    let heights = HEIGHTS_M
+    let heights = heights_m
         .iter()
         .map(|by| {
             progress.advance(1);
@@ -159,7 +196,13 @@ pub fn draw(
         .collect();
     progress.end();
     Lessons {
-        windows: std::array::from_fn(|axis| teacher.window(nominal, axis)),
+        windows: std::array::from_fn(|axis| {
+            if topics.windows {
+                teacher.window(nominal, axis)
+            } else {
+                Window { ends: None }
+            }
+        }),
         costs,
         spins,
         heights,

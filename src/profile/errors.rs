@@ -106,6 +106,17 @@ impl Errors {
         }
     }
 
+    /// Are the errors of a shot's mirror image those of the shot? Not where an error that changes sides goes
+    /// with one that does not.
+    #[must_use]
+    pub fn mirror_alike(&self) -> bool {
+        // Polar angle, rifle spin, side spin and court angle change sign in the mirror.
+        let sides = |k: usize| matches!(k, 2 | 4 | 5 | 7);
+        (0..ERRORS).all(|i| {
+            (0..ERRORS).all(|j| sides(i) == sides(j) || self.correlation.coefficients[i][j] == 0.0)
+        })
+    }
+
     /// Are there only the four errors of Eq. 25, and independent?
     #[must_use]
     pub fn are_of_eq_25(&self) -> bool {

@@ -7,7 +7,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A table being read. Every key must be asked for; what was not is unknown.
-pub(super) struct Keys<'t, 'i> {
+#[derive(Clone)]
+pub(crate) struct Keys<'t, 'i> {
     path: String,
     table: Option<&'t DeTable<'i>>,
     span: Range<usize>,
@@ -15,7 +16,7 @@ pub(super) struct Keys<'t, 'i> {
 }
 
 impl<'t, 'i> Keys<'t, 'i> {
-    pub(super) fn root(table: &'t Spanned<DeTable<'i>>) -> Self {
+    pub(crate) fn root(table: &'t Spanned<DeTable<'i>>) -> Self {
         Self {
             path: String::new(),
             table: Some(table.get_ref()),
@@ -24,7 +25,7 @@ impl<'t, 'i> Keys<'t, 'i> {
         }
     }
 
-    pub(super) fn name(&self, key: &str) -> String {
+    pub(crate) fn name(&self, key: &str) -> String {
         if self.path.is_empty() {
             key.to_owned()
         } else {
@@ -32,7 +33,7 @@ impl<'t, 'i> Keys<'t, 'i> {
         }
     }
 
-    pub(super) fn has(&self, key: &str) -> bool {
+    pub(crate) fn has(&self, key: &str) -> bool {
         self.table.is_some_and(|table| table.contains_key(key))
     }
 
@@ -41,7 +42,7 @@ impl<'t, 'i> Keys<'t, 'i> {
         self.table.and_then(|table| table.get(key))
     }
 
-    pub(super) fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
+    pub(crate) fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
         let span = self
             .table
             .and_then(|table| table.get(key))
@@ -54,7 +55,7 @@ impl<'t, 'i> Keys<'t, 'i> {
     }
 
     /// A fault of the whole table.
-    pub(super) fn here(&self, message: impl Into<String>) -> Fault {
+    pub(crate) fn here(&self, message: impl Into<String>) -> Fault {
         Fault {
             span: self.span.clone(),
             key: self.path.clone(),
@@ -63,7 +64,7 @@ impl<'t, 'i> Keys<'t, 'i> {
     }
 
     /// The table under `key`; an empty one where it is absent.
-    pub(super) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Keys<'t, 'i> {
+    pub(crate) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Keys<'t, 'i> {
         let found = self.get(key);
         let path = self.name(key);
         let nothing = |span| Keys {
@@ -88,7 +89,7 @@ impl<'t, 'i> Keys<'t, 'i> {
     }
 
     /// A quantity in SI units, if it is there.
-    pub(super) fn quantity(
+    pub(crate) fn quantity(
         &mut self,
         key: &'static str,
         dimension: Dimension,
@@ -131,7 +132,7 @@ impl<'t, 'i> Keys<'t, 'i> {
     }
 
     /// As [`Keys::quantity`], a fault where it is missing.
-    pub(super) fn required(
+    pub(crate) fn required(
         &mut self,
         key: &'static str,
         dimension: Dimension,
@@ -146,7 +147,7 @@ impl<'t, 'i> Keys<'t, 'i> {
         self.quantity(key, dimension, faults)
     }
 
-    pub(super) fn text(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<String> {
+    pub(crate) fn text(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<String> {
         match self.get(key)?.get_ref() {
             DeValue::String(text) => Some(text.to_string()),
             _ => {
@@ -156,8 +157,32 @@ impl<'t, 'i> Keys<'t, 'i> {
         }
     }
 
+    /// A list of quantities in SI units, if it is there.
+    pub(crate) fn quantities(
+        &mut self,
+        key: &'static str,
+        dimension: Dimension,
+        faults: &mut Vec<Fault>,
+    ) -> Option<Vec<f64>> {
+        if !self.has(key) {
+            self.asked.push(key);
+            return None;
+        }
+        let mut values = Vec::new();
+        for text in self.texts(key, faults)? {
+            match parse(&text, dimension) {
+                Ok(value) => values.push(value),
+                Err(error) => faults.push(self.fault(key, error.to_string())),
+            }
+        }
+        if values.is_empty() {
+            faults.push(self.fault(key, "must not be empty"));
+        }
+        Some(values)
+    }
+
     /// A list of texts, if it is there.
-    pub(super) fn texts(
+    pub(crate) fn texts(
         &mut self,
         key: &'static str,
         faults: &mut Vec<Fault>,
@@ -173,16 +198,13 @@ impl<'t, 'i> Keys<'t, 'i> {
             _ => None,
         };
         if texts.is_none() {
-            faults.push(self.fault(
-                key,
-                "must be a list of texts, such as [\"speed\", \"pitch\"]",
-            ));
+            faults.push(self.fault(key, "must be a list of texts, such as [\"...\", \"...\"]"));
         }
         texts
     }
 
     /// A whole number within `range`.
-    pub(super) fn count(
+    pub(crate) fn count(
         &mut self,
         key: &'static str,
         range: std::ops::RangeInclusive<u64>,
@@ -207,7 +229,7 @@ impl<'t, 'i> Keys<'t, 'i> {
     }
 
     /// Reports the keys nobody asked for, with the nearest that exists.
-    pub(super) fn finish(self, faults: &mut Vec<Fault>) {
+    pub(crate) fn finish(self, faults: &mut Vec<Fault>) {
         let Some(table) = self.table else { return };
         for (key, _) in table.iter() {
             let name: &str = key.get_ref();

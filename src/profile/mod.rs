@@ -4,16 +4,19 @@
 //! the crate accepts only the checked form.
 
 mod errors;
-mod fault;
-mod keys;
+pub(crate) mod fault;
+pub(crate) mod keys;
 mod place;
-mod read;
+pub(crate) mod read;
 mod search;
+mod template;
 mod world;
 
 pub use errors::{Correlation, ERROR_NAMES, ERRORS, Errors};
 pub use fault::{Fault, ProfileError};
+pub use place::PlaceError;
 pub use read::{LARGEST_PROFILE_BYTES, parse, parse_physics};
+pub use template::{GivenSearch, Template};
 
 use crate::dynamics::{Integrator, Release};
 use crate::physics::Physics;

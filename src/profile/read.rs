@@ -4,8 +4,9 @@ use super::fault::{Fault, ProfileError};
 use super::keys::Keys;
 use super::place::read_place;
 use super::search::{hold, read_grid, read_output, read_search};
+use super::template::Template;
 use super::world::read_physics;
-use super::{Correlation, ERROR_NAMES, Errors, Intent, Profile, Search, Shooter};
+use super::{Correlation, ERROR_NAMES, Errors, Intent, Profile, Shooter};
 use crate::dynamics::Integrator;
 use crate::physics::Physics;
 use crate::units::Dimension;
@@ -44,39 +45,60 @@ const LONGEST_NAME: usize = 500;
 /// # Errors
 /// Every fault of the profile at once.
 pub fn parse(text: &str, origin: &str) -> Result<Profile, ProfileError> {
-    with_table(text, origin, |root, faults| {
-        let mut keys = root;
-        let shooter = read_shooter(&mut keys, faults);
+    with_table(text, origin, |mut keys, faults| {
         let place_at = keys.table("location", faults);
-        let nominal = read_nominal(&mut keys, faults);
-        let (physics, integrator) = read_physics(&mut keys, faults);
+        let place_key = place_at.clone();
+        let template = read_template(&mut keys, faults);
+        let physics = template
+            .as_ref()
+            .map_or_else(Physics::paper, |template| template.physics.clone());
         let place = read_place(place_at, &physics, faults);
-        let grid = read_grid(&mut keys, faults);
-        let usual = place.zip(shooter.as_ref()).map(|(place, shooter)| {
-            Search::around(
-                place.distance_m,
-                shooter.release_height_m - physics.hoop_height_m,
-            )
-        });
-        let (search, searched) = read_search(
-            &mut keys,
-            usual.unwrap_or_else(|| Search::around(4.0, -1.0)),
-            faults,
-        );
-        let output = read_output(&mut keys, faults);
         keys.finish(faults);
-        let shooter = shooter?;
-        let search = hold(search, &shooter, &nominal, &searched, faults);
-        Some(Profile {
-            shooter,
-            place: place?,
-            nominal,
-            physics,
-            integrator,
-            grid,
-            search,
-            output,
-        })
+        let profile = template?.at(place?);
+        if let Err(error) = &profile {
+            faults.push(place_key.here(error.to_string()));
+        }
+        profile.ok()
+    })
+}
+
+/// Reads all of a profile but its place.
+pub(crate) fn read_template(keys: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Option<Template> {
+    let shooter = read_shooter(keys, faults);
+    let nominal = read_nominal(keys, faults);
+    let physics = read_physics(keys, faults);
+    match shooter {
+        Some(shooter) => read_rest(keys, shooter, nominal, physics, faults),
+        None => {
+            // For their faults.
+            read_grid(keys, faults);
+            read_search(keys, faults);
+            read_output(keys, faults);
+            None
+        }
+    }
+}
+
+/// Reads what is left of a profile beside the shooter, the nominal values, the physics and the place.
+pub(crate) fn read_rest(
+    keys: &mut Keys<'_, '_>,
+    shooter: Shooter,
+    nominal: Intent,
+    (physics, integrator): (Physics, Integrator),
+    faults: &mut Vec<Fault>,
+) -> Option<Template> {
+    let grid = read_grid(keys, faults);
+    let (search, chosen) = read_search(keys, faults);
+    let output = read_output(keys, faults);
+    let search = hold(search, &shooter, &nominal, &chosen, faults);
+    Some(Template {
+        shooter,
+        nominal,
+        physics,
+        integrator,
+        grid,
+        search,
+        output,
     })
 }
 
@@ -93,7 +115,8 @@ pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), 
     })
 }
 
-fn with_table<T>(
+/// Reads a TOML text by `read`; every fault at once.
+pub(crate) fn with_table<T>(
     text: &str,
     origin: &str,
     read: impl FnOnce(Keys<'_, '_>, &mut Vec<Fault>) -> Option<T>,
@@ -126,7 +149,7 @@ fn with_table<T>(
     }
 }
 
-pub(super) fn check(
+pub(crate) fn check(
     keys: &Keys<'_, '_>,
     key: &str,
     value: Option<f64>,

@@ -3,7 +3,8 @@
 use super::fault::Fault;
 use super::keys::Keys;
 use super::read::{FASTEST_M_S, check};
-use super::{CHOICES, Choice, Grid, Intent, Output, Search, Shooter};
+use super::template::GivenSearch;
+use super::{CHOICES, Choice, Grid, Intent, Output, Shooter};
 use crate::units::{DEGREE_RAD, Dimension, System};
 use std::ops::RangeInclusive;
 
@@ -30,31 +31,27 @@ pub(super) fn read_grid(root: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Gri
 /// The search, and a fault in the place of what it chooses, for those found later.
 pub(super) fn read_search(
     root: &mut Keys<'_, '_>,
-    usual: Search,
     faults: &mut Vec<Fault>,
-) -> (Search, Fault) {
+) -> (GivenSearch, Fault) {
     let mut keys = root.table("search", faults);
-    let mut search = usual;
-    let deg = crate::units::DEGREE_RAD;
-    let pitch = |a: f64| PITCHES_RAD.contains(&a);
-    for (key, place) in [
-        ("pitch_min", &mut search.pitch_min_rad),
-        ("pitch_max", &mut search.pitch_max_rad),
-    ] {
+    let mut pitch = |key, faults: &mut Vec<Fault>| {
         let value = keys.quantity(key, Dimension::Angle, faults);
-        if let Some(value) = check(&keys, key, value, pitch, "from 1 to 89 deg", faults) {
-            *place = value;
-        }
-    }
-    if !(search.pitch_min_rad < search.pitch_max_rad) {
-        let most = search.pitch_max_rad / deg;
+        let holds = |a: f64| PITCHES_RAD.contains(&a);
+        check(&keys, key, value, holds, "from 1 to 89 deg", faults)
+    };
+    let pitch_min_rad = pitch("pitch_min", faults);
+    let pitch_max_rad = pitch("pitch_max", faults);
+    if let Some((low, high)) = pitch_min_rad.zip(pitch_max_rad)
+        && !(low < high)
+    {
+        let most = high / DEGREE_RAD;
         faults.push(keys.fault(
             "pitch_min",
             format!("must be less than pitch_max ({most:.1} deg)"),
         ));
     }
     let speed = keys.quantity("speed_max", Dimension::Speed, faults);
-    search.speed_max_m_s = check(
+    let speed_max_m_s = check(
         &keys,
         "speed_max",
         speed,
@@ -63,19 +60,22 @@ pub(super) fn read_search(
         faults,
     );
     let error = keys.quantity("standard_error", Dimension::Number, faults);
-    if let Some(error) = check(
+    let standard_error = check(
         &keys,
         "standard_error",
         error,
         |e| (1e-5..=0.1).contains(&e),
         "from 0.00001 to 0.1",
         faults,
-    ) {
-        search.standard_error = error;
-    }
-    if let Some(seed) = keys.count("seed", 0..=u64::MAX, faults) {
-        search.seed = seed;
-    }
+    );
+    let mut search = GivenSearch {
+        choose: Choice::default(),
+        pitch_min_rad,
+        pitch_max_rad,
+        speed_max_m_s,
+        standard_error,
+        seed: keys.count("seed", 0..=u64::MAX, faults),
+    };
     if let Some(names) = keys.texts("choose", faults) {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         if names.is_empty() || names.iter().any(|name| !CHOICES.contains(name)) {
@@ -91,12 +91,12 @@ pub(super) fn read_search(
 
 /// Holds what the search does not choose, which the profile must then give.
 pub(super) fn hold(
-    search: Search,
+    search: GivenSearch,
     shooter: &Shooter,
     nominal: &Intent,
     chosen: &Fault,
     faults: &mut Vec<Fault>,
-) -> Search {
+) -> GivenSearch {
     let mut refuse = |message: &str| {
         faults.push(Fault {
             message: message.to_owned(),
@@ -111,7 +111,8 @@ pub(super) fn hold(
     if !choose.pitch {
         match nominal.pitch_rad {
             Some(pitch_rad) if PITCHES_RAD.contains(&pitch_rad) => {
-                (search.pitch_min_rad, search.pitch_max_rad) = (pitch_rad, pitch_rad);
+                search.pitch_min_rad = Some(pitch_rad);
+                search.pitch_max_rad = Some(pitch_rad);
             }
             Some(_) => refuse("leaves pitch out, so [nominal] must give it from 1 to 89 deg"),
             None => refuse("leaves pitch out, so [nominal] must give it"),

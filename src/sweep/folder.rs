@@ -1,0 +1,525 @@
+//! The folder of a sweep: its configuration, the stores of all processes, and who works in it.
+//!
+//! ```text
+//! configuration.json      what the sweep is, with the texts it was read from
+//! store/1-of-1.HOST.sqlite    results of one process; .lock beside it while it runs
+//! best_shots.csv, .parquet, provenance.json    once all jobs are there
+//! ```
+
+use super::configuration::{Configuration, Texts, parse_sweep};
+use super::jobs::{Jobs, Shard};
+use super::row::{Row, Status};
+use super::store::{self, Store, StoreError};
+use crate::output::files;
+use crate::profile::ProfileError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Differences of two configurations that are told at most.
+const MOST_DIFFERENCES: usize = 20;
+/// Largest configuration.json that is read, in bytes.
+const LARGEST_CONFIGURATION: u64 = 256 << 20;
+
+/// Why a sweep's folder could not be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// The system failed.
+    #[error("{}: {error}", .path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What failed.
+        error: io::Error,
+    },
+    /// A store failed.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// It holds another sweep.
+    #[error("{}: holds the results of another sweep; take another folder, or change back:\n{}", .path.display(), .differences.join("\n"))]
+    Changed {
+        /// The folder.
+        path: PathBuf,
+        /// What differs.
+        differences: Vec<String>,
+    },
+    /// It holds no sweep, or one that cannot be read.
+    #[error("{}: {reason}", .path.display())]
+    NoSweep {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// Somebody works in it.
+    #[error("{}: is in use by {by}; wait for it, or stop it", .path.display())]
+    InUse {
+        /// The lock.
+        path: PathBuf,
+        /// Process and host.
+        by: String,
+    },
+    /// Two stores hold different results of a job.
+    #[error("job {job} has two different results, in {} and in {}; one of the two machines computes wrongly: set one file aside and run the sweep's command again", .first.display(), .second.display())]
+    Contradiction {
+        /// The job.
+        job: u64,
+        /// One store.
+        first: PathBuf,
+        /// The other.
+        second: PathBuf,
+    },
+    /// The texts in it no longer make a sweep.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+}
+
+fn io_at(path: &Path) -> impl Fn(io::Error) -> FolderError {
+    let path = path.to_owned();
+    move |error| FolderError::Io {
+        path: path.clone(),
+        error,
+    }
+}
+
+/// What `configuration.json` holds.
+#[derive(Debug, Serialize, Deserialize)]
+struct Kept {
+    program: String,
+    version: String,
+    commit: String,
+    hash: String,
+    /// BLAKE3 of the hash and the texts.
+    checksum: String,
+    texts: Texts,
+    configuration: serde_json::Value,
+}
+
+impl Kept {
+    fn new(configuration: &Configuration, texts: &Texts) -> Self {
+        let hash = configuration.hash();
+        Self {
+            program: "bankshot".to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: env!("BANKSHOT_COMMIT").to_owned(),
+            checksum: checksum(&hash, texts),
+            hash,
+            texts: texts.clone(),
+            configuration: serde_json::to_value(configuration).unwrap_or_default(),
+        }
+    }
+
+    fn read(path: &Path) -> io::Result<Option<Self>> {
+        let mut text = String::new();
+        let file = match File::open(path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        if let Err(error) = file.take(LARGEST_CONFIGURATION).read_to_string(&mut text)
+            && error.kind() != io::ErrorKind::InvalidData
+        {
+            return Err(error);
+        }
+        Ok(serde_json::from_str::<Self>(&text)
+            .ok()
+            .filter(|kept| kept.checksum == checksum(&kept.hash, &kept.texts)))
+    }
+}
+
+fn checksum(hash: &str, texts: &Texts) -> String {
+    let text = serde_json::to_string(&(hash, texts)).unwrap_or_default();
+    blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+/// A sweep's folder.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+    hash: String,
+    jobs: u64,
+}
+
+/// The right to write the store of a shard, until it is dropped or the process ends, however that is.
+#[derive(Debug)]
+pub struct Claim {
+    /// Held while this lives.
+    _lock: File,
+    /// The store's path.
+    pub store: PathBuf,
+    /// Where an abort of the program is noted.
+    pub aborted: PathBuf,
+}
+
+/// What is there of a sweep.
+#[derive(Clone, Debug, Default)]
+pub struct There {
+    /// Jobs by number, with how they ended.
+    pub jobs: BTreeMap<u64, Status>,
+    /// Files that were found damaged, and what was done.
+    pub damaged: Vec<String>,
+}
+
+impl There {
+    /// How many jobs ended so.
+    #[must_use]
+    pub fn count(&self, status: Status) -> usize {
+        self.jobs.values().filter(|&&found| found == status).count()
+    }
+}
+
+impl Folder {
+    /// The folder for a sweep, made where it is not there.
+    ///
+    /// # Errors
+    /// When it cannot be written, or holds another sweep.
+    pub fn open(
+        path: &Path,
+        configuration: &Configuration,
+        texts: &Texts,
+    ) -> Result<Self, FolderError> {
+        let store = path.join("store");
+        fs::create_dir_all(&store).map_err(io_at(&store))?;
+        tempfile::tempfile_in(&store).map_err(io_at(&store))?;
+        let file = path.join("configuration.json");
+        let kept = Kept::read(&file).map_err(io_at(&file))?;
+        let new = Kept::new(configuration, texts);
+        match kept {
+            Some(old) if old.hash == new.hash => {}
+            Some(old) => {
+                return Err(FolderError::Changed {
+                    path: path.to_owned(),
+                    differences: differences(&old, &new),
+                });
+            }
+            None => {
+                if file.exists() {
+                    set_aside(&file).map_err(io_at(&file))?;
+                }
+                let text = serde_json::to_string_pretty(&new).unwrap_or_default();
+                files::write(&file, format!("{text}\n").as_bytes()).map_err(io_at(&file))?;
+            }
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            hash: new.hash,
+            jobs: Jobs::new(configuration).count() as u64,
+        })
+    }
+
+    /// The sweep that a folder holds.
+    ///
+    /// # Errors
+    /// When it holds none, or one of another version of the program.
+    pub fn existing(path: &Path) -> Result<(Self, Configuration), FolderError> {
+        let no_sweep = |reason: &str| FolderError::NoSweep {
+            path: path.to_owned(),
+            reason: reason.to_owned(),
+        };
+        let file = path.join("configuration.json");
+        let kept = Kept::read(&file).map_err(io_at(&file))?;
+        let Some(kept) = kept else {
+            return Err(no_sweep(if file.exists() {
+                "configuration.json is damaged; run the sweep's command again, which writes it anew"
+            } else {
+                "holds no sweep (there is no configuration.json)"
+            }));
+        };
+        let configuration = parse_sweep(&kept.texts, &file.display().to_string());
+        let new = match configuration {
+            Ok(configuration) if configuration.hash() == kept.hash => configuration,
+            Ok(configuration) => {
+                return Err(FolderError::Changed {
+                    path: path.to_owned(),
+                    differences: differences(&kept, &Kept::new(&configuration, &kept.texts)),
+                });
+            }
+            Err(error) => return Err(error.into()),
+        };
+        let folder = Self {
+            path: path.to_owned(),
+            hash: kept.hash,
+            jobs: Jobs::new(&new).count() as u64,
+        };
+        Ok((folder, new))
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The hash of its configuration.
+    #[must_use]
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// Takes the right to write a shard's store on this host.
+    ///
+    /// # Errors
+    /// When another process has it, or works in the folder where all shards are asked for.
+    pub fn claim(&self, shard: Shard) -> Result<Claim, FolderError> {
+        let store = self.path.join("store");
+        let host: String = gethostname::gethostname()
+            .to_string_lossy()
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+            .take(60)
+            .collect();
+        let name = format!("{}-of-{}.{host}", shard.index + 1, shard.count);
+        let path = store.join(format!("{name}.lock"));
+        let mut file = File::options()
+            .create(true)
+            .truncate(false)
+            .read(true)
+            .write(true)
+            .open(&path)
+            .map_err(io_at(&path))?;
+        locked(&path, &file)?;
+        if shard == Shard::WHOLE {
+            for other in with_ending(&store, "lock")? {
+                if other != path {
+                    let file = File::open(&other).map_err(io_at(&other))?;
+                    locked(&other, &file)?;
+                }
+            }
+        }
+        // Only for people to read.
+        let _ = file.set_len(0);
+        let _ = write!(file, "process {} on {host}", std::process::id());
+        Ok(Claim {
+            _lock: file,
+            store: store.join(format!("{name}.sqlite")),
+            aborted: store.join(format!("{name}.aborted")),
+        })
+    }
+
+    /// The stores, in the order of their names.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub fn stores(&self) -> Result<Vec<PathBuf>, FolderError> {
+        with_ending(&self.path.join("store"), "sqlite")
+    }
+
+    /// Every sound result of this sweep, as it lies in the stores; the damaged files.
+    ///
+    /// # Errors
+    /// When a store cannot be read.
+    pub fn results(
+        &self,
+        mut give: impl FnMut(&Path, Row),
+    ) -> Result<Vec<(PathBuf, String)>, FolderError> {
+        let mut damaged = Vec::new();
+        for path in self.stores()? {
+            let reading = store::read(&path, &self.hash, self.jobs, |row| give(&path, row))?;
+            damaged.extend(reading.damage.map(|reason| (path, reason)));
+        }
+        Ok(damaged)
+    }
+
+    /// The union of all stores: each job once, one that did not fail before one that did.
+    ///
+    /// # Errors
+    /// When a store cannot be read, or two contradict each other.
+    pub fn union(&self) -> Result<(BTreeMap<u64, Row>, Vec<String>), FolderError> {
+        let mut union: BTreeMap<u64, (Row, PathBuf)> = BTreeMap::new();
+        let mut contradiction = None;
+        let damaged = self.results(|path, row| {
+            let failed = |row: &Row| row.status() == Some(Status::Failed);
+            match union.get(&row.job) {
+                Some((old, _)) if failed(&row) && !failed(old) => {}
+                Some((old, from)) if !failed(old) && *old != row => {
+                    contradiction = Some(FolderError::Contradiction {
+                        job: row.job,
+                        first: from.clone(),
+                        second: path.to_owned(),
+                    });
+                }
+                Some((old, _)) if failed(old) && failed(&row) => {}
+                _ => {
+                    union.insert(row.job, (row, path.to_owned()));
+                }
+            }
+        })?;
+        if let Some(contradiction) = contradiction {
+            return Err(contradiction);
+        }
+        let rows = union.into_iter().map(|(job, (row, _))| (job, row));
+        let remarks = damaged
+            .iter()
+            .map(|(path, reason)| {
+                format!(
+                    "{} is damaged ({reason}); only its sound rows count",
+                    path.display()
+                )
+            })
+            .collect();
+        Ok((rows.collect(), remarks))
+    }
+
+    /// What is there, for a process with a claim: damaged stores are set aside, their sound rows kept in
+    /// the claim's own.
+    ///
+    /// # Errors
+    /// When a store cannot be read or written.
+    pub fn take_stock(&self, claim: &Claim) -> Result<(There, Store), FolderError> {
+        let mut there = There::default();
+        let mut rows: BTreeMap<PathBuf, Vec<Row>> = BTreeMap::new();
+        let damaged = self.results(|path, row| {
+            if let Some(status) = row.status() {
+                let found = there.jobs.entry(row.job).or_insert(status);
+                if *found == Status::Failed {
+                    *found = status;
+                }
+            }
+            // Kept until it is known whether the file is damaged.
+            rows.entry(path.to_owned()).or_default().push(row);
+        })?;
+        let mut salvaged = Vec::new();
+        for (path, reason) in damaged {
+            let own = path == claim.store;
+            if !own && !is_free(&path.with_extension("lock")) {
+                let message = format!("{} is damaged ({reason}), but in use", path.display());
+                there.damaged.push(message);
+                continue;
+            }
+            let aside = set_aside(&path).map_err(io_at(&path))?;
+            let sound = rows.remove(&path).unwrap_or_default();
+            there.damaged.push(format!(
+                "{} was damaged ({reason}) and is set aside as {}; {} sound results of it are kept, its other jobs are computed again",
+                path.display(),
+                aside.display(),
+                sound.len()
+            ));
+            salvaged.extend(sound);
+        }
+        let mut store = Store::open(&claim.store, &self.hash)?;
+        if !salvaged.is_empty() {
+            store.finish(usize::MAX >> 1, &salvaged, 0.0)?;
+        }
+        Ok((there, store))
+    }
+}
+
+/// Is nobody holding this lock?
+fn is_free(lock: &Path) -> bool {
+    File::open(lock).map_or(true, |file| file.try_lock().is_ok())
+}
+
+/// Locks a file, or tells who holds it.
+fn locked(path: &Path, file: &File) -> Result<(), FolderError> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => {
+            let by = fs::read_to_string(path).unwrap_or_default();
+            let by = if by.is_empty() {
+                "another process".to_owned()
+            } else {
+                by
+            };
+            Err(FolderError::InUse {
+                path: path.to_owned(),
+                by,
+            })
+        }
+        // A file system without locks: they are a courtesy, the results do not depend on them.
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(TryLockError::Error(error)) => Err(io_at(path)(error)),
+    }
+}
+
+/// Renames a file to the first free `NAME.damaged-N`, its journal too.
+fn set_aside(path: &Path) -> io::Result<PathBuf> {
+    let named = |n: u32| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(format!(".damaged-{n}"));
+        PathBuf::from(name)
+    };
+    let aside = (1..u32::MAX)
+        .map(named)
+        .find(|aside| !aside.exists())
+        .unwrap_or_else(|| named(0));
+    fs::rename(path, &aside)?;
+    let journal = |path: &Path| {
+        let mut name = path.as_os_str().to_owned();
+        name.push("-journal");
+        PathBuf::from(name)
+    };
+    match fs::rename(journal(path), journal(&aside)) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(aside),
+    }
+}
+
+fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FolderError> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(io_at(folder))? {
+        let path = entry.map_err(io_at(folder))?.path();
+        if path.extension().is_some_and(|end| end == ending) && path.is_file() {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// The values that differ, each with its path.
+fn differences(old: &Kept, new: &Kept) -> Vec<String> {
+    let program = |kept: &Kept| serde_json::json!({"version": kept.version, "commit": kept.commit});
+    let mut found = Vec::new();
+    compare("program", &program(old), &program(new), &mut found);
+    compare("", &old.configuration, &new.configuration, &mut found);
+    if found.len() > MOST_DIFFERENCES {
+        let more = found.len() - MOST_DIFFERENCES;
+        found.truncate(MOST_DIFFERENCES);
+        found.push(format!("  and {more} more"));
+    }
+    found
+}
+
+fn compare(path: &str, old: &serde_json::Value, new: &serde_json::Value, found: &mut Vec<String>) {
+    use serde_json::Value::{Array, Object};
+    let join = |key: &str| {
+        if path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{path}.{key}")
+        }
+    };
+    match (old, new) {
+        (Object(a), Object(b)) => {
+            let mut keys: Vec<&String> = a.keys().chain(b.keys()).collect();
+            keys.sort();
+            keys.dedup();
+            for key in keys {
+                let nothing = serde_json::Value::Null;
+                let (a, b) = (
+                    a.get(key).unwrap_or(&nothing),
+                    b.get(key).unwrap_or(&nothing),
+                );
+                compare(&join(key), a, b, found);
+            }
+        }
+        (Array(a), Array(b)) if a.len() == b.len() => {
+            for (i, (a, b)) in a.iter().zip(b).enumerate() {
+                compare(&join(&i.to_string()), a, b, found);
+            }
+        }
+        (a, b) if a != b => {
+            let short = |value: &serde_json::Value| -> String {
+                value.to_string().chars().take(60).collect()
+            };
+            found.push(format!(
+                "  {path}: there {}, asked for {} (SI units)",
+                short(a),
+                short(b)
+            ));
+        }
+        _ => {}
+    }
+}
