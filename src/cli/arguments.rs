@@ -100,13 +100,13 @@ pub(crate) struct BestOptions {
 
 #[derive(Args, Debug)]
 pub(crate) struct CheckOptions {
-    /// The shooter's profile.
+    /// The shooter's profile, or a sweep.
     pub(crate) profile: PathBuf,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct PlanOptions {
-    /// The shooter's profile.
+    /// The shooter's profile, or a sweep.
     pub(crate) profile: PathBuf,
     /// Print one JSON object.
     #[arg(long)]

@@ -7,6 +7,7 @@ use bankshot::dynamics::{Room, Simulator};
 use bankshot::output;
 use bankshot::plan::Plan;
 use bankshot::profile::{self, LARGEST_PROFILE_BYTES, Nominal, Profile};
+use bankshot::sweep::configuration::is_sweep;
 use bankshot::units::{DEGREE_RAD, REV_RAD};
 use std::io::Read;
 use std::path::Path;
@@ -52,6 +53,12 @@ const SEARCH_SHOTS: u64 = 1_000_000;
 const WINDOWS: u64 = 2;
 
 pub(crate) fn check(options: &CheckOptions) -> Result<u8, Failure> {
+    if is_sweep(&read_text(&options.profile)?) {
+        let (configuration, _) = super::sweep::load(&options.profile)?;
+        let places = configuration.spots.len();
+        let (path, name) = (options.profile.display(), &configuration.name);
+        return answer(&format!("{path}: fine ({name}, {places} places)\n"));
+    }
     let profile = load(&options.profile)?;
     Plan::new(&profile)?;
     let (long, metre) = profile.output.units.length();
@@ -65,6 +72,10 @@ pub(crate) fn check(options: &CheckOptions) -> Result<u8, Failure> {
 }
 
 pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
+    let text = read_text(&options.profile)?;
+    if is_sweep(&text) {
+        return super::sweep::plan(&options.profile, options.json, quiet);
+    }
     let profile = load(&options.profile)?;
     let plan = Plan::new(&profile)?;
     let simulator =

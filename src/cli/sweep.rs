@@ -7,7 +7,8 @@ use super::plan::read_text;
 use super::progress::Bars;
 use super::signals;
 use super::terminal::{answer, tell};
-use bankshot::output::files;
+use bankshot::output::{self, files};
+use bankshot::plan::Plan;
 use bankshot::probability::Progress;
 use bankshot::sweep::configuration::{Texts, names, parse_sweep};
 use bankshot::sweep::folder::Folder;
@@ -39,6 +40,65 @@ pub(crate) fn load(path: &Path) -> Result<(Configuration, Texts), Failure> {
     };
     let configuration = parse_sweep(&texts, &path.display().to_string())?;
     Ok((configuration, texts))
+}
+
+/// Places on which the forecast is calibrated at most; of a small sweep a quarter.
+const CALIBRATED: usize = 8;
+/// Bytes of a job in the store and in the tables, about.
+const BYTES_PER_JOB: (f64, f64) = (600.0, 1100.0);
+
+/// Says what a sweep would take.
+pub(crate) fn plan(path: &Path, json: bool, quiet: bool) -> Result<u8, Failure> {
+    let (configuration, _) = load(path)?;
+    let jobs = Jobs::new(&configuration);
+    let threads = rayon::current_num_threads();
+    let places = jobs.places.len();
+    let some = CALIBRATED.min(places.div_ceil(4)).max(threads.min(places));
+    let chosen: Vec<usize> = (0..some)
+        .map(|i| (2 * i + 1) * places / (2 * some))
+        .collect();
+    let profile = configuration
+        .template
+        .at(jobs.places[0].place())
+        .map_err(Failure::usage)?;
+    let memory = Plan::new(&profile)?.memory_bytes as f64;
+    let seconds = run::calibrate(&configuration, &jobs, &chosen, threads, &Bars::new(quiet))
+        .map(|mean| mean * places as f64 / threads as f64);
+    let (store, tables) = BYTES_PER_JOB;
+    let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
+    let disk = store * jobs.count() as f64 + tables * rows;
+    // Each thread has a table of the search or a window, and a batch of shots.
+    let memory = threads as f64 * (2.0 * memory + 6e6) + 4000.0 * jobs.count() as f64 + 10e6;
+    let mib = |bytes: f64| bytes / f64::from(1 << 20);
+    answer(&if json {
+        let mut record = output::provenance(&configuration.hash());
+        record.push(("places".to_owned(), jobs.sources.len().into()));
+        record.push(("computed_places".to_owned(), places.into()));
+        record.push(("jobs".to_owned(), jobs.count().into()));
+        record.push((
+            "forecast_s".to_owned(),
+            seconds.map_or(serde_json::Value::Null, output::number),
+        ));
+        record.push(("threads".to_owned(), threads.into()));
+        record.push(("memory_bytes".to_owned(), output::number(memory.round())));
+        record.push(("disk_bytes".to_owned(), output::number(disk.round())));
+        format!("{:#}\n", output::object(record))
+    } else {
+        let time = seconds.map_or("unknown".to_owned(), |seconds| {
+            format!(
+                "about {:.0} s ({:.2} h) on {threads} threads, from {some} places",
+                seconds,
+                seconds / 3600.0
+            )
+        });
+        format!(
+            "places  {}, of which {places} are computed (the others are their mirror images)\njobs    {}\ntime    {time}\nmemory  about {:.0} MiB\ndisk    about {:.1} MiB\n",
+            jobs.sources.len(),
+            jobs.count(),
+            mib(memory),
+            mib(disk)
+        )
+    })
 }
 
 pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {

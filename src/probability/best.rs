@@ -28,10 +28,8 @@ const START_GAP: usize = 3;
 /// Moves tried at most from one start.
 const MOST_MOVES: u32 = 200;
 
-/// Sobol points of the climb's objective.
-const CLIMB_POINTS: u32 = 2048;
-/// Sobol points by which the tops of the climbs are compared.
-const COMPARE_POINTS: u32 = 16384;
+/// Times as many Sobol points as in the climb by which the tops of the climbs are compared.
+const COMPARE: u32 = 8;
 /// First steps of the climb: speed past the parabola through the hoop's centre (m/s), pitch (rad),
 /// polar angle (rad), backspin (rad/s), side spin (rad/s).
 const FIRST_STEPS: [f64; CHOICES.len()] = [0.06, 0.03, 0.01, 3.0, 3.0];
@@ -254,11 +252,13 @@ impl Search<'_> {
             let counts = sampler.count(nominal, &scramble, (0, points));
             counts.made()
         };
+        let climb_points = self.profile.search.climb_samples;
+        let compare_points = COMPARE * climb_points;
         let hill = starts
             .iter()
             .map(|&start| {
-                let top = self.climb(kind, start, |nominal| made(CLIMB_POINTS, nominal));
-                (made(COMPARE_POINTS, &top), top)
+                let top = self.climb(kind, start, |nominal| made(climb_points, nominal));
+                (made(compare_points, &top), top)
             })
             .reduce(|best, next| if next.0 > best.0 { next } else { best })
             .filter(|(made, _)| *made > 0);
@@ -285,7 +285,7 @@ impl Search<'_> {
         }
         if !self.profile.shooter.errors.are_of_eq_25() || self.profile.search.choose.side_spin {
             // The table knows four independent errors and one side spin; the samples know them all.
-            nominal = self.climb(kind, nominal, |nominal| made(COMPARE_POINTS, nominal));
+            nominal = self.climb(kind, nominal, |nominal| made(compare_points, nominal));
             window = self.plan.around(self.profile, &nominal)?;
             curves = curves::from_samples(self.profile, &sampler, &scramble, &window, &nominal);
         }

@@ -185,6 +185,8 @@ pub struct Search {
     pub speed_max_m_s: Option<f64>,
     /// Standard error wanted for each printed probability.
     pub standard_error: f64,
+    /// Sobol points by which the search climbs; more make the choice of the hill surer.
+    pub climb_samples: u32,
     /// Seed of the Sobol scrambles.
     pub seed: u64,
 }
@@ -203,6 +205,7 @@ impl Search {
             pitch_max_rad: (least + 14.0 * deg).clamp(9.0 * deg, 85.0 * deg),
             speed_max_m_s: None,
             standard_error: 0.001,
+            climb_samples: 2048,
             seed: 1,
         }
     }

@@ -74,6 +74,9 @@ pub(super) fn read_search(
         pitch_max_rad,
         speed_max_m_s,
         standard_error,
+        climb_samples: keys
+            .count("climb_samples", 64..=65536, faults)
+            .and_then(|count| u32::try_from(count).ok()),
         seed: keys.count("seed", 0..=u64::MAX, faults),
     };
     if let Some(names) = keys.texts("choose", faults) {

@@ -37,6 +37,8 @@ pub struct GivenSearch {
     pub speed_max_m_s: Option<f64>,
     /// Standard error wanted for each probability.
     pub standard_error: Option<f64>,
+    /// Sobol points by which the search climbs.
+    pub climb_samples: Option<u32>,
     /// Seed of the Sobol scrambles.
     pub seed: Option<u64>,
 }
@@ -72,6 +74,7 @@ impl Template {
             pitch_max_rad: given.pitch_max_rad.unwrap_or(usual.pitch_max_rad),
             speed_max_m_s: given.speed_max_m_s,
             standard_error: given.standard_error.unwrap_or(usual.standard_error),
+            climb_samples: given.climb_samples.unwrap_or(usual.climb_samples),
             seed: given.seed.unwrap_or(usual.seed),
         };
         let (low_rad, high_rad) = (search.pitch_min_rad, search.pitch_max_rad);

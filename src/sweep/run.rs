@@ -275,6 +275,45 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Computes all kinds at some places, as a run would, and gives the mean time of a place on its thread, s;
+/// none where nothing could be computed.
+#[must_use]
+pub fn calibrate(
+    configuration: &Configuration,
+    jobs: &Jobs,
+    places: &[usize],
+    threads: usize,
+    progress: &dyn Progress,
+) -> Option<f64> {
+    let kinds: Vec<usize> = (0..jobs.kinds.len()).collect();
+    let next = AtomicUsize::new(0);
+    let seconds = Mutex::new(Vec::new());
+    progress.begin("calibrating", places.len() as u64);
+    std::thread::scope(|scope| {
+        for _ in 0..threads.min(places.len()) {
+            scope.spawn(|| {
+                let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else {
+                    return;
+                };
+                while let Some(&place) = places.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let began = Instant::now();
+                    let rows = pool.install(|| evaluate(configuration, jobs, place, &kinds));
+                    if rows.is_ok()
+                        && let Ok(mut seconds) = seconds.lock()
+                    {
+                        seconds.push(began.elapsed().as_secs_f64());
+                    }
+                    progress.advance(1);
+                }
+            });
+        }
+    });
+    progress.end();
+    let seconds = seconds.into_inner().unwrap_or_default();
+    let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
+    (!seconds.is_empty()).then_some(mean)
+}
+
 /// Computes some of the kinds (by their places in the list of jobs) at a place.
 ///
 /// # Errors
