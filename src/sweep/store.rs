@@ -303,10 +303,16 @@ fn open_to_read(path: &Path) -> rusqlite::Result<Connection> {
 fn check(connection: &Connection) -> rusqlite::Result<()> {
     let answer: String = connection.query_row("PRAGMA quick_check(1)", [], |row| row.get(0))?;
     if answer == "ok" {
-        Ok(())
-    } else {
-        Err(rusqlite::Error::InvalidColumnName(answer))
+        return Ok(());
     }
+    // A page that the system did not give, such as "unable to get the page. error code=266".
+    let code = answer
+        .rsplit_once("error code=")
+        .and_then(|(_, code)| code.trim().parse::<i32>().ok());
+    Err(match code {
+        Some(code) => rusqlite::Error::SqliteFailure(rusqlite::ffi::Error::new(code), Some(answer)),
+        None => rusqlite::Error::InvalidColumnName(answer),
+    })
 }
 
 fn names() -> String {
