@@ -561,3 +561,38 @@ fn contract_names_never_become_paths() {
         assert_eq!(made.len(), 1);
     }
 }
+
+#[test]
+fn prop_a_mirror_image_is_worth_what_its_place_is() {
+    // The mirrored row against a search of its own at that place: two comparisons at 4.5 standard errors, and what
+    // a table this coarse may lose.
+    let place = Place::new();
+    let (out, _) = place.undisturbed();
+    let text = SWEEP.split("[sweep]").last().unwrap();
+    let profile = format!(
+        "{}\n[location]\ndistance = \"12 ft\"\nangle = \"-40 deg\"\n",
+        &text[text.find("[shooter]").unwrap()..]
+    );
+    let profile = bankshot::profile::parse(&profile, "test").unwrap();
+    let best = bankshot::probability::best::find(&profile, &bankshot::probability::Silent).unwrap();
+    let mut reader = csv::Reader::from_path(out.join("best_shots.csv")).unwrap();
+    let header = reader.headers().unwrap().clone();
+    let at = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    for (kind, shot) in [("direct", best.direct.unwrap()), ("bank", best.bank.unwrap())] {
+        let number = |row: &csv::StringRecord, name: &str| row[at(name)].parse::<f64>().unwrap();
+        let row = rows
+            .iter()
+            .find(|row| {
+                &row[at("kind")] == kind
+                    && (number(row, "distance_ft") - 12.0).abs() < 1e-9
+                    && (number(row, "court_angle_deg") + 40.0).abs() < 1e-9
+            })
+            .unwrap();
+        assert_eq!(&row[at("mirrored")], "true");
+        assert!((number(row, "polar_deg") + 40.0).abs() < 10.0);
+        let error = number(row, "standard_error").hypot(shot.estimate.standard_error);
+        let by = number(row, "probability") - shot.estimate.probability;
+        assert!(by.abs() < 4.5 * error + 0.02, "{kind}: {by} +- {error}");
+    }
+}

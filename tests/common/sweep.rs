@@ -9,30 +9,7 @@ use tempfile::TempDir;
 /// Jobs of the small sweep.
 pub const JOBS: usize = 12;
 
-pub const SWEEP: &str = r#"
-[sweep]
-name = "small"
-region = "arcs"
-distances = ["8 ft", "12 ft", "16 ft"]
-angles = ["-40 deg", "40 deg"]
-angle_step = "40 deg"
-[shooter]
-release_height = "7 ft"
-max_backspin = "3 rev/s"
-[shooter.errors]
-c10 = "0.25 ft/s"
-c20 = "1.2 deg"
-c30 = "1.22 deg"
-c40 = "0.3 rev/s"
-[grid]
-speed = 12
-pitch = 8
-polar = 8
-backspin = 3
-[search]
-standard_error = 0.02
-climb_samples = 128
-"#;
+pub const SWEEP: &str = include_str!("../small_sweep.toml");
 
 /// A folder for tests with the small sweep in it.
 pub struct Place {

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Power cuts under a sweep: an ext4 file system in a file is shut down at random moments, as if the power had gone,
+# mounted again and the sweep goes on; no job that was reported done may be missing. Needs root, loop devices
+# and xfs_io (package xfsprogs). About a minute.
+#   cargo build --release && tests/power_cut.sh [CUTS]
+set -euo pipefail
+project=$(cd "$(dirname "$0")/.." && pwd)
+bankshot=${BANKSHOT:-$project/target/release/bankshot}
+cuts=${1:-30}
+work=$(mktemp -d /tmp/bankshot-power.XXXXXX)
+disk=$work/disk mount=$work/mount
+mkdir "$mount"
+trap 'umount -l "$mount" 2>/dev/null || true; rm -rf "$work"' EXIT
+truncate -s 64M "$disk"
+mkfs.ext4 -q "$disk"
+"$bankshot" sweep "$project/tests/small_sweep.toml" --out "$work/alone" --quiet >/dev/null
+mount -o loop "$disk" "$mount"
+out=$mount/out rounds=0 lost=0
+# What the program has been told is on disk, read from the store just before the cut by a process that commits nothing.
+there() { python3 - "$1" <<'PY'
+import glob, sqlite3, sys
+done = set()
+for path in glob.glob(sys.argv[1] + "/store/*.sqlite"):
+    try:
+        done |= {row[0] for row in sqlite3.connect(path, timeout=10).execute("SELECT job FROM results")}
+    except sqlite3.Error:
+        pass
+print(*sorted(done))
+PY
+}
+for cut in $(seq "$cuts"); do
+  "$bankshot" sweep "$project/tests/small_sweep.toml" --out "$out" --quiet >/dev/null 2>&1 &
+  sleep "0.$((RANDOM % 9))$((RANDOM % 10))"
+  before=$(there "$out")
+  # Without flushing: what was not synced is gone.
+  xfs_io -x -c 'shutdown' "$mount"
+  wait || true
+  umount -l "$mount"
+  mount -o loop "$disk" "$mount"
+  after=" $(there "$out") "
+  for job in $before; do
+    [[ $after == *" $job "* ]] || { echo "cut $cut: job $job was on disk and is gone"; lost=$((lost + 1)); }
+  done
+  if [ -e "$out/best_shots.csv" ]; then
+    rounds=$((rounds + 1))
+    for table in best_shots.csv best_shots.parquet; do cmp "$work/alone/$table" "$out/$table"; done
+    rm -rf "$out"
+    sync
+  fi
+done
+"$bankshot" sweep "$project/tests/small_sweep.toml" --out "$out" --quiet >/dev/null
+for table in best_shots.csv best_shots.parquet provenance.json; do cmp "$work/alone/$table" "$out/$table"; done
+[ "$lost" = 0 ]
+echo "$cuts power cuts, $rounds whole sweeps among them, no finished job lost, the same bytes in the end"
