@@ -69,3 +69,6 @@ pub mod output;
 
 // Best shots at many places, on disk as they come.
 pub mod sweep;
+
+// Results to look at.
+pub mod picture;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms in the order of the data; each may use those before it.
-const LINE: [&str; 10] = [
+const LINE: [&str; 11] = [
     "lane",
     "physics",
     "units",
@@ -15,6 +15,7 @@ const LINE: [&str; 10] = [
     "probability",
     "output",
     "sweep",
+    "picture",
 ];
 /// Mathematics of the normal distribution, used by the plan to bound what lies outside it.
 const ALLOWED: [(&str, &str); 1] = [("plan", "probability::normal")];

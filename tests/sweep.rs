@@ -205,6 +205,8 @@ fn contract_another_configuration_is_refused_and_a_reformatted_one_is_not() {
     kept["checksum"] = blake3::hash(sealed.as_bytes()).to_hex().to_string().into();
     fs::write(&file, kept.to_string()).unwrap();
     fs::write(&place.sweep, SWEEP).unwrap();
+    let output = bankshot().arg("status").arg(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
     for output in [
         place.run(&out, &["--quiet"]),
         bankshot().arg("merge").arg(&out).output().unwrap(),
@@ -579,7 +581,10 @@ fn prop_a_mirror_image_is_worth_what_its_place_is() {
     let header = reader.headers().unwrap().clone();
     let at = |name: &str| header.iter().position(|column| column == name).unwrap();
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-    for (kind, shot) in [("direct", best.direct.unwrap()), ("bank", best.bank.unwrap())] {
+    for (kind, shot) in [
+        ("direct", best.direct.unwrap()),
+        ("bank", best.bank.unwrap()),
+    ] {
         let number = |row: &csv::StringRecord, name: &str| row[at(name)].parse::<f64>().unwrap();
         let row = rows
             .iter()

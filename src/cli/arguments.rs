@@ -45,6 +45,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Find the best direct and the best bank shot from the profile's place.
     Best(BestOptions),
+    /// Draw bank and direct against each other: over the court of a sweep, or in release space at one place.
+    Compare(CompareOptions),
     /// Check a profile and say what is wrong with it, all faults at once.
     Check(CheckOptions),
     /// Say what `best` or `sweep` would simulate, how long it takes and how much memory it needs, and show
@@ -227,6 +229,28 @@ pub(crate) struct SweepOptions {
 }
 
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Of a sweep: P of the best direct and bank shots over the court with their difference, and maps of the best
+P, kind, pitch angle and spin, of what spin is worth and which error costs most where they were computed.
+Of a profile: P over speed and pitch angle about the best direct and bank shots, and their difference.
+Each is written as SVG and PNG.
+
+Examples:
+  bankshot compare half_court
+  bankshot compare half_court --against half_court_elite
+  bankshot compare configs/bank_wing.toml --out pictures")]
+pub(crate) struct CompareOptions {
+    /// A sweep's folder, its TOML (for its usual folder), or a shooter's profile.
+    pub(crate) what: PathBuf,
+    /// Another one of the same sort: another shooter, or other settings.
+    #[arg(long, value_name = "OTHER")]
+    pub(crate) against: Option<PathBuf>,
+    /// Folder of the pictures [default: pictures in the folder of the run].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
 pub(crate) struct FolderOptions {
     /// The sweep's folder.
     pub(crate) folder: PathBuf,
@@ -299,6 +323,7 @@ Every quantity carries its unit.
 
 Examples:
   bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg' --backspin '3 rev/s'
+  bankshot trace configs/free_throw.toml --speed '23.6 ft/s' --pitch '53.5 deg' --backspin '3 rev/s' --plot shot.png --swarm 60
   bankshot trace configs/bank_wing.toml --speed '7.4 m/s' --pitch '52 deg' --polar '40 deg' --output shot.csv")]
 pub(crate) struct TraceOptions {
     /// The shooter's profile (for the place, the height and the physics).
@@ -308,6 +333,12 @@ pub(crate) struct TraceOptions {
     /// Writes the trajectory as CSV; - for standard output (then nothing else is printed there).
     #[arg(long, short, value_name = "T.csv")]
     pub(crate) output: Option<PathBuf>,
+    /// Draws the shot from the side, from above and facing the board.
+    #[arg(long, value_name = "T.svg|T.png")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Draws this many more shots with the shooter's errors, made and missed ones.
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "plot", value_parser = clap::value_parser!(u32).range(0..=5000))]
+    pub(crate) swarm: u32,
     /// Units of the answer [default: the profile's, else imperial].
     #[arg(long)]
     pub(crate) units: Option<System>,

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod best;
+mod compare;
 mod failure;
 mod nominal;
 mod plan;
@@ -52,6 +53,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
         Command::Best(options) => best::run(options, arguments.quiet),
+        Command::Compare(options) => compare::run(options, arguments.quiet),
         Command::Check(options) => plan::check(options),
         Command::Plan(options) => plan::run(options, arguments.quiet),
         Command::Probability(options) => probability::run(options, arguments.quiet),

@@ -33,7 +33,8 @@ pub(crate) fn watch() {
     let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else {
         return;
     };
-    std::thread::spawn(move || {
+    // Without a thread for it, signals end the program as they always do.
+    let _ = std::thread::Builder::new().spawn(move || {
         for signal in &mut signals {
             leave(if signal == SIGINT {
                 code::INTERRUPTED

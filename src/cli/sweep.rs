@@ -101,14 +101,20 @@ pub(crate) fn plan(path: &Path, json: bool, quiet: bool) -> Result<u8, Failure> 
     })
 }
 
+/// Where a sweep goes when nothing else is said.
+pub(crate) fn usual_folder(configuration: &Configuration) -> PathBuf {
+    let parent = PathBuf::from(&configuration.template.output.folder);
+    parent.join(named_folder(&configuration.name, &configuration.hash()))
+}
+
 pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
     let (configuration, texts) = load(&options.sweep)?;
     let jobs = Jobs::new(&configuration);
     let shard = options.shard.unwrap_or(Shard::WHOLE);
-    let path = options.out.clone().unwrap_or_else(|| {
-        let parent = PathBuf::from(&configuration.template.output.folder);
-        parent.join(named_folder(&configuration.name, &configuration.hash()))
-    });
+    let path = options
+        .out
+        .clone()
+        .unwrap_or_else(|| usual_folder(&configuration));
     let folder = Folder::open(&path, &configuration, &texts)?;
     let claim = folder.claim(shard)?;
     signals::note_aborts(&claim.aborted);
@@ -344,7 +350,7 @@ fn missing_shards(jobs: &Jobs, rows: &BTreeMap<u64, Row>, shards: usize) -> Stri
 }
 
 pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
-    let (folder, configuration) = Folder::existing(&options.folder)?;
+    let (folder, configuration) = Folder::to_look_at(&options.folder)?;
     let jobs = Jobs::new(&configuration);
     let (rows, remarks) = folder.union()?;
     let mut text = format!("{}\n", configuration.name) + &standing(&jobs, &rows);
@@ -425,7 +431,7 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
 }
 
 pub(crate) fn missing(options: &MissingOptions) -> Result<u8, Failure> {
-    let (folder, configuration) = Folder::existing(&options.folder)?;
+    let (folder, configuration) = Folder::to_look_at(&options.folder)?;
     let jobs = Jobs::new(&configuration);
     let (rows, _) = folder.union()?;
     let array = missing_shards(&jobs, &rows, options.shards);

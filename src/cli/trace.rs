@@ -8,6 +8,10 @@ use bankshot::dynamics::{
     Ending, EventKind, Kind, Outcome, Release, Simulator, Touched, Trace, Triple,
 };
 use bankshot::output::{self, files, number};
+use bankshot::picture::shot;
+use bankshot::picture::svg::{self, shortened};
+use bankshot::probability::estimate::Sampler;
+use bankshot::profile::{Nominal, Profile};
 use bankshot::units::{DEGREE_RAD, REV_RAD, System};
 use std::fmt::Write;
 use std::path::Path;
@@ -29,16 +33,100 @@ pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
         }
         files::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
     }
+    if let Some(path) = &options.plot {
+        plot(
+            path,
+            options.swarm,
+            &profile,
+            &simulator,
+            (&nominal, &trace),
+            system,
+        )?;
+    }
     let text = if options.json {
         format!("{:#}\n", json(&trace, system))
     } else {
         words(&trace, system)
     };
     answer(&text)?;
+    if let (Some(path), false) = (&options.plot, quiet) {
+        tell(&format!("drawn in {}", path.display()));
+    }
     if let (Some(path), false) = (&options.output, quiet) {
         tell(&format!("trajectory written to {}", path.display()));
     }
     Ok(0)
+}
+
+/// Draws the shot, over a swarm of others with the shooter's errors.
+fn plot(
+    path: &Path,
+    swarm: u32,
+    profile: &Profile,
+    simulator: &Simulator,
+    (nominal, trace): (&Nominal, &Trace),
+    system: System,
+) -> Result<(), Failure> {
+    let sampler = Sampler::new(profile, simulator);
+    let others: Vec<Trace> = (0..u64::from(swarm))
+        .map(|index| {
+            let release = sampler.sample(nominal, profile.search.seed, index);
+            simulator.trace(&release, INTERVAL_S)
+        })
+        .collect();
+    let colour = |trace: &Trace| {
+        if trace.outcome.verdict.made {
+            shot::MADE
+        } else {
+            shot::MISSED
+        }
+    };
+    let mut paths: Vec<shot::Path<'_>> = others
+        .iter()
+        .map(|trace| shot::Path {
+            trace,
+            colour: colour(trace),
+            in_full: false,
+        })
+        .collect();
+    paths.push(shot::Path {
+        trace,
+        colour: if swarm > 0 { "#000000" } else { colour(trace) },
+        in_full: true,
+    });
+    let (long, foot) = system.length();
+    let title = format!(
+        "{}: {:.2} {long}/s, {:.1} deg, backspin {:.1} rev/s: {}",
+        shortened(&profile.shooter.name, 40),
+        nominal.speed_m_s / foot,
+        nominal.pitch_rad / DEGREE_RAD,
+        nominal.backspin_rad_s / REV_RAD,
+        verdict(&trace.outcome)
+    );
+    let made = others
+        .iter()
+        .filter(|trace| trace.outcome.verdict.made)
+        .count();
+    let note = if swarm > 0 {
+        format!(
+            "Black: the shot without errors; blue: {made} made, orange: {} missed, with the shooter's errors. Marks: touches of the board (green) and the ring (yellow).",
+            others.len() - made
+        )
+    } else {
+        "Marks: the ball where it is released (dashed), touches the board (green) and the ring (yellow), and where the shot is over (dashed).".to_owned()
+    };
+    let picture = shot::three_views("shot", &title, &note, &profile.physics, system, &paths);
+    let bytes = match path.extension().and_then(|end| end.to_str()) {
+        Some("svg") => picture.svg.into_bytes(),
+        Some("png") => svg::to_png(&picture.svg, 1.5).map_err(Failure::bug)?,
+        _ => {
+            return Err(Failure::usage(format!(
+                "--plot {}: the name must end in .svg or .png",
+                path.display()
+            )));
+        }
+    };
+    files::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))
 }
 
 /// Traces one release and says what happens.

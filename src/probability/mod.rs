@@ -13,6 +13,7 @@ pub mod lessons;
 pub mod misses;
 pub mod monte_carlo;
 pub mod normal;
+pub mod release_map;
 pub mod sobol;
 mod table;
 

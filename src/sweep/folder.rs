@@ -214,6 +214,18 @@ impl Folder {
     /// # Errors
     /// When it holds none, or one of another version of the program.
     pub fn existing(path: &Path) -> Result<(Self, Configuration), FolderError> {
+        Self::read(path, false)
+    }
+
+    /// As [`Folder::existing`], for those who only look: also of another version of the program.
+    ///
+    /// # Errors
+    /// When it holds none, or one that this version understands otherwise.
+    pub fn to_look_at(path: &Path) -> Result<(Self, Configuration), FolderError> {
+        Self::read(path, true)
+    }
+
+    fn read(path: &Path, any_program: bool) -> Result<(Self, Configuration), FolderError> {
         let no_sweep = |reason: &str| FolderError::NoSweep {
             path: path.to_owned(),
             reason: reason.to_owned(),
@@ -229,7 +241,12 @@ impl Folder {
         };
         let configuration = parse_sweep(&kept.texts, &file.display().to_string());
         let new = match configuration {
-            Ok(configuration) if configuration.hash() == kept.hash => configuration,
+            Ok(configuration)
+                if configuration.hash() == kept.hash
+                    || any_program && means_the_same(&kept.configuration, &configuration) =>
+            {
+                configuration
+            }
             Ok(configuration) => {
                 return Err(FolderError::Changed {
                     path: path.to_owned(),
@@ -466,6 +483,14 @@ fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, FolderError>
     }
     found.sort();
     Ok(found)
+}
+
+/// Is this the same configuration, whatever program computes it?
+fn means_the_same(kept: &serde_json::Value, configuration: &Configuration) -> bool {
+    let mut found = Vec::new();
+    let new = serde_json::to_value(configuration).unwrap_or_default();
+    compare("", kept, &new, &mut found);
+    found.is_empty()
 }
 
 /// The values that differ, each with its path.

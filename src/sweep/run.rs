@@ -206,11 +206,24 @@ impl<'a> Run<'a> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
         let error = Mutex::new(None);
+        let fail = |problem: StoreError| {
+            stopped.store(true, Ordering::Relaxed);
+            if let Ok(mut error) = error.lock() {
+                error.get_or_insert(problem);
+            }
+        };
+        let no_threads = |problem: &dyn std::fmt::Display| StoreError::Io {
+            path: "threads".into(),
+            reason: format!("cannot be started: {problem}"),
+        };
         std::thread::scope(|scope| {
             for _ in 0..threads.min(places.len()) {
-                scope.spawn(|| {
+                let work = || {
                     // The place is computed on this thread alone.
-                    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+                    let pool = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+                        Ok(pool) => pool,
+                        Err(problem) => return fail(no_threads(&problem)),
+                    };
                     while !stopped.load(Ordering::Relaxed) {
                         let Some(&place) = places.get(next.fetch_add(1, Ordering::Relaxed)) else {
                             break;
@@ -218,20 +231,17 @@ impl<'a> Run<'a> {
                         let began = Instant::now();
                         let started = self.lock().start(place);
                         let kept = started.and_then(|()| {
-                            let rows = match &pool {
-                                Ok(pool) => pool.install(|| self.compute(place)),
-                                Err(error) => self.failures(place, &error.to_string()),
-                            };
+                            let rows = pool.install(|| self.compute(place));
                             keep(place, &rows, began.elapsed().as_secs_f64())
                         });
                         if let Err(problem) = kept {
-                            stopped.store(true, Ordering::Relaxed);
-                            if let Ok(mut error) = error.lock() {
-                                error.get_or_insert(problem);
-                            }
+                            fail(problem);
                         }
                     }
-                });
+                };
+                if let Err(problem) = std::thread::Builder::new().spawn_scoped(scope, work) {
+                    fail(no_threads(&problem));
+                }
             }
         });
         let error = error.into_inner().unwrap_or_default();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A sweep on a real Slurm of three nodes, on this machine, while things die; in the end the tables must have the
-# bytes of one undisturbed run. About 4 minutes on 2 cores; needs root on Debian (installs slurm-wlm and munge).
+# bytes of one undisturbed run. About 6 minutes on 2 cores; needs root on Debian (installs slurm-wlm and munge).
 #   cargo build --release && tests/slurm/drill.sh
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -17,15 +17,10 @@ cat >"$work/sweep.toml" <<'TOML'
 name = "drill"
 shooter = "free_throw.toml"
 region = "half_court"
-step = "5 ft"
+step = "4 ft"
 within = "three_point_line"
-[grid]
-speed = 40
-pitch = 24
-polar = 24
-backspin = 8
 [search]
-standard_error = 0.004
+standard_error = 0.002
 TOML
 
 say "one undisturbed run"
@@ -102,4 +97,5 @@ for table in best_shots.csv best_shots.parquet provenance.json; do
 done
 say "stores: $(ls "$out/store" | tr '\n' ' ')"
 say "the tables are those of the undisturbed run, byte for byte"
+cd /
 rm -rf "$work"

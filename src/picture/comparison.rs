@@ -1,0 +1,151 @@
+//! Bank and direct at one place over speed and pitch angle, and their difference.
+
+use super::colours::diverging;
+use super::release_map::{self, WHOLE};
+use super::svg::{Anchor, Svg, shortened};
+use super::sweep_maps::Picture;
+use crate::dynamics::Simulator;
+use crate::probability::best::{Best, BestShot};
+use crate::probability::release_map::{Cells, probabilities};
+use crate::profile::Profile;
+use crate::units::{DEGREE_RAD, REV_RAD};
+
+/// Cells of the maps along speed and pitch angle.
+pub const CELLS: (usize, usize) = (400, 300);
+/// Room about the best shots: speed, in standard deviations and m/s; pitch angle, rad.
+const ROOM: (f64, f64, f64) = (6.0, 0.5, 12.0 * DEGREE_RAD);
+/// Standard error of a cell's P, from eight shots in each of the cells that errors reach; differences within twice that of
+/// two are left white.
+const CELL_ERROR: f64 = 0.004;
+
+/// The cells of a map that shows both best shots.
+fn cells(profile: &Profile, shots: &[&BestShot]) -> Cells {
+    let (sigmas, least, pitch) = ROOM;
+    let mut cells = Cells {
+        speed_m_s: (f64::INFINITY, f64::NEG_INFINITY),
+        pitch_rad: (f64::INFINITY, f64::NEG_INFINITY),
+        columns: CELLS.0,
+        rows: CELLS.1,
+    };
+    for shot in shots {
+        let nominal = &shot.nominal;
+        let room = (sigmas * profile.shooter.errors.speed_m_s(nominal.speed_m_s)).max(least);
+        let widen = |range: &mut (f64, f64), value: f64, room: f64| {
+            range.0 = range.0.min(value - room);
+            range.1 = range.1.max(value + room);
+        };
+        widen(&mut cells.speed_m_s, nominal.speed_m_s, room);
+        widen(&mut cells.pitch_rad, nominal.pitch_rad, pitch);
+    }
+    cells.speed_m_s.0 = cells.speed_m_s.0.max(0.1);
+    cells.pitch_rad.0 = cells.pitch_rad.0.max(DEGREE_RAD);
+    cells.pitch_rad.1 = cells.pitch_rad.1.min(89.0 * DEGREE_RAD);
+    cells
+}
+
+/// Draws both kinds that were found, each with its own polar angle and spin held, and their difference.
+#[must_use]
+pub fn in_release_space(profile: &Profile, simulator: &Simulator, best: &Best) -> Option<Picture> {
+    let found: Vec<(&str, &BestShot)> = [("direct", &best.direct), ("bank", &best.bank)]
+        .into_iter()
+        .filter_map(|(name, shot)| Some((name, shot.as_ref().ok()?)))
+        .collect();
+    let shots: Vec<&BestShot> = found.iter().map(|(_, shot)| *shot).collect();
+    if shots.is_empty() {
+        return None;
+    }
+    let cells = cells(profile, &shots);
+    let units = profile.output.units;
+    let (long, foot) = units.length();
+    let panels = found.len() + usize::from(found.len() == 2);
+    let mut svg = Svg::new(panels as f64 * WHOLE.0, WHOLE.1 + 70.0);
+    let name = shortened(&profile.shooter.name, 60);
+    let place = format!(
+        "{:.2} {long} from the hoop at {:.1} deg",
+        profile.place.distance_m / foot,
+        profile.place.angle_rad / DEGREE_RAD
+    );
+    svg.heading(
+        (20.0, 24.0),
+        16.0,
+        Anchor::Start,
+        &format!("Bank and direct in release space: {name}, {place}"),
+    );
+    let mut maps = Vec::new();
+    for (i, (kind, shot)) in found.iter().enumerate() {
+        let values = probabilities(profile, simulator, &shot.nominal, &cells);
+        let corner = (i as f64 * WHOLE.0, 34.0);
+        let title = format!(
+            "{kind}: polar {:.2} deg, backspin {:.1} rev/s held",
+            shot.nominal.polar_rad / DEGREE_RAD + 0.0,
+            shot.nominal.backspin_rad_s / REV_RAD
+        );
+        release_map::of_probabilities(&mut svg, corner, &title, &cells, units, &values);
+        let frame = release_map::frame(corner, &cells, units);
+        let at = frame.at((
+            shot.nominal.speed_m_s / foot,
+            shot.nominal.pitch_rad / DEGREE_RAD,
+        ));
+        svg.circle(
+            at,
+            5.0,
+            "fill=\"none\" stroke=\"#ffffff\" stroke-width=\"3\"",
+        );
+        svg.circle(
+            at,
+            5.0,
+            "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.5\"",
+        );
+        maps.push(values);
+    }
+    if let [direct, bank] = &maps[..] {
+        let most = direct
+            .iter()
+            .zip(bank)
+            .fold(0.05, |most: f64, (a, b)| most.max((b - a).abs()));
+        let sure = 2.0 * CELL_ERROR * std::f64::consts::SQRT_2;
+        let colours: Vec<[u8; 3]> = direct
+            .iter()
+            .zip(bank)
+            .map(|(a, b)| {
+                let by = b - a;
+                if by.abs() < sure {
+                    [255, 255, 255]
+                } else {
+                    diverging(by / most)
+                }
+            })
+            .collect();
+        release_map::of_values(
+            &mut svg,
+            (2.0 * WHOLE.0, 34.0),
+            "bank less direct",
+            (&cells, units),
+            &colours,
+            ("bank \u{2212} direct", (-most, most)),
+            |by| diverging(by / most),
+        );
+    }
+    let p: Vec<String> = found
+        .iter()
+        .map(|(kind, shot)| {
+            let estimate = &shot.estimate;
+            format!(
+                "{kind} {:.3} \u{b1} {:.3}",
+                estimate.probability, estimate.standard_error
+            )
+        })
+        .collect();
+    let caption = format!("P of the best shots (circles): {}.", p.join(", "));
+    let note = format!(
+        "{caption} P is under errors in speed, pitch, polar angle and backspin. White in the difference: within {:.3}. bankshot {}",
+        2.0 * CELL_ERROR * std::f64::consts::SQRT_2,
+        env!("CARGO_PKG_VERSION")
+    );
+    svg.text((20.0, WHOLE.1 + 52.0), 11.0, Anchor::Start, &note);
+    Some(Picture {
+        name: "release_space".to_owned(),
+        svg: svg.finish(&caption),
+        caption,
+    })
+}
