@@ -73,6 +73,12 @@ pub(crate) enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+    /// Draw the paper's Figs. 7 to 15 again.
+    Figures {
+        /// Folder of the pictures.
+        #[arg(long, value_name = "DIR", default_value = "figures")]
+        out: PathBuf,
+    },
     /// Print the manual page.
     Man,
 }

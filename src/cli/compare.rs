@@ -130,6 +130,13 @@ fn usual(profile: &Profile) -> PathBuf {
         .join("pictures")
 }
 
+/// Draws the paper's figures.
+pub(crate) fn figures(out: &Path, quiet: bool) -> Result<u8, Failure> {
+    let pictures = bankshot::picture::figures::all().map_err(Failure::bug)?;
+    write(out, &pictures)?;
+    tell_of(out, &pictures, quiet)
+}
+
 /// Writes each picture as SVG and as PNG.
 pub(crate) fn write(folder: &Path, pictures: &[Picture]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), &error))?;
@@ -143,7 +150,7 @@ pub(crate) fn write(folder: &Path, pictures: &[Picture]) -> Result<(), Failure> 
     Ok(())
 }
 
-fn tell_of(folder: &Path, pictures: &[Picture], quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn tell_of(folder: &Path, pictures: &[Picture], quiet: bool) -> Result<u8, Failure> {
     for picture in pictures {
         answer(&format!("{}: {}\n", picture.name, picture.caption))?;
     }

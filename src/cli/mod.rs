@@ -63,6 +63,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Verify(options) => sweep::verify(options, arguments.quiet),
         Command::Missing(options) => sweep::missing(options),
         Command::Merge(options) => sweep::merge(options, arguments.quiet),
+        Command::Figures { out } => compare::figures(out, arguments.quiet),
         Command::Trace(options) => trace::run(options, arguments.quiet),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -3,6 +3,7 @@
 pub mod colours;
 pub mod comparison;
 pub mod court_map;
+pub mod figures;
 pub mod frame;
 pub mod release_map;
 pub mod shot;

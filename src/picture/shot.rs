@@ -57,8 +57,13 @@ pub fn three_views(
     let z = widen(reach[2], -0.8, board + 0.2);
     let near_z = (-0.8, board + 0.6);
     let scale = |range: (f64, f64)| (range.0 / foot, range.1 / foot);
-    let side = Frame::to_scale((75.0, 70.0), 520.0, scale(x), scale(z));
-    let above = Frame::to_scale((75.0, side.end().1 + 90.0), 520.0, scale(x), scale(y));
+    let side = within((75.0, 70.0), (520.0, 380.0), scale(x), scale(z));
+    let above = within(
+        (75.0, side.end().1 + 90.0),
+        (520.0, 400.0),
+        scale(x),
+        scale(y),
+    );
     let near_y = (-half - 0.2, half + 0.2);
     let front = Frame::to_scale((690.0, 70.0), 330.0, scale(near_y), scale(near_z));
     let close = Frame::to_scale(
@@ -183,6 +188,12 @@ pub fn three_views(
         caption: title.to_owned(),
         svg: svg.finish(title),
     }
+}
+
+/// A frame with the same scale on both axes that fits into a size.
+fn within(corner: (f64, f64), size: (f64, f64), x: (f64, f64), y: (f64, f64)) -> Frame {
+    let width = size.0.min(size.1 * (x.1 - x.0) / (y.1 - y.0));
+    Frame::to_scale(corner, width, x, y)
 }
 
 /// Leaves out points within a third of a pixel of the last one kept.
