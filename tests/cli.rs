@@ -72,14 +72,19 @@ fn contract_best_prints_json_alone_and_writes_its_folder() {
         [
             "best_shots.csv",
             "best_shots.json",
+            "curves.csv",
+            "lessons.csv",
             "plan.json",
+            "profile.toml",
             "provenance.json"
         ]
     );
     let stored = fs::read(run.join("best_shots.json")).unwrap();
     assert_eq!(stored, output.stdout);
     let table = fs::read_to_string(run.join("best_shots.csv")).unwrap();
-    assert!(table.starts_with("kind,speed_ft_s,pitch_deg,polar_deg,backspin_rev_s,probability"));
+    assert!(table.starts_with(
+        "kind,speed_ft_s,pitch_deg,polar_deg,backspin_rev_s,side_spin_rev_s,probability"
+    ));
     assert_eq!(table.lines().count(), 3);
     // The same command again, with other threads and in metric units.
     let again = bankshot()

@@ -4,7 +4,7 @@ mod common;
 
 use bankshot::dynamics::Simulator;
 use bankshot::picture::sweep_maps::{Picture, Sweep};
-use bankshot::picture::{comparison, figures, svg};
+use bankshot::picture::{comparison, figures, report, svg};
 use bankshot::probability::estimate::Sampler;
 use bankshot::probability::release_map::{Cells, probabilities};
 use bankshot::probability::{Silent, best};
@@ -54,8 +54,8 @@ fn contract_a_map_of_release_space_is_the_same_on_any_thread_count() {
     };
     profile.search.standard_error = 0.01;
     let simulator = Simulator::new(&profile.physics).unwrap();
-    let found = best::find(&profile, &Silent).unwrap();
-    let draw = || vec![comparison::in_release_space(&profile, &simulator, &found).unwrap()];
+    let shots = report::shots_of(&profile, &best::find(&profile, &Silent).unwrap());
+    let draw = || vec![comparison::in_release_space(&profile, &simulator, &shots).unwrap()];
     let one = on(1, draw);
     assert_eq!(one, on(2, draw));
     let png = svg::to_png(&one[0].svg, 1.0).unwrap();

@@ -66,6 +66,8 @@ pub(crate) enum Command {
     Missing(MissingOptions),
     /// Join the shards of a sweep into its tables.
     Merge(MergeOptions),
+    /// Write one HTML page of the folder of a run: the answer, tables, maps, and the shots in a view that turns.
+    Report(FolderOptions),
     /// Follow one shot and say what happens.
     Trace(TraceOptions),
     /// Print a completion script for a shell.
@@ -91,7 +93,7 @@ Examples:
   bankshot best configs/bank_wing.toml --units metric --out /tmp/runs
 
 Writes OUT/<name>-<hash>/ with best_shots.csv, best_shots.json, curves.csv (P along each part of the
-best shots), lessons.csv, plan.json and provenance.json.")]
+best shots), lessons.csv, profile.toml, plan.json and provenance.json.")]
 pub(crate) struct BestOptions {
     /// The shooter's profile.
     pub(crate) profile: PathBuf,
@@ -258,7 +260,7 @@ pub(crate) struct CompareOptions {
 
 #[derive(Args, Debug)]
 pub(crate) struct FolderOptions {
-    /// The sweep's folder.
+    /// The folder.
     pub(crate) folder: PathBuf,
 }
 

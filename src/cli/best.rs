@@ -25,7 +25,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = parent.join(named_folder(&profile.shooter.name, &profile.hash()));
     prepare(&folder)?;
     let best = best::find(&profile, &Bars::new(quiet))?;
-    write(&folder, &profile, &best, units)?;
+    write(&folder, &options.profile, &profile, &best, units)?;
     let text = if options.json {
         format!("{:#}\n", output::best::json(&profile, &best, units))
     } else {
@@ -76,7 +76,15 @@ fn prepare(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn write(folder: &Path, profile: &Profile, best: &Best, units: System) -> Result<(), Failure> {
+/// Writes the files of a run, the profile's text among them.
+pub(crate) fn write(
+    folder: &Path,
+    source: &Path,
+    profile: &Profile,
+    best: &Best,
+    units: System,
+) -> Result<(), Failure> {
+    let text = super::plan::read_text(source)?;
     let json = |value: &serde_json::Value| format!("{value:#}\n").into_bytes();
     let plan = serde_json::to_value(&best.plan).unwrap_or_default();
     let configuration = serde_json::to_value(profile).unwrap_or_default();
@@ -92,6 +100,7 @@ fn write(folder: &Path, profile: &Profile, best: &Best, units: System) -> Result
         ),
         ("curves.csv", output::best::curves_csv(best, units)),
         ("lessons.csv", output::best::lessons_csv(best, units)),
+        ("profile.toml", text.into_bytes()),
         ("plan.json", json(&plan)),
         ("provenance.json", json(&output::object(provenance))),
     ];

@@ -10,7 +10,7 @@ use super::terminal::{answer, tell};
 use bankshot::dynamics::Simulator;
 use bankshot::output::files;
 use bankshot::picture::sweep_maps::{Picture, Sweep, against};
-use bankshot::picture::{comparison, svg};
+use bankshot::picture::{comparison, report, svg};
 use bankshot::probability::best;
 use bankshot::profile::Profile;
 use bankshot::sweep::Configuration;
@@ -82,6 +82,13 @@ fn courts(
     }
     let folder = options.out.clone().unwrap_or_else(|| path.join("pictures"));
     write(&folder, &pictures)?;
+    let of = std::fs::canonicalize(&path).unwrap_or(path);
+    let note = format!(
+        "{:#}\n",
+        serde_json::json!({ "sweep": of.display().to_string() })
+    );
+    let file = folder.join("of_sweep.json");
+    files::write(&file, note.as_bytes()).map_err(|error| Failure::io(file.display(), &error))?;
     let whole = rows.len() == bankshot::sweep::jobs::Jobs::new(&configuration).count();
     tell_of(&folder, &pictures, quiet)?;
     if !whole && !quiet {
@@ -98,6 +105,7 @@ fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     let mut pictures = Vec::new();
     let mut text = String::new();
     let bars = Bars::new(quiet);
+    let mut first = None;
     for (i, profile) in profiles.iter().enumerate() {
         let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)
             .map_err(Failure::usage)?;
@@ -111,23 +119,28 @@ fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
                 Err(reason) => format!("{}, {kind}: {reason}\n", profile.shooter.name),
             });
         }
-        if let Some(mut picture) = comparison::in_release_space(profile, &simulator, &best) {
+        let shots = report::shots_of(profile, &best);
+        if let Some(mut picture) = comparison::in_release_space(profile, &simulator, &shots) {
             if i > 0 {
                 picture.name.push_str("_against");
             }
             pictures.push(picture);
         }
+        if i == 0 {
+            first = Some((profile, best));
+        }
     }
     let folder = options.out.clone().unwrap_or_else(|| usual(&profiles[0]));
     write(&folder, &pictures)?;
+    if let Some((profile, best)) = first {
+        super::best::write(&folder, &options.what, profile, &best, profile.output.units)?;
+    }
     answer(&text)?;
     tell_of(&folder, &pictures, quiet)
 }
 
 fn usual(profile: &Profile) -> PathBuf {
-    PathBuf::from(&profile.output.folder)
-        .join(named_folder(&profile.shooter.name, &profile.hash()))
-        .join("pictures")
+    PathBuf::from(&profile.output.folder).join(named_folder(&profile.shooter.name, &profile.hash()))
 }
 
 /// Draws the paper's figures.

@@ -8,6 +8,7 @@ mod nominal;
 mod plan;
 mod probability;
 mod progress;
+mod report;
 mod signals;
 mod simulate;
 mod sweep;
@@ -63,6 +64,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Verify(options) => sweep::verify(options, arguments.quiet),
         Command::Missing(options) => sweep::missing(options),
         Command::Merge(options) => sweep::merge(options, arguments.quiet),
+        Command::Report(options) => report::run(options, arguments.quiet),
         Command::Figures { out } => compare::figures(out, arguments.quiet),
         Command::Trace(options) => trace::run(options, arguments.quiet),
         Command::Completions { shell } => {

@@ -2,10 +2,10 @@
 
 use super::colours::diverging;
 use super::release_map::{self, WHOLE};
+use super::report::Shot;
 use super::svg::{Anchor, Svg, shortened};
 use super::sweep_maps::Picture;
 use crate::dynamics::Simulator;
-use crate::probability::best::{Best, BestShot};
 use crate::probability::release_map::{Cells, probabilities};
 use crate::profile::Profile;
 use crate::units::{DEGREE_RAD, REV_RAD};
@@ -19,7 +19,7 @@ const ROOM: (f64, f64, f64) = (6.0, 0.5, 12.0 * DEGREE_RAD);
 const CELL_ERROR: f64 = 0.004;
 
 /// The cells of a map that shows both best shots.
-fn cells(profile: &Profile, shots: &[&BestShot]) -> Cells {
+fn cells(profile: &Profile, shots: &[Shot]) -> Cells {
     let (sigmas, least, pitch) = ROOM;
     let mut cells = Cells {
         speed_m_s: (f64::INFINITY, f64::NEG_INFINITY),
@@ -45,16 +45,19 @@ fn cells(profile: &Profile, shots: &[&BestShot]) -> Cells {
 
 /// Draws both kinds that were found, each with its own polar angle and spin held, and their difference.
 #[must_use]
-pub fn in_release_space(profile: &Profile, simulator: &Simulator, best: &Best) -> Option<Picture> {
-    let found: Vec<(&str, &BestShot)> = [("direct", &best.direct), ("bank", &best.bank)]
-        .into_iter()
-        .filter_map(|(name, shot)| Some((name, shot.as_ref().ok()?)))
+pub fn in_release_space(
+    profile: &Profile,
+    simulator: &Simulator,
+    shots: &[Shot],
+) -> Option<Picture> {
+    let found: Vec<(&str, &Shot)> = shots
+        .iter()
+        .map(|shot| (shot.kind.as_str(), shot))
         .collect();
-    let shots: Vec<&BestShot> = found.iter().map(|(_, shot)| *shot).collect();
     if shots.is_empty() {
         return None;
     }
-    let cells = cells(profile, &shots);
+    let cells = cells(profile, shots);
     let units = profile.output.units;
     let (long, foot) = units.length();
     let panels = found.len() + usize::from(found.len() == 2);
@@ -128,13 +131,7 @@ pub fn in_release_space(profile: &Profile, simulator: &Simulator, best: &Best) -
     }
     let p: Vec<String> = found
         .iter()
-        .map(|(kind, shot)| {
-            let estimate = &shot.estimate;
-            format!(
-                "{kind} {:.3} \u{b1} {:.3}",
-                estimate.probability, estimate.standard_error
-            )
-        })
+        .map(|(kind, shot)| format!("{kind} {:.3} \u{b1} {:.3}", shot.p.0, shot.p.1))
         .collect();
     let caption = format!("P of the best shots (circles): {}.", p.join(", "));
     let note = format!(

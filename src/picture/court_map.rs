@@ -93,7 +93,7 @@ impl Ground<'_> {
                     svg.rect(
                         corner,
                         (side + 0.2, side + 0.2),
-                        &format!("fill=\"{colour}\""),
+                        &format!("fill=\"{colour}\" shape-rendering=\"crispEdges\""),
                     );
                 } else {
                     let style = format!("fill=\"{colour}\" stroke=\"{INK}\" stroke-width=\"0.5\"");
