@@ -211,3 +211,24 @@ fn campaign_draw_the_half_court() {
     );
     fs::write(path, picture.svg).unwrap();
 }
+
+#[test]
+fn contract_the_pictures_of_the_tutorial_are_not_stale() {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let folder = tempfile::TempDir::new().unwrap();
+    let status = std::process::Command::new("sh")
+        .arg(format!("{root}/docs/pictures/redraw.sh"))
+        .arg(folder.path())
+        .env("BANKSHOT", env!("CARGO_BIN_EXE_bankshot"))
+        .status()
+        .unwrap();
+    assert!(status.success());
+    for name in ["tutorial_before.svg", "tutorial_after.svg"] {
+        let kept = fs::read_to_string(format!("{root}/docs/pictures/{name}")).unwrap_or_default();
+        let drawn = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert!(
+            kept == drawn,
+            "{name} is stale: run docs/pictures/redraw.sh"
+        );
+    }
+}

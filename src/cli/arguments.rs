@@ -240,7 +240,8 @@ pub(crate) struct SweepOptions {
 #[command(after_help = "\
 Of a sweep: P of the best direct and bank shots over the court with their difference, and maps of the best
 P, kind, pitch angle and spin, of what spin is worth and which error costs most where they were computed.
-Of a profile: P over speed and pitch angle about the best direct and bank shots, and their difference.
+Of a profile: how shots end and P, over speed and pitch angle about the best direct and bank shots, and their
+difference.
 Each is written as SVG and PNG.
 
 Examples:

@@ -120,6 +120,9 @@ fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
             });
         }
         let shots = report::shots_of(profile, &best);
+        if i == 0 {
+            pictures.extend(comparison::outcomes_about(profile, &simulator, &shots));
+        }
         if let Some(mut picture) = comparison::in_release_space(profile, &simulator, &shots) {
             if i > 0 {
                 picture.name.push_str("_against");

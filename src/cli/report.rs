@@ -56,6 +56,7 @@ pub(crate) fn run(options: &FolderOptions, quiet: bool) -> Result<u8, Failure> {
     let mut pictures: Vec<_> = comparison::in_release_space(&profile, &simulator, &shots)
         .into_iter()
         .collect();
+    pictures.extend(comparison::outcomes_about(&profile, &simulator, &shots));
     bars.advance(1);
     let curve_rows = csv_rows(&folder.join("curves.csv"))?;
     pictures.extend(curves::picture(&profile, &curve_rows));

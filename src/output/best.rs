@@ -307,7 +307,7 @@ pub fn lessons(profile: &Profile, best: &Best, units: System) -> String {
         let (direct, bank) = (&direct.estimate, &bank.estimate);
         let gain = Difference {
             by: bank.probability - direct.probability,
-            standard_error: bank.standard_error.hypot(direct.standard_error),
+            standard_error: libm::hypot(bank.standard_error, direct.standard_error),
         };
         text.push_str(&format!("bank less direct: {}\n", points(&gain)));
     }
@@ -351,7 +351,7 @@ pub fn json(profile: &Profile, best: &Best, units: System) -> Value {
     }
     if let (Ok(direct), Ok(bank)) = (&best.direct, &best.bank) {
         let (direct, bank) = (&direct.estimate, &bank.estimate);
-        let error = bank.standard_error.hypot(direct.standard_error);
+        let error = libm::hypot(bank.standard_error, direct.standard_error);
         let gain = vec![
             (
                 "gain".to_owned(),

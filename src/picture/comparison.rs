@@ -6,9 +6,9 @@ use super::report::Shot;
 use super::svg::{Anchor, Svg, shortened};
 use super::sweep_maps::Picture;
 use crate::dynamics::Simulator;
-use crate::probability::release_map::{Cells, probabilities};
+use crate::probability::release_map::{Cells, outcomes, probabilities};
 use crate::profile::Profile;
-use crate::units::{DEGREE_RAD, REV_RAD};
+use crate::units::{DEGREE_RAD, REV_RAD, System};
 
 /// Cells of the maps along speed and pitch angle.
 pub const CELLS: (usize, usize) = (400, 300);
@@ -43,6 +43,73 @@ fn cells(profile: &Profile, shots: &[Shot]) -> Cells {
     cells
 }
 
+/// Draws how shots about the best ones end, without errors: `cond` of Eq. 21 in the paper, one pixel a shot.
+#[must_use]
+pub fn outcomes_about(profile: &Profile, simulator: &Simulator, shots: &[Shot]) -> Option<Picture> {
+    if shots.is_empty() {
+        return None;
+    }
+    let cells = cells(profile, shots);
+    let units = profile.output.units;
+    let mut svg = Svg::new(shots.len() as f64 * WHOLE.0, WHOLE.1 + 60.0);
+    let name = shortened(&profile.shooter.name, 60);
+    let title = format!("How shots end: {name}, {}", place(profile));
+    svg.heading((20.0, 24.0), 16.0, Anchor::Start, &title);
+    for (i, shot) in shots.iter().enumerate() {
+        let kinds = outcomes(profile, simulator, &shot.nominal, &cells);
+        let corner = (i as f64 * WHOLE.0, 34.0);
+        release_map::of_outcomes(&mut svg, corner, &held(shot), &cells, units, &kinds);
+        mark(&mut svg, corner, &cells, units, shot);
+    }
+    let caption =
+        "How each shot without errors ends, by speed and pitch angle; circles: the best shots.";
+    svg.text((20.0, WHOLE.1 + 46.0), 11.0, Anchor::Start, caption);
+    Some(Picture {
+        name: "outcomes".to_owned(),
+        svg: svg.finish(&title),
+        caption: caption.to_owned(),
+    })
+}
+
+/// What is held in the map of a shot.
+fn held(shot: &Shot) -> String {
+    format!(
+        "{}: polar {:.2} deg, backspin {:.1} rev/s held",
+        shot.kind,
+        shot.nominal.polar_rad / DEGREE_RAD + 0.0,
+        shot.nominal.backspin_rad_s / REV_RAD
+    )
+}
+
+fn place(profile: &Profile) -> String {
+    let (long, foot) = profile.output.units.length();
+    format!(
+        "{:.2} {long} from the hoop at {:.1} deg",
+        profile.place.distance_m / foot,
+        profile.place.angle_rad / DEGREE_RAD
+    )
+}
+
+/// A circle at the best shot.
+fn mark(svg: &mut Svg, corner: (f64, f64), cells: &Cells, units: System, shot: &Shot) {
+    let (_, foot) = units.length();
+    let frame = release_map::frame(corner, cells, units);
+    let at = frame.at((
+        shot.nominal.speed_m_s / foot,
+        shot.nominal.pitch_rad / DEGREE_RAD,
+    ));
+    svg.circle(
+        at,
+        5.0,
+        "fill=\"none\" stroke=\"#ffffff\" stroke-width=\"3\"",
+    );
+    svg.circle(
+        at,
+        5.0,
+        "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.5\"",
+    );
+}
+
 /// Draws both kinds that were found, each with its own polar angle and spin held, and their difference.
 #[must_use]
 pub fn in_release_space(
@@ -59,15 +126,10 @@ pub fn in_release_space(
     }
     let cells = cells(profile, shots);
     let units = profile.output.units;
-    let (long, foot) = units.length();
     let panels = found.len() + usize::from(found.len() == 2);
     let mut svg = Svg::new(panels as f64 * WHOLE.0, WHOLE.1 + 70.0);
     let name = shortened(&profile.shooter.name, 60);
-    let place = format!(
-        "{:.2} {long} from the hoop at {:.1} deg",
-        profile.place.distance_m / foot,
-        profile.place.angle_rad / DEGREE_RAD
-    );
+    let place = place(profile);
     svg.heading(
         (20.0, 24.0),
         16.0,
@@ -75,30 +137,12 @@ pub fn in_release_space(
         &format!("Bank and direct in release space: {name}, {place}"),
     );
     let mut maps = Vec::new();
-    for (i, (kind, shot)) in found.iter().enumerate() {
+    for (i, (_, shot)) in found.iter().enumerate() {
         let values = probabilities(profile, simulator, &shot.nominal, &cells);
         let corner = (i as f64 * WHOLE.0, 34.0);
-        let title = format!(
-            "{kind}: polar {:.2} deg, backspin {:.1} rev/s held",
-            shot.nominal.polar_rad / DEGREE_RAD + 0.0,
-            shot.nominal.backspin_rad_s / REV_RAD
-        );
+        let title = held(shot);
         release_map::of_probabilities(&mut svg, corner, &title, &cells, units, &values);
-        let frame = release_map::frame(corner, &cells, units);
-        let at = frame.at((
-            shot.nominal.speed_m_s / foot,
-            shot.nominal.pitch_rad / DEGREE_RAD,
-        ));
-        svg.circle(
-            at,
-            5.0,
-            "fill=\"none\" stroke=\"#ffffff\" stroke-width=\"3\"",
-        );
-        svg.circle(
-            at,
-            5.0,
-            "fill=\"none\" stroke=\"#000000\" stroke-width=\"1.5\"",
-        );
+        mark(&mut svg, corner, &cells, units, shot);
         maps.push(values);
     }
     if let [direct, bank] = &maps[..] {

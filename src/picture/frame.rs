@@ -112,7 +112,7 @@ pub fn ticks((from, to): (f64, f64)) -> Vec<f64> {
     if !(rough > 0.0 && rough.is_finite()) {
         return Vec::new();
     }
-    let power = 10f64.powi(rough.log10().floor() as i32);
+    let power = libm::exp10(libm::log10(rough).floor());
     let step = [1.0, 2.0, 2.5, 5.0, 10.0]
         .into_iter()
         .map(|factor| factor * power)

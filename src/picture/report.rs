@@ -508,7 +508,7 @@ pub fn of_place<'a>(
                 format!(
                     ", {:.1} \u{b1} {:.1} points more than the {} shot",
                     100.0 * (best.p.0 - other.p.0),
-                    100.0 * best.p.1.hypot(other.p.1),
+                    100.0 * libm::hypot(best.p.1, other.p.1),
                     other.kind
                 )
             });

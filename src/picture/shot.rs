@@ -196,19 +196,77 @@ fn within(corner: (f64, f64), size: (f64, f64), x: (f64, f64), y: (f64, f64)) ->
     Frame::to_scale(corner, width, x, y)
 }
 
-/// Leaves out points within a third of a pixel of the last one kept.
+/// How far a drawn path may run beside the points that it leaves out, pixels.
+const TOLERANCE: f64 = 0.2;
+
+/// Leaves out points that change a path by less than [`TOLERANCE`] (Ramer 1972, Douglas and Peucker 1973).
 fn thinned(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
-    let mut kept: Vec<(f64, f64)> = Vec::new();
-    let mut last = None;
-    for point in points {
-        let far = kept
-            .last()
-            .is_none_or(|last: &(f64, f64)| (last.0 - point.0).hypot(last.1 - point.1) > 0.33);
-        if far {
-            kept.push(point);
+    let points: Vec<(f64, f64)> = points.collect();
+    let mut keep = vec![false; points.len()];
+    let mut spans = vec![(0, points.len().saturating_sub(1))];
+    while let Some((first, last)) = spans.pop() {
+        for end in [first, last] {
+            if let Some(keep) = keep.get_mut(end) {
+                *keep = true;
+            }
         }
-        last = Some(point);
+        let farthest = (first + 1..last)
+            .map(|i| (beside(points[i], points[first], points[last]), i))
+            .fold((TOLERANCE, None), |(most, at), (distance, i)| {
+                if distance > most {
+                    (distance, Some(i))
+                } else {
+                    (most, at)
+                }
+            });
+        if let (_, Some(i)) = farthest {
+            spans.extend([(first, i), (i, last)]);
+        }
     }
-    kept.extend(last);
-    kept
+    let kept = points.iter().zip(keep);
+    kept.filter_map(|(point, keep)| keep.then_some(*point))
+        .collect()
+}
+
+/// Distance of a point from the line between two others.
+fn beside(p: (f64, f64), a: (f64, f64), b: (f64, f64)) -> f64 {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let square = dx * dx + dy * dy;
+    let part = if square > 0.0 {
+        (((p.0 - a.0) * dx + (p.1 - a.1) * dy) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let (x, y) = (p.0 - a.0 - part * dx, p.1 - a.1 - part * dy);
+    (x * x + y * y).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_a_thinned_path_stays_beside_its_points() {
+        let points: Vec<(f64, f64)> = (0..500)
+            .map(|i| {
+                let t = f64::from(i);
+                (
+                    t,
+                    0.01 * (t - 250.0) * (t - 250.0) * if i > 400 { -1.0 } else { 1.0 },
+                )
+            })
+            .collect();
+        let kept = thinned(points.iter().copied());
+        assert!(kept.len() > 10 && kept.len() < 200, "{}", kept.len());
+        assert_eq!((kept[0], kept[kept.len() - 1]), (points[0], points[499]));
+        for point in points {
+            let near = kept
+                .windows(2)
+                .map(|pair| beside(point, pair[0], pair[1]))
+                .fold(f64::INFINITY, f64::min);
+            assert!(near <= TOLERANCE + 1e-12, "{point:?} {near}");
+        }
+        assert_eq!(thinned(std::iter::empty()), []);
+        assert_eq!(thinned([(1.0, 2.0)].into_iter()), [(1.0, 2.0)]);
+    }
 }

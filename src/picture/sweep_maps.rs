@@ -181,7 +181,7 @@ impl<'a> Sweep<'a> {
         }
         let gain = |at: &At| {
             let ((direct, a), (bank, b)) = (self.p(at, "direct")?, self.p(at, "bank")?);
-            Some((bank - direct, a.hypot(b)))
+            Some((bank - direct, libm::hypot(a, b)))
         };
         let sure = |at: &At| gain(at).filter(|(by, error)| by.abs() > SURE * error);
         // The same number of points on both sides, at most 10: beyond it the colour is full.
@@ -431,7 +431,7 @@ pub fn against(one: &Sweep<'_>, other: &Sweep<'_>) -> Option<Picture> {
     };
     let gain = |at: &At| {
         let (a, b) = (value(one, at)?, value(other, theirs.get(&bits(at))?)?);
-        Some((b.0 - a.0, a.1.hypot(b.1)))
+        Some((b.0 - a.0, libm::hypot(a.1, b.1)))
     };
     let gains: Vec<(f64, f64)> = one.places.iter().filter_map(gain).collect();
     if gains.is_empty() {

@@ -97,7 +97,7 @@ impl Lessons {
             .max_by(|a, b| a.gain.by.total_cmp(&b.gain.by))?;
         Some(Difference {
             by: best.gain.by - none.gain.by,
-            standard_error: none.gain.standard_error.hypot(best.gain.standard_error),
+            standard_error: libm::hypot(none.gain.standard_error, best.gain.standard_error),
         })
     }
 }
