@@ -141,6 +141,21 @@ fn contract_a_damaged_store_is_set_aside_and_never_believed() {
         bytes[at] ^= 1 << bit;
         cases.push((format!("byte {at} bit {bit}"), bytes));
     }
+    // Where reading shows nothing: the header's versions, and the layout of the small tables.
+    for at in [18, 19] {
+        let mut bytes = sound.clone();
+        bytes[at] ^= 2;
+        cases.push((format!("byte {at} of the header"), bytes));
+    }
+    for (from, to) in [("aborts", "abosts"), ("started (place", "started (plaze")] {
+        let at = sound
+            .windows(from.len())
+            .position(|window| window == from.as_bytes())
+            .unwrap();
+        let mut bytes = sound.clone();
+        bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
+        cases.push((format!("{to} in the layout"), bytes));
+    }
     let mut longer = sound.clone();
     longer.extend([0; 5000]);
     cases.push(("zeros appended".to_owned(), longer));
@@ -158,6 +173,74 @@ fn contract_a_damaged_store_is_set_aside_and_never_believed() {
         fs::remove_dir_all(&out).unwrap();
     }
     assert!(set_aside > 10, "{set_aside}");
+}
+
+#[test]
+fn contract_salvage_never_takes_the_place_of_a_better_result() {
+    let place = Place::new();
+    let (_, bytes) = place.undisturbed();
+    let out = place.out("salvage");
+    let output = place.run(&out, &["--quiet", "--fault", "panic:2"]);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    // A machine's store with the failures, which then breaks; another machine has mended them.
+    let old = out.join("store/1-of-9.elsewhere.sqlite");
+    fs::copy(store(&out), &old).unwrap();
+    let output = place.run(&out, &["--quiet", "--retry-failed"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let mut broken = fs::read(&old).unwrap();
+    broken[18] ^= 2;
+    fs::write(&old, broken).unwrap();
+    let output = place.run(&out, &["--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(
+        said(&output).contains("12 sound results of it are kept"),
+        "{output:?}"
+    );
+    assert_eq!(tables(&out), bytes);
+    assert!(out.join("store/1-of-9.elsewhere.sqlite.damaged-1").exists());
+    assert!(
+        out.join("store/1-of-9.elsewhere.salvaged-1.sqlite")
+            .exists()
+    );
+}
+
+#[test]
+fn contract_a_shard_answers_for_its_own_jobs_alone() {
+    let place = Place::new();
+    let out = place.out("own");
+    for (more, code) in [
+        (["--shard", "1/2", "--fault", "panic:0"], 3),
+        (["--shard", "2/2", "--fault", "panic:99"], 0),
+    ] {
+        let output = place
+            .command(&out)
+            .arg("--quiet")
+            .args(more)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(code), "{output:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn contract_a_signal_that_the_shell_ignores_stays_ignored() {
+    let place = Place::new();
+    let out = place.out("nohup");
+    let sweep = place.command(&out);
+    let mut command = std::process::Command::new("sh");
+    command
+        .args(["-c", "trap '' HUP; exec \"$@\"", "sh"])
+        .arg(sweep.get_program())
+        .args(sweep.get_args());
+    let child = start(command);
+    std::thread::sleep(Duration::from_millis(150));
+    let _ = std::process::Command::new("kill")
+        .args(["-HUP", &child.id().to_string()])
+        .stderr(Stdio::null())
+        .status();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
 #[test]

@@ -38,7 +38,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     Ok(exit_code(&profile, &best))
 }
 
-fn exit_code(profile: &Profile, best: &Best) -> u8 {
+pub(crate) fn exit_code(profile: &Profile, best: &Best) -> u8 {
     let target = profile.search.standard_error;
     let missed = [&best.direct, &best.bank]
         .into_iter()

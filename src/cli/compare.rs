@@ -16,6 +16,7 @@ use bankshot::profile::Profile;
 use bankshot::sweep::Configuration;
 use bankshot::sweep::configuration::is_sweep;
 use bankshot::sweep::folder::Folder;
+use bankshot::sweep::jobs::Jobs;
 use bankshot::sweep::row::Row;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -41,7 +42,7 @@ pub(crate) fn run(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> 
 }
 
 /// A sweep's folder with its results.
-type Swept = (PathBuf, Configuration, BTreeMap<u64, Row>);
+type Swept = (Folder, Configuration, BTreeMap<u64, Row>);
 
 /// The sweep of a folder, or of a TOML file whose sweep has its usual folder.
 fn swept(path: &Path) -> Result<Option<Swept>, Failure> {
@@ -57,12 +58,12 @@ fn swept(path: &Path) -> Result<Option<Swept>, Failure> {
     for remark in remarks {
         tell(&format!("remark: {remark}"));
     }
-    Ok(Some((path, configuration, rows)))
+    Ok(Some((folder, configuration, rows)))
 }
 
 fn courts(
     options: &CompareOptions,
-    (path, configuration, rows): Swept,
+    (sweep, configuration, rows): Swept,
     other: Option<Swept>,
     quiet: bool,
 ) -> Result<u8, Failure> {
@@ -80,21 +81,27 @@ fn courts(
         pictures.extend(one.bank_and_direct());
         pictures.extend(one.best_maps());
     }
-    let folder = options.out.clone().unwrap_or_else(|| path.join("pictures"));
+    let folder = options
+        .out
+        .clone()
+        .unwrap_or_else(|| sweep.path().join("pictures"));
     write(&folder, &pictures)?;
-    let of = std::fs::canonicalize(&path).unwrap_or(path);
+    let of = std::fs::canonicalize(sweep.path()).unwrap_or(sweep.path().to_owned());
     let note = format!(
         "{:#}\n",
         serde_json::json!({ "sweep": of.display().to_string() })
     );
     let file = folder.join("of_sweep.json");
     files::write(&file, note.as_bytes()).map_err(|error| Failure::io(file.display(), &error))?;
-    let whole = rows.len() == bankshot::sweep::jobs::Jobs::new(&configuration).count();
-    tell_of(&folder, &pictures, quiet)?;
-    if !whole && !quiet {
-        tell("remark: the sweep is not whole; what is missing is grey");
+    let mut exit = sweep::exit_of(&Jobs::new(&configuration), &rows);
+    if let Some((_, configuration, rows)) = &other {
+        exit = exit.max(sweep::exit_of(&Jobs::new(configuration), rows));
     }
-    Ok(if whole { code::WHOLE } else { code::INCOMPLETE })
+    tell_of(&folder, &pictures, quiet)?;
+    if exit != code::WHOLE && !quiet {
+        tell("remark: the sweep is not whole; what is missing or failed is grey");
+    }
+    Ok(exit)
 }
 
 fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
@@ -106,10 +113,12 @@ fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     let mut text = String::new();
     let bars = Bars::new(quiet);
     let mut first = None;
+    let mut exit = code::WHOLE;
     for (i, profile) in profiles.iter().enumerate() {
         let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)
             .map_err(Failure::usage)?;
         let best = best::find(profile, &bars)?;
+        exit = exit.max(super::best::exit_code(profile, &best));
         for (kind, shot) in [("direct", &best.direct), ("bank", &best.bank)] {
             text.push_str(&match shot {
                 Ok(shot) => format!(
@@ -138,8 +147,11 @@ fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     if let Some((profile, best)) = first {
         super::best::write(&folder, &options.what, profile, &best, profile.output.units)?;
     }
+    // What a sweep may have left there.
+    let _ = std::fs::remove_file(folder.join("of_sweep.json"));
     answer(&text)?;
-    tell_of(&folder, &pictures, quiet)
+    tell_of(&folder, &pictures, quiet)?;
+    Ok(exit)
 }
 
 fn usual(profile: &Profile) -> PathBuf {

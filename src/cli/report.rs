@@ -12,6 +12,7 @@ use bankshot::picture::{comparison, curves};
 use bankshot::probability::Progress;
 use bankshot::profile::{Nominal, Profile};
 use bankshot::sweep::folder::Folder;
+use bankshot::sweep::jobs::Jobs;
 use bankshot::units::{DEGREE_RAD, REV_RAD, System};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -25,11 +26,12 @@ pub(crate) fn run(options: &FolderOptions, quiet: bool) -> Result<u8, Failure> {
         for remark in remarks {
             tell(&format!("remark: {remark}"));
         }
-        let page = of_sweep(&configuration, &rows);
+        let page = of_sweep(&configuration, &rows, (sweep.program(), sweep.hash()));
         let template = &configuration.template;
         let simulator = Simulator::with_integrator(&template.physics, template.integrator)
             .map_err(Failure::usage)?;
-        return write(&target, page, &simulator, quiet);
+        write(&target, page, &simulator, quiet)?;
+        return Ok(super::sweep::exit_of(&Jobs::new(&configuration), &rows));
     }
     let file = folder.join("profile.toml");
     if !file.exists() {

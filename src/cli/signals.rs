@@ -30,7 +30,11 @@ fn leave(exit_code: u8) -> ! {
 pub(crate) fn watch() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // Without a handler the default one ends the program too; only temporary files would stay.
-    let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else {
+    // What the shell has us ignore, as `nohup` does, stays ignored.
+    let heeded = [SIGINT, SIGTERM, SIGHUP]
+        .into_iter()
+        .filter(|&signal| !is_ignored(signal));
+    let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else {
         return;
     };
     // Without a thread for it, signals end the program as they always do.
@@ -43,6 +47,17 @@ pub(crate) fn watch() {
             });
         }
     });
+}
+
+/// Is a signal ignored? The system tells on Linux; elsewhere none is taken to be.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    status
+        .lines()
+        .find_map(|line| line.strip_prefix("SigIgn:"))
+        .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
 /// As there, for Ctrl-C alone.

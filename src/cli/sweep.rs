@@ -8,10 +8,10 @@ use super::progress::Bars;
 use super::signals;
 use super::terminal::{answer, tell};
 use bankshot::output::{self, files};
-use bankshot::plan::Plan;
+use bankshot::plan::{Plan, PlanError};
 use bankshot::probability::Progress;
 use bankshot::sweep::configuration::{Texts, names, parse_sweep};
-use bankshot::sweep::folder::Folder;
+use bankshot::sweep::folder::{Folder, is_held};
 use bankshot::sweep::jobs::{Jobs, Shard};
 use bankshot::sweep::row::{Cell, Row, Status};
 use bankshot::sweep::run::{self, Fault, Options, Run};
@@ -57,13 +57,18 @@ pub(crate) fn plan(path: &Path, json: bool, quiet: bool) -> Result<u8, Failure> 
     let chosen: Vec<usize> = (0..some)
         .map(|i| (2 * i + 1) * places / (2 * some))
         .collect();
-    let profile = configuration
-        .template
-        .at(jobs.places[0].place())
-        .map_err(Failure::usage)?;
-    let memory = Plan::new(&profile)?.memory_bytes as f64;
+    // From some places nothing goes in, which takes no table.
+    let memory = chosen
+        .iter()
+        .filter_map(|&place| configuration.template.at(jobs.places[place].place()).ok())
+        .find_map(|profile| match Plan::new(&profile) {
+            Err(PlanError::OutOfReach) => None,
+            plan => Some(plan),
+        })
+        .transpose()?
+        .map_or(0.0, |plan| plan.memory_bytes as f64);
     let seconds = run::calibrate(&configuration, &jobs, &chosen, threads, &Bars::new(quiet))
-        .map(|mean| mean * places as f64 / threads as f64);
+        .map(|mean| mean * places.div_ceil(threads) as f64);
     let (store, tables) = BYTES_PER_JOB;
     let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
     let disk = store * jobs.count() as f64 + tables * rows;
@@ -357,7 +362,7 @@ pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
     for store in folder.stores()? {
         let (done, seconds) = store::timing(&store);
         let lock = store.with_extension("lock");
-        let running = std::fs::File::open(&lock).is_ok_and(|file| file.try_lock().is_err());
+        let running = is_held(&lock);
         text.push_str(&format!(
             "{}: {done} jobs, {:.2} s each{}\n",
             store.file_name().unwrap_or_default().display(),
@@ -372,7 +377,8 @@ pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
     Ok(exit_of(&jobs, &rows))
 }
 
-fn exit_of(jobs: &Jobs, rows: &BTreeMap<u64, Row>) -> u8 {
+/// Whole, or incomplete.
+pub(crate) fn exit_of(jobs: &Jobs, rows: &BTreeMap<u64, Row>) -> u8 {
     let failed = rows
         .values()
         .any(|row| row.status() == Some(Status::Failed));

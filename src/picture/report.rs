@@ -363,11 +363,12 @@ fn shots_table(shots: &[Shot], units: System) -> Table {
     }
 }
 
-/// The page of a sweep; none where no shot was found.
+/// The page of a sweep, by the program and under the hash that its results have; none where no shot was found.
 #[must_use]
 pub fn of_sweep<'a>(
     configuration: &'a Configuration,
     rows: &BTreeMap<u64, Row>,
+    (program, hash): (&str, &str),
 ) -> Option<Page<'a>> {
     let template = &configuration.template;
     let units = template.output.units;
@@ -474,10 +475,8 @@ pub fn of_sweep<'a>(
         height_m: template.shooter.release_height_m - template.physics.hoop_height_m,
         units,
         footer: format!(
-            "bankshot {} ({}), configuration {}; {} of {} jobs: {} found, {} without a shot that can go in, {} failed; P to {}.",
-            env!("CARGO_PKG_VERSION"),
-            env!("BANKSHOT_COMMIT"),
-            &configuration.hash()[..12],
+            "bankshot {program}, configuration {}; {} of {} jobs: {} found, {} without a shot that can go in, {} failed; P to {}.",
+            hash.get(..12).unwrap_or(hash),
             rows.len(),
             jobs.count(),
             found("found"),

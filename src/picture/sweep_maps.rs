@@ -2,8 +2,8 @@
 
 use super::colours::{NAMED, diverging, sequential};
 use super::court_map::{Ground, Key, Spot, footnote};
-use super::frame::hex;
 use super::svg::{Anchor, Svg, shortened};
+use crate::profile::ERROR_NAMES;
 use crate::sweep::jobs::Jobs;
 use crate::sweep::row::{Cell, Row};
 use crate::sweep::{Configuration, Region};
@@ -326,34 +326,18 @@ impl<'a> Sweep<'a> {
             "What the best backspin gains over none, speed aimed anew.",
             &mut add,
         );
-        let errors: Vec<(String, [u8; 3])> = [
-            "speed",
-            "pitch",
-            "polar",
-            "backspin",
-            "rifle_spin",
-            "side_spin",
-            "distance",
-            "court_angle",
-            "height",
-        ]
-        .iter()
-        .enumerate()
-        .map(|(i, name)| {
-            (
-                name.replace('_', " "),
-                if i < NAMED.len() { NAMED[i] } else { [0, 0, 0] },
-            )
-        })
-        .collect();
-        let seen: Vec<(String, [u8; 3])> = errors
+        let seen: Vec<(String, [u8; 3])> = ERROR_NAMES
             .iter()
+            .enumerate()
+            .map(|(i, name)| {
+                let colour = NAMED.get(i).copied().unwrap_or_default();
+                (name.replace('_', " "), colour)
+            })
             .filter(|(name, _)| {
                 self.places
                     .iter()
                     .any(|at| self.costliest(at).as_ref() == Some(name))
             })
-            .cloned()
             .collect();
         add(
             "costliest_error",
@@ -411,12 +395,6 @@ impl<'a> Sweep<'a> {
             &|at| value(at).map(colour),
         );
     }
-}
-
-/// The colour of a name in a legend, for pages.
-#[must_use]
-pub fn css(colour: [u8; 3]) -> String {
-    hex(colour)
 }
 
 /// The best shots of two sweeps over the same places side by side, with their difference; none where no place is

@@ -15,11 +15,14 @@ use crate::profile::ProfileError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, Read as _, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// Differences of two configurations that are told at most.
 const MOST_DIFFERENCES: usize = 20;
+/// How long a lock that is held is tried again: those who only look take it for a moment.
+const LOCK_PATIENCE: Duration = Duration::from_millis(300);
 /// Largest configuration.json that is read, in bytes.
 const LARGEST_CONFIGURATION: u64 = 256 << 20;
 
@@ -111,11 +114,15 @@ impl Kept {
         }
     }
 
-    fn read(path: &Path) -> io::Result<Option<Self>> {
+    fn program(&self) -> String {
+        format!("{} ({})", self.version, self.commit)
+    }
+
+    fn read(path: &Path) -> io::Result<Read> {
         let mut text = String::new();
         let file = match File::open(path) {
             Ok(file) => file,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Read::Nothing),
             Err(error) => return Err(error),
         };
         if let Err(error) = file.take(LARGEST_CONFIGURATION).read_to_string(&mut text)
@@ -123,10 +130,21 @@ impl Kept {
         {
             return Err(error);
         }
-        Ok(serde_json::from_str::<Self>(&text)
-            .ok()
-            .filter(|kept| kept.checksum == checksum(&kept.hash, &kept.texts)))
+        let kept = serde_json::from_str::<Self>(&text).ok();
+        Ok(match kept {
+            Some(kept) if kept.checksum == checksum(&kept.hash, &kept.texts) => {
+                Read::Sound(Box::new(kept))
+            }
+            _ => Read::Damaged,
+        })
     }
+}
+
+/// What was found in the place of `configuration.json`.
+enum Read {
+    Nothing,
+    Damaged,
+    Sound(Box<Kept>),
 }
 
 fn checksum(hash: &str, texts: &Texts) -> String {
@@ -139,6 +157,7 @@ fn checksum(hash: &str, texts: &Texts) -> String {
 pub struct Folder {
     path: PathBuf,
     hash: String,
+    program: String,
     jobs: u64,
 }
 
@@ -184,26 +203,31 @@ impl Folder {
         fs::create_dir_all(&store).map_err(io_at(&store))?;
         tempfile::tempfile_in(&store).map_err(io_at(&store))?;
         let file = path.join("configuration.json");
-        let kept = Kept::read(&file).map_err(io_at(&file))?;
         let new = Kept::new(configuration, texts);
-        match kept {
-            Some(old) if old.hash == new.hash => {}
-            Some(old) => {
-                return Err(FolderError::Changed {
-                    path: path.to_owned(),
-                    differences: differences(&old, &new),
-                });
-            }
-            None => {
-                if file.exists() {
+        let text = serde_json::to_string_pretty(&new).unwrap_or_default() + "\n";
+        // Others may open the same folder at this moment: whoever comes first writes, and all read what is there.
+        loop {
+            match Kept::read(&file).map_err(io_at(&file))? {
+                Read::Sound(old) if old.hash == new.hash => break,
+                Read::Sound(old) => {
+                    return Err(FolderError::Changed {
+                        path: path.to_owned(),
+                        differences: differences(&old, &new),
+                    });
+                }
+                Read::Nothing => {
+                    if files::write_new(&file, text.as_bytes()).map_err(io_at(&file))? {
+                        break;
+                    }
+                }
+                Read::Damaged => {
                     set_aside(&file).map_err(io_at(&file))?;
                 }
-                let text = serde_json::to_string_pretty(&new).unwrap_or_default();
-                files::write(&file, format!("{text}\n").as_bytes()).map_err(io_at(&file))?;
             }
         }
         Ok(Self {
             path: path.to_owned(),
+            program: new.program(),
             hash: new.hash,
             jobs: Jobs::new(configuration).count() as u64,
         })
@@ -231,13 +255,16 @@ impl Folder {
             reason: reason.to_owned(),
         };
         let file = path.join("configuration.json");
-        let kept = Kept::read(&file).map_err(io_at(&file))?;
-        let Some(kept) = kept else {
-            return Err(no_sweep(if file.exists() {
-                "configuration.json is damaged; run the sweep's command again, which writes it anew"
-            } else {
-                "holds no sweep (there is no configuration.json)"
-            }));
+        let kept = match Kept::read(&file).map_err(io_at(&file))? {
+            Read::Sound(kept) => kept,
+            Read::Damaged => {
+                return Err(no_sweep(
+                    "configuration.json is damaged; run the sweep's command again, which writes it anew",
+                ));
+            }
+            Read::Nothing => {
+                return Err(no_sweep("holds no sweep (there is no configuration.json)"));
+            }
         };
         let configuration = parse_sweep(&kept.texts, &file.display().to_string());
         let new = match configuration {
@@ -257,6 +284,7 @@ impl Folder {
         };
         let folder = Self {
             path: path.to_owned(),
+            program: kept.program(),
             hash: kept.hash,
             jobs: Jobs::new(&new).count() as u64,
         };
@@ -267,6 +295,12 @@ impl Folder {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The program that computes it: its version and commit.
+    #[must_use]
+    pub fn program(&self) -> &str {
+        &self.program
     }
 
     /// The hash of its configuration.
@@ -300,8 +334,7 @@ impl Folder {
         if shard == Shard::WHOLE {
             for other in with_ending(&store, "lock")? {
                 if other != path {
-                    let file = File::open(&other).map_err(io_at(&other))?;
-                    locked(&other, &file)?;
+                    locked(&other, &open_lock(&other)?)?;
                 }
             }
         }
@@ -379,58 +412,104 @@ impl Folder {
         Ok((rows.collect(), remarks))
     }
 
-    /// What is there, for a process with a claim: damaged stores are set aside, their sound rows kept in
-    /// the claim's own.
+    /// What is there, for a process with a claim: damaged stores that nobody writes are set aside, their sound
+    /// rows kept in a store of their own.
     ///
     /// # Errors
     /// When a store cannot be read or written.
     pub fn take_stock(&self, claim: &Claim) -> Result<(There, Store), FolderError> {
         let mut there = There::default();
-        let mut rows: BTreeMap<PathBuf, Vec<Row>> = BTreeMap::new();
-        let damaged = self.results(|path, row| {
+        for (path, reason) in self.results(|_, _| {})? {
+            there.damaged.push(self.rescue(&path, &reason, claim)?);
+        }
+        let store = match Store::open(&claim.store, &self.hash) {
+            Err(StoreError::Damaged { path, reason }) => {
+                there.damaged.push(self.rescue(&path, &reason, claim)?);
+                Store::open(&claim.store, &self.hash)?
+            }
+            store => store?,
+        };
+        self.results(|_, row| {
             if let Some(status) = row.status() {
                 let found = there.jobs.entry(row.job).or_insert(status);
                 if *found == Status::Failed {
                     *found = status;
                 }
             }
-            // Kept until it is known whether the file is damaged.
-            rows.entry(path.to_owned()).or_default().push(row);
         })?;
-        let mut salvaged = Vec::new();
-        for (path, reason) in damaged {
-            let own = path == claim.store;
-            if !own && !is_free(&path.with_extension("lock")) {
-                let message = format!("{} is damaged ({reason}), but in use", path.display());
-                there.damaged.push(message);
-                continue;
-            }
-            let aside = set_aside(&path).map_err(io_at(&path))?;
-            let sound = rows.remove(&path).unwrap_or_default();
-            there.damaged.push(format!(
-                "{} was damaged ({reason}) and is set aside as {}; {} sound results of it are kept, its other jobs are computed again",
-                path.display(),
-                aside.display(),
-                sound.len()
-            ));
-            salvaged.extend(sound);
-        }
-        let mut store = Store::open(&claim.store, &self.hash)?;
-        if !salvaged.is_empty() {
-            store.finish(usize::MAX >> 1, &salvaged, 0.0)?;
-        }
         Ok((there, store))
+    }
+
+    /// Sets a damaged store aside and keeps its sound rows; says what was done.
+    fn rescue(&self, path: &Path, reason: &str, claim: &Claim) -> Result<String, FolderError> {
+        let shown = path.display();
+        // Held until the end, so that its owner cannot come back meanwhile.
+        let lock = path.with_extension("lock");
+        let held = if path == claim.store || !lock.exists() {
+            None
+        } else {
+            let file = open_lock(&lock)?;
+            if file.try_lock().is_err() {
+                return Ok(format!("{shown} is damaged ({reason}), but in use"));
+            }
+            Some(file)
+        };
+        if !path.exists() {
+            return Ok(format!(
+                "{shown} was damaged ({reason}); another process has set it aside"
+            ));
+        }
+        let mut rows = Vec::new();
+        store::read(path, &self.hash, self.jobs, |row| rows.push(row))?;
+        if !rows.is_empty() {
+            // Whole under another name before the damaged one goes: at no moment is a sound row nowhere.
+            let stem = path.file_stem().unwrap_or_default().display().to_string();
+            let named =
+                |n: u32, ending: &str| path.with_file_name(format!("{stem}.salvaged-{n}.{ending}"));
+            let free = (1..u32::MAX).find(|&n| !named(n, "sqlite").exists());
+            let number = free.unwrap_or_default();
+            let unfinished = named(number, "unfinished");
+            let _ = fs::remove_file(&unfinished);
+            let mut store = Store::open(&unfinished, &self.hash)?;
+            store.keep(&rows)?;
+            drop(store);
+            let whole = named(number, "sqlite");
+            fs::rename(&unfinished, &whole).map_err(io_at(&whole))?;
+        }
+        let aside = set_aside(path).map_err(io_at(path))?;
+        drop(held);
+        Ok(format!(
+            "{shown} was damaged ({reason}) and is set aside as {}; {} sound results of it are kept, its other jobs are computed again",
+            aside.display(),
+            rows.len()
+        ))
     }
 }
 
-/// Is nobody holding this lock?
-fn is_free(lock: &Path) -> bool {
-    File::open(lock).map_or(true, |file| file.try_lock().is_ok())
+/// Does another process hold this lock?
+#[must_use]
+pub fn is_held(lock: &Path) -> bool {
+    open_lock(lock).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// Opens a lock for writing too: a network file system gives no exclusive lock otherwise.
+fn open_lock(path: &Path) -> Result<File, FolderError> {
+    File::options()
+        .read(true)
+        .write(true)
+        .open(path)
+        .map_err(io_at(path))
 }
 
 /// Locks a file, or tells who holds it.
 fn locked(path: &Path, file: &File) -> Result<(), FolderError> {
-    match file.try_lock() {
+    let until = Instant::now() + LOCK_PATIENCE;
+    let mut lock = file.try_lock();
+    while matches!(lock, Err(TryLockError::WouldBlock)) && Instant::now() < until {
+        std::thread::sleep(LOCK_PATIENCE / 10);
+        lock = file.try_lock();
+    }
+    match lock {
         Ok(()) => Ok(()),
         Err(TryLockError::WouldBlock) => {
             let by = fs::read_to_string(path).unwrap_or_default();

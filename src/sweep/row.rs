@@ -328,7 +328,9 @@ impl Row {
         );
         row.set("flight_time", outcome.verdict.time_s);
         row.set("mass_outside_bracket", shot.mass_outside);
-        row.set("at_limits", shot.at_limits.join(" ").as_str());
+        if !shot.at_limits.is_empty() {
+            row.set("at_limits", shot.at_limits.join(" ").as_str());
+        }
         if let Some(worth) = shot.lessons.spin_is_worth() {
             row.set_gain("best_backspin_over_none", &worth);
         }

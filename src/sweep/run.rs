@@ -140,6 +140,15 @@ impl<'a> Run<'a> {
         (places, there)
     }
 
+    /// Jobs of the shard that were there and had failed.
+    fn failed_before(&self) -> usize {
+        let failed = self.there.jobs.iter().filter(|(job, status)| {
+            let place = self.jobs.of(**job).map(|(place, _)| place);
+            **status == Status::Failed && place.is_some_and(|place| self.shard.has(place))
+        });
+        failed.count()
+    }
+
     /// Jobs of the shard in all, and those that are there.
     #[must_use]
     pub fn extent(&self) -> (usize, usize) {
@@ -183,7 +192,7 @@ impl<'a> Run<'a> {
         self.work(&alone, 1, &keep)?;
         self.work(&rest, self.threads, &keep)?;
         progress.end();
-        let before = self.there.count(Status::Failed);
+        let before = self.failed_before();
         Ok(Went {
             resumed,
             computed: computed.into_inner(),

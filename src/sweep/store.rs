@@ -8,11 +8,12 @@
 use super::row::{COLUMNS, Cell, Row, Type};
 use rusqlite::{Connection, ErrorCode, OpenFlags, Statement, ToSql, params};
 use std::collections::BTreeSet;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How long a writer waits for readers that hold the file.
-const PATIENCE: Duration = Duration::from_secs(600);
+/// How long one attempt waits for others that hold the file; attempts of a writer go on without end.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Why a store could not be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -52,6 +53,20 @@ fn told(path: &Path, error: &rusqlite::Error) -> StoreError {
     }
 }
 
+/// Acts, again and again while somebody else holds the file.
+fn patiently<T>(mut act: impl FnMut() -> rusqlite::Result<T>) -> rusqlite::Result<T> {
+    loop {
+        match act() {
+            Err(rusqlite::Error::SqliteFailure(failure, _))
+                if matches!(
+                    failure.code,
+                    ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked
+                ) => {}
+            result => return result,
+        }
+    }
+}
+
 /// The store that a process writes.
 #[derive(Debug)]
 pub struct Store {
@@ -73,9 +88,15 @@ impl Store {
             connection
                 .execute_batch("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA;")?;
             connection.execute_batch(&schema())?;
+            // Can it be written, and are its small tables sound?
+            connection.execute("DELETE FROM started WHERE place < 0", [])?;
+            for table in ["timing", "started", "suspects"] {
+                let count = format!("SELECT count(*) FROM {table}");
+                connection.query_row(&count, [], |row| row.get::<_, i64>(0))?;
+            }
             Ok(connection)
         };
-        let connection = open().map_err(|error| told(path, &error))?;
+        let connection = patiently(open).map_err(|error| told(path, &error))?;
         Ok(Self {
             connection,
             configuration: configuration.to_owned(),
@@ -92,8 +113,8 @@ impl Store {
     /// # Errors
     /// When it cannot be written.
     pub fn start(&mut self, place: usize) -> Result<(), StoreError> {
-        self.connection
-            .execute("INSERT OR REPLACE INTO started VALUES (?1)", [place as i64])
+        let start = "INSERT OR REPLACE INTO started VALUES (?1)";
+        patiently(|| self.connection.execute(start, [place as i64]))
             .map(|_| ())
             .map_err(|error| self.told(&error))
     }
@@ -116,8 +137,7 @@ impl Store {
             transaction.execute("DELETE FROM started WHERE place = ?1", [place as i64])?;
             transaction.commit()
         };
-        let mut write = write;
-        write().map_err(|error: rusqlite::Error| told(path, &error))
+        patiently(write).map_err(|error: rusqlite::Error| told(path, &error))
     }
 
     /// After a run that aborted: counts an abort against each place that was being computed. Gives the
@@ -148,7 +168,23 @@ impl Store {
             transaction.commit()?;
             Ok(found)
         };
-        act().map_err(|error: rusqlite::Error| told(&path, &error))
+        patiently(&mut act).map_err(|error: rusqlite::Error| told(&path, &error))
+    }
+
+    /// Keeps rows that another store held.
+    ///
+    /// # Errors
+    /// When they cannot be written; then none of them is kept.
+    pub fn keep(&mut self, rows: &[Row]) -> Result<(), StoreError> {
+        let (configuration, path) = (&self.configuration, &self.path);
+        patiently(|| {
+            let transaction = self.connection.transaction()?;
+            for row in rows {
+                insert(&transaction, configuration, row)?;
+            }
+            transaction.commit()
+        })
+        .map_err(|error| told(path, &error))
     }
 }
 
@@ -227,6 +263,7 @@ pub fn read(
     let scan = |given: &mut BTreeSet<u64>, reading: &mut Reading, give: &mut dyn FnMut(Row)| {
         let connection = open_to_read(path)?;
         check(&connection)?;
+        check_schema(path, &connection)?;
         let mut statement = connection.prepare(&format!("SELECT {} FROM results", names()))?;
         let mut rows = statement.query([])?;
         while let Some(row) = rows.next()? {
@@ -313,6 +350,33 @@ fn check(connection: &Connection) -> rusqlite::Result<()> {
         Some(code) => rusqlite::Error::SqliteFailure(rusqlite::ffi::Error::new(code), Some(answer)),
         None => rusqlite::Error::InvalidColumnName(answer),
     })
+}
+
+/// Is it laid out as we do, and marked as one that may be written? Reading alone would not show it.
+fn check_schema(path: &Path, connection: &Connection) -> rusqlite::Result<()> {
+    let layout = |connection: &Connection| -> rusqlite::Result<Vec<String>> {
+        let mut statement =
+            connection.prepare("SELECT sql FROM sqlite_schema WHERE sql NOT NULL ORDER BY name")?;
+        let rows = statement.query_map([], |row| row.get(0))?;
+        rows.collect()
+    };
+    let ours = Connection::open_in_memory()?;
+    ours.execute_batch(&schema())?;
+    let wrong = |what: &str| Err(rusqlite::Error::InvalidColumnName(what.to_owned()));
+    if layout(connection)? != layout(&ours)? {
+        return wrong("its tables are not those of a sweep");
+    }
+    // Bytes 18 and 19 of the header: the versions of the format for writing and reading.
+    let mut header = [0; 20];
+    let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut header));
+    if read.is_ok()
+        && !header[18..20]
+            .iter()
+            .all(|version| matches!(version, 1 | 2))
+    {
+        return wrong("its header is of no known version");
+    }
+    Ok(())
 }
 
 fn names() -> String {
