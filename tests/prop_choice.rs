@@ -59,10 +59,7 @@ fn prop_a_held_best_is_found_again() {
     let held = find(&profile).bank.unwrap();
     assert!((held.nominal.speed_m_s - free.nominal.speed_m_s).abs() < 0.02);
     // Within 4.5 standard errors, and what a grid this coarse may lose.
-    let error = held
-        .estimate
-        .standard_error
-        .hypot(free.estimate.standard_error);
+    let error = libm::hypot(held.estimate.standard_error, free.estimate.standard_error);
     assert!((held.estimate.probability - free.estimate.probability).abs() < 4.5 * error + 0.003);
 }
 
@@ -76,10 +73,7 @@ fn prop_side_spin_never_costs_when_it_may_be_left_out() {
     for (free, spun) in [(free.direct, spun.direct), (free.bank, spun.bank)] {
         let (free, spun) = (free.unwrap(), spun.unwrap());
         assert!(spun.nominal.side_spin_rad_s.abs() <= 2.0 * REV_RAD);
-        let error = free
-            .estimate
-            .standard_error
-            .hypot(spun.estimate.standard_error);
+        let error = libm::hypot(free.estimate.standard_error, spun.estimate.standard_error);
         assert!(spun.estimate.probability > free.estimate.probability - 4.5 * error - 0.003);
         assert_eq!(spun.curves.last().unwrap().nominal, "side_spin");
     }

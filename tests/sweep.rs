@@ -679,7 +679,7 @@ fn prop_a_mirror_image_is_worth_what_its_place_is() {
             .unwrap();
         assert_eq!(&row[at("mirrored")], "true");
         assert!((number(row, "polar_deg") + 40.0).abs() < 10.0);
-        let error = number(row, "standard_error").hypot(shot.estimate.standard_error);
+        let error = libm::hypot(number(row, "standard_error"), shot.estimate.standard_error);
         let by = number(row, "probability") - shot.estimate.probability;
         assert!(by.abs() < 4.5 * error + 0.02, "{kind}: {by} +- {error}");
     }

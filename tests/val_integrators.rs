@@ -74,7 +74,7 @@ fn distance(a: [f64; 6], b: [f64; 6]) -> f64 {
 /// Mean order over several halvings of the step; single ratios scatter with where the last step of a
 /// phase happens to end.
 fn order(coarse: f64, fine: f64, halvings: i32) -> f64 {
-    (coarse / fine).log2() / f64::from(halvings)
+    libm::log2(coarse / fine) / f64::from(halvings)
 }
 
 #[test]

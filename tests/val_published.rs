@@ -153,7 +153,7 @@ fn campaign_published() {
             direct.probability,
             bank.probability,
             bank.probability - direct.probability,
-            direct.standard_error.hypot(bank.standard_error)
+            libm::hypot(direct.standard_error, bank.standard_error)
         );
     }
 }

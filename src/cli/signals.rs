@@ -37,9 +37,9 @@ pub(crate) fn watch() {
     let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else {
         return;
     };
-    // Without a thread for it, signals end the program as they always do.
+    // Where this thread cannot start, no other can, and the program ends by itself.
     let _ = std::thread::Builder::new().spawn(move || {
-        for signal in &mut signals {
+        if let Some(signal) = signals.forever().next() {
             leave(if signal == SIGINT {
                 code::INTERRUPTED
             } else {

@@ -104,7 +104,7 @@ impl Write for Pending {
     }
 }
 
-/// As [`write`], only where there is no such file yet; was it written?
+/// As [`write()`], only where there is no such file yet; was it written?
 ///
 /// # Errors
 /// When it cannot be written.
