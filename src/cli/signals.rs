@@ -30,10 +30,10 @@ fn leave(exit_code: u8) -> ! {
 pub(crate) fn watch() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // Without a handler the default one ends the program too; only temporary files would stay.
-    // What the shell has us ignore, as `nohup` does, stays ignored.
+    // A hang-up that the shell has us ignore, as `nohup` does, stays ignored; who sends the others means them.
     let heeded = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
-        .filter(|&signal| !is_ignored(signal));
+        .filter(|&signal| signal != SIGHUP || !is_ignored(signal));
     let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else {
         return;
     };
