@@ -51,15 +51,25 @@ pub fn outcomes_about(profile: &Profile, simulator: &Simulator, shots: &[Shot]) 
     }
     let cells = cells(profile, shots);
     let units = profile.output.units;
-    let mut svg = Svg::new(shots.len() as f64 * WHOLE.0, WHOLE.1 + 60.0);
+    let alike = shots.len() == 2 && hold_the_same(&shots[0], &shots[1]);
+    let drawn = if alike { &shots[..1] } else { shots };
+    let width = (drawn.len() as f64 * WHOLE.0).max(1.3 * WHOLE.0);
+    let mut svg = Svg::new(width, WHOLE.1 + 60.0);
     let name = shortened(&profile.shooter.name, 60);
     let title = format!("How shots end: {name}, {}", place(profile));
     svg.heading((20.0, 24.0), 16.0, Anchor::Start, &title);
-    for (i, shot) in shots.iter().enumerate() {
+    for (i, shot) in drawn.iter().enumerate() {
         let kinds = outcomes(profile, simulator, &shot.nominal, &cells);
         let corner = (i as f64 * WHOLE.0, 34.0);
-        release_map::of_outcomes(&mut svg, corner, &held(shot), &cells, units, &kinds);
-        mark(&mut svg, corner, &cells, units, shot);
+        let title = if alike {
+            held(shot).replacen("direct", "direct (left) and bank", 1)
+        } else {
+            held(shot)
+        };
+        release_map::of_outcomes(&mut svg, corner, &title, &cells, units, &kinds);
+        for marked in if alike { shots } else { &shots[i..=i] } {
+            mark(&mut svg, corner, &cells, units, marked);
+        }
     }
     let caption =
         "How each shot without errors ends, by speed and pitch angle; circles: the best shots.";
@@ -69,6 +79,16 @@ pub fn outcomes_about(profile: &Profile, simulator: &Simulator, shots: &[Shot]) 
         svg: svg.finish(&title),
         caption: caption.to_owned(),
     })
+}
+
+/// Are the maps of two shots the same, to the eye?
+fn hold_the_same(one: &Shot, other: &Shot) -> bool {
+    let (a, b) = (&one.nominal, &other.nominal);
+    let near = |x: f64, y: f64, by: f64| (x - y).abs() < by;
+    near(a.polar_rad, b.polar_rad, 0.05 * DEGREE_RAD)
+        && near(a.backspin_rad_s, b.backspin_rad_s, 0.02 * REV_RAD)
+        && near(a.rifle_spin_rad_s, b.rifle_spin_rad_s, 0.02 * REV_RAD)
+        && near(a.side_spin_rad_s, b.side_spin_rad_s, 0.02 * REV_RAD)
 }
 
 /// What is held in the map of a shot.
@@ -126,8 +146,15 @@ pub fn in_release_space(
     }
     let cells = cells(profile, shots);
     let units = profile.output.units;
-    let panels = found.len() + usize::from(found.len() == 2);
-    let mut svg = Svg::new(panels as f64 * WHOLE.0, WHOLE.1 + 70.0);
+    // Where both hold the same, one map shows both, and there is no difference to draw.
+    let alike = shots.len() == 2 && hold_the_same(&shots[0], &shots[1]);
+    let panels = match shots.len() {
+        2 if !alike => 3,
+        _ => 1,
+    };
+    // A single panel is narrower than its heading.
+    let width = (panels as f64 * WHOLE.0).max(1.3 * WHOLE.0);
+    let mut svg = Svg::new(width, WHOLE.1 + 70.0);
     let name = shortened(&profile.shooter.name, 60);
     let place = place(profile);
     svg.heading(
@@ -137,12 +164,19 @@ pub fn in_release_space(
         &format!("Bank and direct in release space: {name}, {place}"),
     );
     let mut maps = Vec::new();
-    for (i, (_, shot)) in found.iter().enumerate() {
+    let drawn = if alike { &shots[..1] } else { shots };
+    for (i, shot) in drawn.iter().enumerate() {
         let values = probabilities(profile, simulator, &shot.nominal, &cells);
         let corner = (i as f64 * WHOLE.0, 34.0);
-        let title = held(shot);
+        let title = if alike {
+            held(shot).replacen("direct", "direct (left) and bank", 1)
+        } else {
+            held(shot)
+        };
         release_map::of_probabilities(&mut svg, corner, &title, &cells, units, &values);
-        mark(&mut svg, corner, &cells, units, shot);
+        for marked in if alike { shots } else { &shots[i..=i] } {
+            mark(&mut svg, corner, &cells, units, marked);
+        }
         maps.push(values);
     }
     if let [direct, bank] = &maps[..] {
@@ -178,9 +212,16 @@ pub fn in_release_space(
         .map(|(kind, shot)| format!("{kind} {:.3} \u{b1} {:.3}", shot.p.0, shot.p.1))
         .collect();
     let caption = format!("P of the best shots (circles): {}.", p.join(", "));
+    let white = if panels == 3 {
+        format!(
+            " White in the difference: within {:.3}.",
+            2.0 * CELL_ERROR * std::f64::consts::SQRT_2
+        )
+    } else {
+        String::new()
+    };
     let note = format!(
-        "{caption} P is under errors in speed, pitch, polar angle and backspin. White in the difference: within {:.3}. bankshot {}",
-        2.0 * CELL_ERROR * std::f64::consts::SQRT_2,
+        "{caption} Errors in speed, pitch, polar angle, backspin.{white} bankshot {}",
         env!("CARGO_PKG_VERSION")
     );
     svg.text((20.0, WHOLE.1 + 52.0), 11.0, Anchor::Start, &note);
