@@ -66,6 +66,23 @@ impl Room {
     fn is_done(&self) -> bool {
         self.flying.is_empty() && self.on_board.is_empty() && self.on_ring.is_empty()
     }
+
+    /// The shots that wait for a surface.
+    fn waiting(&mut self, touched: Touched) -> &mut Vec<u32> {
+        match touched {
+            Touched::Board => &mut self.on_board,
+            Touched::Ring => &mut self.on_ring,
+        }
+    }
+
+    /// Is there enough to do elsewhere to leave lanes on `touched` that cannot all be filled?
+    fn others_fill_lanes(&mut self, touched: Touched) -> bool {
+        let other = match touched {
+            Touched::Board => Touched::Ring,
+            Touched::Ring => Touched::Board,
+        };
+        self.flying.len() >= WIDTH || self.waiting(other).len() >= WIDTH
+    }
 }
 
 struct Batch<'a, S: Simd> {
@@ -248,44 +265,38 @@ impl<S: Simd> Batch<'_, S> {
 
     #[inline(always)]
     fn press_board(&mut self) {
-        let queue = self.take_queue(|room| &mut room.on_board);
-        let (law, scalar) = (self.lanes, *self.law);
-        self.press(
-            queue,
-            Board,
-            On::Board,
-            |state| !flight::on_board(&scalar, state) || ring_gap(&scalar, state).reached(&scalar),
-            |state| !flight::on_board(&law, state) | ring_gap(&law, state).reached(&law),
-            |state, acceleration| ring_gap(&law, state).time(&law, acceleration),
-        );
+        let law = self.lanes;
+        self.press(Board, Touched::Board, |state| {
+            let gap = ring_gap(&law, state);
+            let leaves = !flight::on_board(&law, state) | gap.reached(&law);
+            let time = move |_: &State<Pack<S>>, acceleration| gap.time(&law, acceleration);
+            (leaves, time)
+        });
     }
 
     #[inline(always)]
     fn press_ring(&mut self) {
-        let queue = self.take_queue(|room| &mut room.on_ring);
-        let (law, scalar) = (self.lanes, *self.law);
-        self.press(
-            queue,
-            Ring,
-            On::Ring,
-            |state| exact::board_reached(&scalar, state),
-            |state| exact::board_reached(&law, state),
-            |state, acceleration| exact::time_to_board(&law, state, acceleration),
-        );
+        let law = self.lanes;
+        self.press(Ring, Touched::Ring, |state| {
+            let time =
+                move |state: &State<Pack<S>>, push| exact::time_to_board(&law, state, push);
+            (exact::board_reached(&law, state), time)
+        });
     }
 
-    /// Steps every shot of the queue on one surface until it parts. `other_at_start` and `other` tell
-    /// that the contact is no longer one with this surface alone.
+    /// Steps the shots that wait for one surface until they part, or until there are too few to fill
+    /// the lanes and others to run first. `other` tells that the contact is no longer one with this
+    /// surface alone, and gives the time until then.
     #[inline(always)]
-    fn press<T: Surface<Pack<S>>>(
+    fn press<T, F>(
         &mut self,
-        mut queue: Vec<u32>,
         surface: T,
-        on: fn(Grip) -> On,
-        other_at_start: impl Fn(&State) -> bool,
-        other: impl Fn(&State<Pack<S>>) -> PackMask<S>,
-        time_to_other: impl Fn(&State<Pack<S>>, Triple<Pack<S>>) -> Pack<S>,
-    ) {
+        touched: Touched,
+        other: impl Fn(&State<Pack<S>>) -> (PackMask<S>, F),
+    ) where
+        T: Surface<Pack<S>>,
+        F: FnOnce(&State<Pack<S>>, Triple<Pack<S>>) -> Pack<S>,
+    {
         let law = self.lanes;
         let simd = self.simd;
         let longest = law.zero.lit(self.rules.longest_step_s);
@@ -297,33 +308,61 @@ impl<S: Simd> Batch<'_, S> {
         let (mut rolling, mut spent, mut above, mut rose, mut active) = (0_u8, 0, 0, 0, 0_u8);
         loop {
             for lane in lanes_of(!active) {
-                while let Some(shot) = queue.pop() {
-                    let progress = &self.room.shots[shot as usize];
-                    if other_at_start(&progress.state) {
-                        self.hand_over(shot);
-                        continue;
-                    }
-                    let grip = match progress.on {
-                        On::Board(grip) | On::Ring(grip) => grip,
-                        On::Nothing | On::Both(_) => fresh,
-                    };
-                    set(&mut block, lane, &progress.state);
-                    times[lane] = progress.time_s;
-                    put(&mut above, lane, progress.passage.above);
-                    put(&mut rose, lane, progress.passage.rose_through);
-                    put(&mut rolling, lane, grip.rolling);
-                    put(&mut spent, lane, grip.spent);
-                    put(&mut active, lane, true);
-                    no_slip[lane] = grip.no_slip;
-                    shots[lane] = shot;
+                let Some(shot) = self.room.waiting(touched).pop() else {
                     break;
-                }
+                };
+                let progress = &self.room.shots[shot as usize];
+                let grip = match progress.on {
+                    On::Board(grip) | On::Ring(grip) => grip,
+                    On::Nothing | On::Both(_) => fresh,
+                };
+                set(&mut block, lane, &progress.state);
+                times[lane] = progress.time_s;
+                put(&mut above, lane, progress.passage.above);
+                put(&mut rose, lane, progress.passage.rose_through);
+                put(&mut rolling, lane, grip.rolling);
+                put(&mut spent, lane, grip.spent);
+                put(&mut active, lane, true);
+                no_slip[lane] = grip.no_slip;
+                shots[lane] = shot;
             }
             if active == 0 {
-                self.give_back(queue);
                 return;
             }
             let before = load(simd, &block);
+            let (leaves, time_to_other) = other(&before);
+            let suspended = active != u8::MAX && self.room.others_fill_lanes(touched);
+            let leaves = leaves.to_bits() & active;
+            let out = if suspended { active } else { leaves };
+            for lane in lanes_of(out) {
+                let bit = |bits: u8| bits >> lane & 1 == 1;
+                let shot = shots[lane];
+                let grip = Grip {
+                    rolling: bit(rolling),
+                    spent: bit(spent),
+                    no_slip: no_slip[lane],
+                };
+                let progress = &mut self.room.shots[shot as usize];
+                progress.state = get(&block, lane);
+                progress.time_s = times[lane];
+                progress.passage = Passage {
+                    above: bit(above),
+                    rose_through: bit(rose),
+                };
+                progress.on = match touched {
+                    Touched::Board => On::Board(grip),
+                    Touched::Ring => On::Ring(grip),
+                };
+                put(&mut active, lane, false);
+                if bit(leaves) {
+                    self.hand_over(shot);
+                } else {
+                    self.room.waiting(touched).push(shot);
+                }
+            }
+            if suspended {
+                return;
+            }
             let mut state = before;
             let mut grip = Grip {
                 rolling: PackMask::from_bits(simd, rolling),
@@ -340,27 +379,26 @@ impl<S: Simd> Batch<'_, S> {
                 &mut state,
                 &mut grip,
                 longest,
-                &time_to_other,
+                time_to_other,
             );
             let time = Pack::load(simd, &times) + step.dt;
             passage.step(&law, &before, &state);
             let behind = state.position_m.0.lt(law.board_face_x);
             let fell = state.position_m.2.lt(-law.radius) & state.velocity_m_s.2.lt(law.zero);
             let late = law.zero.lit(self.rules.time_limit_s).lt(time);
-            let ends = behind | fell | late;
-            let leaves = (ends | other(&state)).to_bits();
             let parted = step.parted.to_bits();
             store(&state, &mut block);
             time.store(&mut times);
             grip.no_slip.store(&mut no_slip);
             (rolling, spent) = (grip.rolling.to_bits(), grip.spent.to_bits());
             (above, rose) = (passage.above.to_bits(), passage.rose_through.to_bits());
-            let done = (parted | leaves) & active;
+            let ends = (behind | fell | late).to_bits();
+            let done = (parted | ends) & active;
             if done == 0 {
                 continue;
             }
             let made = passage.made(&law, &state).to_bits();
-            let ends = [behind, fell, late].map(PackMask::to_bits);
+            let [behind, fell] = [behind, fell].map(PackMask::to_bits);
             for lane in lanes_of(done) {
                 let bit = |bits: u8| bits >> lane & 1 == 1;
                 let shot = shots[lane];
@@ -374,20 +412,12 @@ impl<S: Simd> Batch<'_, S> {
                 put(&mut active, lane, false);
                 if bit(parted) {
                     self.room.flying.push(shot);
-                } else if bit(ends[0]) {
+                } else if bit(behind) {
                     self.finish(shot, Ending::BehindBoard, false);
-                } else if bit(ends[1]) {
+                } else if bit(fell) {
                     self.finish(shot, Ending::Fell, bit(made));
-                } else if bit(ends[2]) {
-                    self.finish(shot, Ending::TimeLimit, false);
                 } else {
-                    let grip = Grip {
-                        rolling: bit(rolling),
-                        spent: bit(spent),
-                        no_slip: no_slip[lane],
-                    };
-                    progress.on = on(grip);
-                    self.hand_over(shot);
+                    self.finish(shot, Ending::TimeLimit, false);
                 }
             }
         }
