@@ -1,25 +1,24 @@
 //! Many shots at once, eight to a step, in vector lanes.
 //!
-//! The shots of a batch wait in three queues, by what comes next: flight, board, ring. Flights are
+//! The shots of a batch wait in four queues, by what comes next: flight, board, ring, both. Flights are
 //! closed-form and are done eight at a time. In contact eight shots step together; a lane whose ball
 //! parts is refilled from the queue at once, so short and long contacts mix without waiting. What is
-//! rare (both surfaces at once, the board's edges, the time limit) leaves its lane for the scalar form
-//! and comes back to a queue when it is over.
+//! rare (the board's edges, the time limit) leaves its lane for the scalar form and comes back to a
+//! queue when it is over.
 //!
 //! The equations are those of the scalar form, so the verdicts are the same, bit for bit.
 
-use super::contact::{self, Grip, REACHED_M};
+use super::contact::REACHED_M;
+use super::contact::{self, Due, Grip};
 use super::exact::{self, MOST_STRETCHES, On, Progress, Rules, ring_gap};
 use super::flight::{self, Arc};
 use super::outcome::{Contacts, Ending, Touched, Verdict};
-use super::passage::Passage;
+use super::seats::{Seats, bit, lanes_of};
 use super::state::{Law, State, Triple};
 use super::surface::{Board, Ring, Surface};
+use super::wedge;
 use crate::lane::{Lane, Pack, PackMask, WIDTH};
 use fearless_simd::Simd;
-
-/// Nine state variables of eight shots.
-type Block = [[f64; WIDTH]; 9];
 
 /// Room for a batch, to be used again and again: nothing is allocated once it has grown.
 #[derive(Debug, Default)]
@@ -29,6 +28,7 @@ pub struct Room {
     flying: Vec<u32>,
     on_board: Vec<u32>,
     on_ring: Vec<u32>,
+    on_both: Vec<u32>,
     queue: Vec<u32>,
 }
 
@@ -59,29 +59,58 @@ pub(super) fn run<S: Simd>(simd: S, law: &Law, rules: &Rules, starts: &[State], 
         batch.fly();
         batch.press_board();
         batch.press_ring();
+        batch.press_both();
     }
 }
 
+/// What the shots of a queue wait for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    Flight,
+    Board,
+    Ring,
+    Both,
+}
+
 impl Room {
-    fn is_done(&self) -> bool {
-        self.flying.is_empty() && self.on_board.is_empty() && self.on_ring.is_empty()
+    fn queues(&self) -> [(Phase, &Vec<u32>); 4] {
+        [
+            (Phase::Flight, &self.flying),
+            (Phase::Board, &self.on_board),
+            (Phase::Ring, &self.on_ring),
+            (Phase::Both, &self.on_both),
+        ]
     }
 
-    /// The shots that wait for a surface.
-    fn waiting(&mut self, touched: Touched) -> &mut Vec<u32> {
-        match touched {
-            Touched::Board => &mut self.on_board,
-            Touched::Ring => &mut self.on_ring,
+    fn is_done(&self) -> bool {
+        self.queues().iter().all(|(_, queue)| queue.is_empty())
+    }
+
+    /// The shots that wait for a phase.
+    fn waiting(&mut self, phase: Phase) -> &mut Vec<u32> {
+        match phase {
+            Phase::Flight => &mut self.flying,
+            Phase::Board => &mut self.on_board,
+            Phase::Ring => &mut self.on_ring,
+            Phase::Both => &mut self.on_both,
         }
     }
 
-    /// Is there enough to do elsewhere to leave lanes on `touched` that cannot all be filled?
-    fn others_fill_lanes(&mut self, touched: Touched) -> bool {
-        let other = match touched {
-            Touched::Board => Touched::Ring,
-            Touched::Ring => Touched::Board,
+    /// Is there enough to do elsewhere to leave lanes of `phase` that cannot all be filled?
+    fn others_fill_lanes(&self, phase: Phase) -> bool {
+        let fills = |(other, queue): &(Phase, &Vec<u32>)| *other != phase && queue.len() >= WIDTH;
+        self.queues().iter().any(fills)
+    }
+
+    /// Queues a shot for what it is on.
+    fn wait(&mut self, shot: u32) {
+        let phase = match self.shots[shot as usize].on {
+            On::Nothing => Phase::Flight,
+            On::Board(_) => Phase::Board,
+            On::Ring(_) => Phase::Ring,
+            On::Both { .. } => Phase::Both,
         };
-        self.flying.len() >= WIDTH || self.waiting(other).len() >= WIDTH
+        self.waiting(phase).push(shot);
     }
 }
 
@@ -93,83 +122,19 @@ struct Batch<'a, S: Simd> {
     room: &'a mut Room,
 }
 
-/// The bits of up to eight lanes that are set, in order.
-fn lanes_of(mut bits: u8) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (bits != 0).then(|| {
-            let lane = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            lane
-        })
-    })
-}
-
-fn set(block: &mut Block, lane: usize, state: &State) {
-    let (p, v, w) = (state.position_m, state.velocity_m_s, state.spin_rad_s);
-    let values = [p.0, p.1, p.2, v.0, v.1, v.2, w.0, w.1, w.2];
-    for (row, value) in block.iter_mut().zip(values) {
-        row[lane] = value;
-    }
-}
-
-fn get(block: &Block, lane: usize) -> State {
-    let triple = |i: usize| Triple(block[i][lane], block[i + 1][lane], block[i + 2][lane]);
-    State {
-        position_m: triple(0),
-        velocity_m_s: triple(3),
-        spin_rad_s: triple(6),
-    }
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, block: &Block) -> State<Pack<S>> {
-    let pack = |i: usize| Pack::load(simd, &block[i]);
-    let triple = |i: usize| Triple(pack(i), pack(i + 1), pack(i + 2));
-    State {
-        position_m: triple(0),
-        velocity_m_s: triple(3),
-        spin_rad_s: triple(6),
-    }
-}
-
-#[inline(always)]
-fn store<S: Simd>(state: &State<Pack<S>>, block: &mut Block) {
-    let (p, v, w) = (state.position_m, state.velocity_m_s, state.spin_rad_s);
-    for (row, value) in block
-        .iter_mut()
-        .zip([p.0, p.1, p.2, v.0, v.1, v.2, w.0, w.1, w.2])
-    {
-        value.store(row);
-    }
-}
-
-/// Sets one lane's bit.
-fn put(bits: &mut u8, lane: usize, value: bool) {
-    *bits = *bits & !(1 << lane) | u8::from(value) << lane;
-}
-
 impl<S: Simd> Batch<'_, S> {
     /// Takes a shot through what the lanes do not do, in the scalar form, and queues it again.
     #[cold]
     fn hand_over(&mut self, shot: u32) {
         let progress = &mut self.room.shots[shot as usize];
-        loop {
-            if progress.stretches >= MOST_STRETCHES {
-                self.finish(shot, Ending::Unresolved, false);
-                return;
-            }
-            progress.stretches += 1;
-            if let Some(verdict) = exact::stretch(self.law, self.rules, progress) {
-                self.room.verdicts[shot as usize] = verdict;
-                return;
-            }
-            match progress.on {
-                On::Nothing => self.room.flying.push(shot),
-                On::Board(_) => self.room.on_board.push(shot),
-                On::Ring(_) => self.room.on_ring.push(shot),
-                On::Both(_) => continue,
-            }
+        if progress.stretches >= MOST_STRETCHES {
+            self.finish(shot, Ending::Unresolved, false);
             return;
+        }
+        progress.stretches += 1;
+        match exact::stretch(self.law, self.rules, progress) {
+            Some(verdict) => self.room.verdicts[shot as usize] = verdict,
+            None => self.room.wait(shot),
         }
     }
 
@@ -199,62 +164,48 @@ impl<S: Simd> Batch<'_, S> {
     fn fly(&mut self) {
         let queue = self.take_queue(|room| &mut room.flying);
         let fresh = Grip::fresh(self.law);
-        let mut block: Block = [[0.0; WIDTH]; 9];
+        let mut seats = Seats::new();
         for shots in queue.chunks(WIDTH) {
-            let (mut above, mut rose) = (0, 0);
             for lane in 0..WIDTH {
                 // Lanes without a shot repeat the last one.
-                let progress = &self.room.shots[shots[lane.min(shots.len() - 1)] as usize];
-                set(&mut block, lane, &progress.state);
-                put(&mut above, lane, progress.passage.above);
-                put(&mut rose, lane, progress.passage.rose_through);
+                let shot = shots[lane.min(shots.len() - 1)];
+                seats.take(lane, shot, &self.room.shots[shot as usize]);
             }
             let law = &self.lanes;
-            let start = load(self.simd, &block);
-            let mut passage = Passage {
-                above: PackMask::from_bits(self.simd, above),
-                rose_through: PackMask::from_bits(self.simd, rose),
-            };
+            let mut seated = seats.load(self.simd);
+            let start = seated.state;
             let arc = Arc::from(law, &start);
             let dt = arc.end.least(arc.board).least(arc.ring);
-            passage.flight(law, &start, dt);
-            let end = start.flown(law, dt);
-            let made = passage.made(law, &end).to_bits();
-            let special = (arc.beside_board.lt(dt) | arc.unresolved).to_bits();
+            seated.passage.flight(law, &start, dt);
+            seated.state = start.flown(law, dt);
+            seated.time_s = seated.time_s + dt;
+            let late = law.zero.lit(self.rules.time_limit_s).lt(seated.time_s);
+            let special = (arc.beside_board.lt(dt) | arc.unresolved | late).to_bits();
+            let made = seated.passage.made(law, &seated.state).to_bits();
             let ring = arc.ring.le(dt).to_bits();
             let board = arc.board.le(dt).to_bits();
             let rose_to = law.zero.lit(-1.0) * law.radius - REACHED_M;
-            let fell = rose_to.lt(end.position_m.2).to_bits();
-            let (above, rose) = (passage.above.to_bits(), passage.rose_through.to_bits());
-            let mut durations = [0.0; WIDTH];
-            dt.store(&mut durations);
-            store(&end, &mut block);
+            let fell = rose_to.lt(seated.state.position_m.2).to_bits();
+            seats.store(&seated);
             for (lane, &shot) in shots.iter().enumerate() {
-                let bit = |bits: u8| bits >> lane & 1 == 1;
                 let progress = &mut self.room.shots[shot as usize];
-                let late = progress.time_s + durations[lane] > self.rules.time_limit_s;
                 progress.on = On::Nothing;
-                if bit(special) || late || progress.stretches >= MOST_STRETCHES {
+                if bit(special, lane) || progress.stretches >= MOST_STRETCHES {
                     self.hand_over(shot);
                     continue;
                 }
                 progress.stretches += 1;
-                progress.state = get(&block, lane);
-                progress.time_s += durations[lane];
-                progress.passage = Passage {
-                    above: bit(above),
-                    rose_through: bit(rose),
-                };
-                if bit(ring) {
+                seats.leave(lane, progress);
+                if bit(ring, lane) {
                     progress.contacts.push(Touched::Ring);
                     progress.on = On::Ring(fresh);
                     self.room.on_ring.push(shot);
-                } else if bit(board) {
+                } else if bit(board, lane) {
                     progress.contacts.push(Touched::Board);
                     progress.on = On::Board(fresh);
                     self.room.on_board.push(shot);
-                } else if bit(fell) {
-                    self.finish(shot, Ending::Fell, bit(made));
+                } else if bit(fell, lane) {
+                    self.finish(shot, Ending::Fell, bit(made, lane));
                 } else {
                     self.finish(shot, Ending::NeverRose, false);
                 }
@@ -266,10 +217,11 @@ impl<S: Simd> Batch<'_, S> {
     #[inline(always)]
     fn press_board(&mut self) {
         let law = self.lanes;
-        self.press(Board, Touched::Board, |state| {
-            let gap = ring_gap(&law, state);
+        let longest = law.zero.lit(self.rules.longest_step_s);
+        self.press(Board, Phase::Board, On::Board, |state| {
+            let gap = ring_gap(&law, state, longest);
             let leaves = !flight::on_board(&law, state) | gap.reached(&law);
-            let time = move |_: &State<Pack<S>>, acceleration| gap.time(&law, acceleration);
+            let time = move |_: &State<Pack<S>>, push| gap.time(&law, push);
             (leaves, time)
         });
     }
@@ -277,11 +229,24 @@ impl<S: Simd> Batch<'_, S> {
     #[inline(always)]
     fn press_ring(&mut self) {
         let law = self.lanes;
-        self.press(Ring, Touched::Ring, |state| {
-            let time =
-                move |state: &State<Pack<S>>, push| exact::time_to_board(&law, state, push);
+        let longest = law.zero.lit(self.rules.longest_step_s);
+        self.press(Ring, Phase::Ring, On::Ring, |state| {
+            let time = move |state: &State<Pack<S>>, push| {
+                exact::time_to_board(&law, state, push, longest)
+            };
             (exact::board_reached(&law, state), time)
         });
+    }
+
+    /// Fills the lanes that are free with shots that wait for `phase`.
+    #[inline(always)]
+    fn fill(&mut self, seats: &mut Seats, phase: Phase) {
+        for lane in lanes_of(!seats.taken) {
+            let Some(shot) = self.room.waiting(phase).pop() else {
+                break;
+            };
+            seats.take(lane, shot, &self.room.shots[shot as usize]);
+        }
     }
 
     /// Steps the shots that wait for one surface until they part, or until there are too few to fill
@@ -291,133 +256,148 @@ impl<S: Simd> Batch<'_, S> {
     fn press<T, F>(
         &mut self,
         surface: T,
-        touched: Touched,
+        phase: Phase,
+        on: fn(Grip) -> On,
         other: impl Fn(&State<Pack<S>>) -> (PackMask<S>, F),
     ) where
         T: Surface<Pack<S>>,
-        F: FnOnce(&State<Pack<S>>, Triple<Pack<S>>) -> Pack<S>,
+        F: FnOnce(&State<Pack<S>>, Triple<Pack<S>>) -> Due<Pack<S>>,
     {
         let law = self.lanes;
-        let simd = self.simd;
         let longest = law.zero.lit(self.rules.longest_step_s);
-        let fresh = Grip::fresh(self.law);
-        let mut block: Block = [[0.0; WIDTH]; 9];
-        let mut no_slip = [fresh.no_slip; WIDTH];
-        let mut times = [0.0; WIDTH];
-        let mut shots = [0_u32; WIDTH];
-        let (mut rolling, mut spent, mut above, mut rose, mut active) = (0_u8, 0, 0, 0, 0_u8);
+        let mut seats = Seats::new();
         loop {
-            for lane in lanes_of(!active) {
-                let Some(shot) = self.room.waiting(touched).pop() else {
-                    break;
-                };
-                let progress = &self.room.shots[shot as usize];
-                let grip = match progress.on {
-                    On::Board(grip) | On::Ring(grip) => grip,
-                    On::Nothing | On::Both(_) => fresh,
-                };
-                set(&mut block, lane, &progress.state);
-                times[lane] = progress.time_s;
-                put(&mut above, lane, progress.passage.above);
-                put(&mut rose, lane, progress.passage.rose_through);
-                put(&mut rolling, lane, grip.rolling);
-                put(&mut spent, lane, grip.spent);
-                put(&mut active, lane, true);
-                no_slip[lane] = grip.no_slip;
-                shots[lane] = shot;
-            }
-            if active == 0 {
+            self.fill(&mut seats, phase);
+            if seats.taken == 0 {
                 return;
             }
-            let before = load(simd, &block);
+            let mut seated = seats.load(self.simd);
+            let before = seated.state;
             let (leaves, time_to_other) = other(&before);
-            let suspended = active != u8::MAX && self.room.others_fill_lanes(touched);
-            let leaves = leaves.to_bits() & active;
-            let out = if suspended { active } else { leaves };
-            for lane in lanes_of(out) {
-                let bit = |bits: u8| bits >> lane & 1 == 1;
-                let shot = shots[lane];
-                let grip = Grip {
-                    rolling: bit(rolling),
-                    spent: bit(spent),
-                    no_slip: no_slip[lane],
-                };
+            let suspended = seats.taken != u8::MAX && self.room.others_fill_lanes(phase);
+            let leaves = leaves.to_bits();
+            let out = if suspended { u8::MAX } else { leaves };
+            for lane in lanes_of(out & seats.taken) {
+                let shot = seats.shot(lane);
                 let progress = &mut self.room.shots[shot as usize];
-                progress.state = get(&block, lane);
-                progress.time_s = times[lane];
-                progress.passage = Passage {
-                    above: bit(above),
-                    rose_through: bit(rose),
-                };
-                progress.on = match touched {
-                    Touched::Board => On::Board(grip),
-                    Touched::Ring => On::Ring(grip),
-                };
-                put(&mut active, lane, false);
-                if bit(leaves) {
+                seats.leave(lane, progress);
+                progress.on = on(seats.grip(0, lane));
+                if bit(leaves, lane) {
                     self.hand_over(shot);
                 } else {
-                    self.room.waiting(touched).push(shot);
+                    self.room.waiting(phase).push(shot);
                 }
             }
             if suspended {
                 return;
             }
-            let mut state = before;
-            let mut grip = Grip {
-                rolling: PackMask::from_bits(simd, rolling),
-                spent: PackMask::from_bits(simd, spent),
-                no_slip: Pack::load(simd, &no_slip),
-            };
-            let mut passage = Passage {
-                above: PackMask::from_bits(simd, above),
-                rose_through: PackMask::from_bits(simd, rose),
-            };
+            let mut grip = seats.load_grip(self.simd, 0);
             let step = contact::step(
                 &law,
                 surface,
-                &mut state,
+                &mut seated.state,
                 &mut grip,
                 longest,
                 time_to_other,
             );
-            let time = Pack::load(simd, &times) + step.dt;
-            passage.step(&law, &before, &state);
-            let behind = state.position_m.0.lt(law.board_face_x);
-            let fell = state.position_m.2.lt(-law.radius) & state.velocity_m_s.2.lt(law.zero);
-            let late = law.zero.lit(self.rules.time_limit_s).lt(time);
-            let parted = step.parted.to_bits();
-            store(&state, &mut block);
-            time.store(&mut times);
-            grip.no_slip.store(&mut no_slip);
-            (rolling, spent) = (grip.rolling.to_bits(), grip.spent.to_bits());
-            (above, rose) = (passage.above.to_bits(), passage.rose_through.to_bits());
-            let ends = (behind | fell | late).to_bits();
-            let done = (parted | ends) & active;
+            let ends = seated.after_step(&law, &before, step.dt, self.rules.time_limit_s);
+            seats.store(&seated);
+            seats.store_grip(0, &grip);
+            let done = step.parted | ends.behind | ends.fell | ends.late;
+            let done = done.to_bits() & seats.taken;
             if done == 0 {
                 continue;
             }
-            let made = passage.made(&law, &state).to_bits();
-            let [behind, fell] = [behind, fell].map(PackMask::to_bits);
+            let parted = step.parted.to_bits();
+            let made = seated.passage.made(&law, &seated.state).to_bits();
+            let (behind, fell) = (ends.behind.to_bits(), ends.fell.to_bits());
             for lane in lanes_of(done) {
-                let bit = |bits: u8| bits >> lane & 1 == 1;
-                let shot = shots[lane];
+                let shot = seats.shot(lane);
                 let progress = &mut self.room.shots[shot as usize];
-                progress.state = get(&block, lane);
-                progress.time_s = times[lane];
-                progress.passage = Passage {
-                    above: bit(above),
-                    rose_through: bit(rose),
-                };
-                put(&mut active, lane, false);
-                if bit(parted) {
+                seats.leave(lane, progress);
+                if bit(parted, lane) {
                     self.room.flying.push(shot);
-                } else if bit(behind) {
+                } else if bit(behind, lane) {
                     self.finish(shot, Ending::BehindBoard, false);
-                } else if bit(fell) {
-                    self.finish(shot, Ending::Fell, bit(made));
+                } else if bit(fell, lane) {
+                    self.finish(shot, Ending::Fell, bit(made, lane));
                 } else {
                     self.finish(shot, Ending::TimeLimit, false);
+                }
+            }
+        }
+    }
+
+    /// Steps the shots on board and ring until one contact is left or the ball has lodged.
+    #[inline(always)]
+    fn press_both(&mut self) {
+        let law = self.lanes;
+        let longest = law.zero.lit(self.rules.longest_step_s);
+        let lodged_after = match self.rules.lodged_after_s {
+            after if after > 0.0 => law.zero.lit(after),
+            _ => law.never,
+        };
+        let mut seats = Seats::new();
+        loop {
+            self.fill(&mut seats, Phase::Both);
+            if seats.taken == 0 {
+                return;
+            }
+            if seats.taken != u8::MAX && self.room.others_fill_lanes(Phase::Both) {
+                for lane in lanes_of(seats.taken) {
+                    let shot = seats.shot(lane);
+                    let progress = &mut self.room.shots[shot as usize];
+                    seats.leave(lane, progress);
+                    progress.on = On::Both {
+                        grips: [wedge::BOARD, wedge::RING].map(|i| seats.grip(i, lane)),
+                        wedged_s: seats.wedged_s(lane),
+                    };
+                    self.room.on_both.push(shot);
+                }
+                return;
+            }
+            let mut seated = seats.load(self.simd);
+            let before = seated.state;
+            let mut grips = [
+                seats.load_grip(self.simd, wedge::BOARD),
+                seats.load_grip(self.simd, wedge::RING),
+            ];
+            let step = wedge::step(&law, &mut seated.state, &mut grips, longest);
+            let off_board = step.left[wedge::BOARD] | !flight::on_board(&law, &seated.state);
+            let off_ring = step.left[wedge::RING];
+            let stepped = law.zero.lt(step.dt);
+            let wedged = wedge::wedged(&law, &grips, seats.load_wedged(self.simd), step.dt);
+            let lodged = (lodged_after.le(wedged) & stepped).to_bits();
+            let ends = seated.after_step(&law, &before, step.dt, self.rules.time_limit_s);
+            seats.store(&seated);
+            seats.store_wedged(wedged);
+            for i in [wedge::BOARD, wedge::RING] {
+                seats.store_grip(i, &grips[i]);
+            }
+            let ended = ((ends.behind | ends.fell | ends.late) & stepped).to_bits();
+            let left = (off_board | off_ring).to_bits();
+            let made = seated.passage.made(&law, &seated.state).to_bits();
+            let (behind, fell) = (ends.behind.to_bits(), ends.fell.to_bits());
+            let (off_board, off_ring) = (off_board.to_bits(), off_ring.to_bits());
+            for lane in lanes_of((ended | lodged | left) & seats.taken) {
+                let shot = seats.shot(lane);
+                let progress = &mut self.room.shots[shot as usize];
+                seats.leave(lane, progress);
+                if bit(ended, lane) {
+                    if bit(behind, lane) {
+                        self.finish(shot, Ending::BehindBoard, false);
+                    } else if bit(fell, lane) {
+                        self.finish(shot, Ending::Fell, bit(made, lane));
+                    } else {
+                        self.finish(shot, Ending::TimeLimit, false);
+                    }
+                } else if bit(lodged, lane) {
+                    self.finish(shot, Ending::Wedged, false);
+                } else {
+                    let grips = [wedge::BOARD, wedge::RING].map(|i| seats.grip(i, lane));
+                    let left = [bit(off_board, lane), bit(off_ring, lane)];
+                    progress.on = On::after_both(left, grips, 0.0);
+                    self.room.wait(shot);
                 }
             }
         }

@@ -64,13 +64,92 @@ impl<L: Lane> Grip<L> {
     }
 }
 
+/// A time until an event, as a fraction: the earliest of several is found without dividing, which
+/// costs as much as a dozen multiplications.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Due<L> {
+    over: L,
+    /// Positive.
+    under: L,
+}
+
+impl<L: Lane> Due<L> {
+    /// After `time`.
+    #[inline(always)]
+    pub(crate) fn after(law: &Law<L>, time: L) -> Self {
+        Self {
+            over: time,
+            under: law.one,
+        }
+    }
+
+    /// Not at all.
+    #[inline(always)]
+    pub(crate) fn never(law: &Law<L>) -> Self {
+        Self::after(law, law.never)
+    }
+
+    #[inline(always)]
+    pub(crate) fn when(self, mask: L::Mask, other: Self) -> Self {
+        Self {
+            over: self.over.when(mask, other.over),
+            under: self.under.when(mask, other.under),
+        }
+    }
+
+    /// Not after `other`.
+    #[inline(always)]
+    pub(crate) fn by(self, other: Self) -> L::Mask {
+        (self.over * other.under).le(other.over * self.under)
+    }
+
+    #[inline(always)]
+    pub(crate) fn earlier(self, other: Self) -> Self {
+        self.when(self.by(other), other)
+    }
+
+    /// `factor` times as late.
+    #[inline(always)]
+    fn later(self, factor: L) -> Self {
+        Self {
+            over: self.over * factor,
+            under: self.under,
+        }
+    }
+
+    /// The time.
+    #[inline(always)]
+    pub(crate) fn time(self) -> L {
+        self.over / self.under
+    }
+}
+
 /// The smallest positive time at which `c0 + c1 t + c2 t^2/2` (with `c0 > 0`) reaches zero.
 #[inline(always)]
-pub(crate) fn first_root<L: Lane>(law: &Law<L>, c0: L, c1: L, c2: L) -> L {
+pub(crate) fn first_root<L: Lane>(law: &Law<L>, c0: L, c1: L, c2: L) -> Due<L> {
     let discriminant = c1.squared() - c0 * c2 * 2.0;
     let slope = discriminant.most(law.zero).sqrt() - c1;
     let reaches = law.zero.le(discriminant) & law.zero.lt(slope);
-    (c0 * 2.0 / slope.when(reaches, law.one)).when(reaches, law.never)
+    let root = Due {
+        over: c0 * 2.0,
+        under: slope,
+    };
+    root.when(reaches, Due::never(law))
+}
+
+/// As [`first_root`], or never where the time cannot be within `longest`: seldom needed, it is then
+/// mostly not computed.
+#[inline(always)]
+pub(crate) fn first_root_within<L: Lane>(
+    law: &Law<L>,
+    (c0, c1, c2): (L, L, L),
+    longest: L,
+) -> Due<L> {
+    let within = (c0 + longest * (c1 - c2.abs() * longest * 0.5)).le(law.zero);
+    if !within.any() {
+        return Due::never(law);
+    }
+    first_root(law, c0, c1, c2).when(within, Due::never(law))
 }
 
 /// Normal force of a contact and its first two derivatives (per unit of mass), with the
@@ -101,61 +180,36 @@ impl<L: Lane> Load<L> {
 
     /// Time until the compression is gone.
     #[inline(always)]
-    pub(crate) fn time_to_part(&self, law: &Law<L>, touch: &Touch<L>) -> L {
+    pub(crate) fn time_to_part(&self, law: &Law<L>, touch: &Touch<L>) -> Due<L> {
         let (u, du, ddu) = (
             touch.compression.most(law.zero),
             -touch.v.0,
             self.squeeze_rate,
         );
         let guess = first_root(law, u, du, ddu);
-        let found = guess.lt(law.never);
+        let time = guess.time();
+        let found = time.lt(law.never);
         // One Newton step on the Taylor polynomial with u''' = -N' and u'''' = -N''.
-        let t = guess.when(found, law.zero);
+        let t = time.when(found, law.zero);
         let d3 = -self.normal_rate;
         let d4 = -self.normal_curve;
         let value = u + t * (du + t * (ddu * 0.5 + t * (d3 * (1.0 / 6.0) + t * d4 * (1.0 / 24.0))));
         let slope = du + t * (ddu + t * (d3 * 0.5 + t * d4 * (1.0 / 6.0)));
-        let falling = slope.lt(law.zero) & found;
-        let better = t - value / slope.when(falling, law.one);
-        let good = falling & law.zero.lt(better);
+        let better = Due {
+            over: value - t * slope,
+            under: -slope,
+        };
+        let good = slope.lt(law.zero) & law.zero.lt(better.over) & found;
         better.when(good, guess)
     }
 
     /// Time until the normal force is zero, for a contact that still presses.
     #[inline(always)]
-    pub(crate) fn time_to_release(&self, law: &Law<L>) -> L {
+    pub(crate) fn time_to_release(&self, law: &Law<L>) -> Due<L> {
         let pressing = law.zero.lit(NO_FORCE_M_S2).lt(self.normal);
-        let time = first_root(law, self.normal, self.normal_rate, self.normal_curve);
-        (time * BEYOND).when(pressing, law.never)
-    }
-}
-
-/// What friction must do to hold the contact point still, and what it is driven by.
-pub(crate) struct Hold<L> {
-    /// Rate of the slip without friction.
-    pub(crate) drive: (L, L),
-    /// Friction (per unit of mass) that keeps zero slip at zero.
-    pub(crate) need: (L, L),
-    pub(crate) need_size: L,
-    /// Friction over the rate of slip it makes: 1/(1 + lever^2 m/I).
-    pub(crate) yielding: L,
-}
-
-impl<L: Lane> Hold<L> {
-    /// `push` is the acceleration along (1, 2) from everything but this contact's friction.
-    #[inline(always)]
-    pub(crate) fn new(law: &Law<L>, touch: &Touch<L>, push: (L, L)) -> Self {
-        let drift = touch.drift();
-        let yielding = law.one / (touch.lever.squared() * law.mass_over_inertia + 1.0);
-        let drive = (push.0 + drift.0, push.1 + drift.1);
-        let need = (-(yielding * drive.0), -(yielding * drive.1));
-        let need_size = (need.0.squared() + need.1.squared()).sqrt();
-        Self {
-            drive,
-            need,
-            need_size,
-            yielding,
-        }
+        let root = first_root(law, self.normal, self.normal_rate, self.normal_curve);
+        root.later(law.zero.lit(BEYOND))
+            .when(pressing, Due::never(law))
     }
 }
 
@@ -186,7 +240,7 @@ fn rate<L: Lane, S: Surface<L>>(
 ) -> Rate<L> {
     let a = surface.to_space(frame, push);
     let twist = touch.lever * law.mass_over_inertia;
-    let spin = surface.to_space(frame, Triple(law.zero, twist * push.2, -(twist * push.1)));
+    let spin = surface.along_to_space(frame, (twist * push.2, -(twist * push.1)));
     Rate {
         velocity_m_s: state.velocity_m_s,
         acceleration_m_s2: Triple(a.0, a.1, a.2 - law.gravity),
@@ -202,20 +256,6 @@ struct Heading<L> {
     least: L,
 }
 
-impl<L: Lane> Heading<L> {
-    #[inline(always)]
-    fn of(self, law: &Law<L>, slip: (L, L)) -> (L, L) {
-        let forward = slip.0 * self.along.0 + slip.1 * self.along.1;
-        let clear = self.least.lt(forward);
-        let size = (slip.0.squared() + slip.1.squared()).sqrt();
-        let per_size = law.one / size.when(clear, law.one);
-        (
-            (slip.0 * per_size).when(clear, self.along.0),
-            (slip.1 * per_size).when(clear, self.along.1),
-        )
-    }
-}
-
 /// The rate at one stage of a step, in the mode that holds for the whole step.
 #[inline(always)]
 fn stage<L: Lane, S: Surface<L>>(
@@ -228,23 +268,34 @@ fn stage<L: Lane, S: Surface<L>>(
     let (touch, frame) = surface.meet(law, state);
     let normal = touch.normal(law);
     let limit = law.friction * normal.most(law.zero);
-    let direction = heading.of(law, touch.slip());
-    let mut friction = (-(limit * direction.0), -(limit * direction.1));
+    let (slip, along) = (touch.slip(), heading.along);
+    let clear = heading.least.lt(slip.0 * along.0 + slip.1 * along.1);
+    // Sliding, mu N slip/|slip|; rolling, what the slip would gain over what friction makes of it: in
+    // one division.
+    let mut over = (
+        limit * slip.0.when(clear, along.0),
+        limit * slip.1.when(clear, along.1),
+    );
+    let mut under = size(slip).when(clear, law.one);
     if rolling.any() {
-        let drift = touch.drift();
-        let yielding = law.one / (touch.lever.squared() * law.mass_over_inertia + 1.0);
-        friction = (
-            (-(yielding * (touch.g.1 + drift.0))).when(rolling, friction.0),
-            (-(yielding * (touch.g.2 + drift.1))).when(rolling, friction.1),
-        );
+        let drive = touch.drive();
+        over = (drive.0.when(rolling, over.0), drive.1.when(rolling, over.1));
+        under = touch.slip_per_push(law).when(rolling, under);
     }
+    let back = -(law.one / under);
     rate(
         law,
         surface,
         state,
         (&touch, frame),
-        Triple(normal, friction.0, friction.1),
+        Triple(normal, back * over.0, back * over.1),
     )
+}
+
+/// Length of a vector along the surface.
+#[inline(always)]
+pub(crate) fn size<L: Lane>(along: (L, L)) -> L {
+    (along.0.squared() + along.1.squared()).sqrt()
 }
 
 /// Takes the slip out by friction's own impulse (angular momentum about the contact is kept).
@@ -254,23 +305,22 @@ fn stop_slip<L: Lane, S: Surface<L>>(
     surface: S,
     state: &mut State<L>,
     (touch, frame): (&mut Touch<L>, S::Frame),
+    push_per_slip: L,
     stop: L::Mask,
 ) {
     let slip = touch.slip();
-    let yielding = law.one / (touch.lever.squared() * law.mass_over_inertia + 1.0);
     let kick = (
-        (-(yielding * slip.0)).when(stop, law.zero),
-        (-(yielding * slip.1)).when(stop, law.zero),
+        (-(push_per_slip * slip.0)).when(stop, law.zero),
+        (-(push_per_slip * slip.1)).when(stop, law.zero),
     );
     let twist = touch.lever * law.mass_over_inertia;
-    let dv = Triple(law.zero, kick.0, kick.1);
-    let dw = Triple(law.zero, twist * kick.1, -(twist * kick.0));
-    touch.v = touch.v.plus(dv, law.one);
-    touch.w = touch.w.plus(dw, law.one);
-    state.velocity_m_s = state
-        .velocity_m_s
-        .plus(surface.to_space(frame, dv), law.one);
-    state.spin_rad_s = state.spin_rad_s.plus(surface.to_space(frame, dw), law.one);
+    let turn = (twist * kick.1, -(twist * kick.0));
+    touch.v = Triple(touch.v.0, touch.v.1 + kick.0, touch.v.2 + kick.1);
+    touch.w = Triple(touch.w.0, touch.w.1 + turn.0, touch.w.2 + turn.1);
+    let dv = surface.along_to_space(frame, kick);
+    let dw = surface.along_to_space(frame, turn);
+    state.velocity_m_s = state.velocity_m_s.plus(dv, law.one);
+    state.spin_rad_s = state.spin_rad_s.plus(dw, law.one);
 }
 
 /// Advances the ball on `surface` by one step of at most `longest`, or finds that it has parted.
@@ -284,7 +334,7 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     state: &mut State<L>,
     grip: &mut Grip<L>,
     longest: L,
-    other: impl FnOnce(&State<L>, Triple<L>) -> L,
+    other: impl FnOnce(&State<L>, Triple<L>) -> Due<L>,
 ) -> Step<L> {
     let (mut touch, frame) = surface.meet(law, state);
     let parted = has_parted(law, &touch);
@@ -298,58 +348,77 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
 
     // 1. Where friction stands now.
     let slip = touch.slip();
-    let speed = (slip.0.squared() + slip.1.squared()).sqrt();
-    let stuck = grip.rolling | speed.le(grip.no_slip);
+    let slip_square = slip.0.squared() + slip.1.squared();
+    let stuck = grip.rolling | slip_square.le(grip.no_slip.squared());
+    let slip_per_push = touch.slip_per_push(law);
+    // Needed of stuck contacts only.
+    let mut push_per_slip = law.one;
     if stuck.any() {
-        stop_slip(law, surface, state, (&mut touch, frame), stuck);
+        push_per_slip = law.one / slip_per_push;
+        stop_slip(
+            law,
+            surface,
+            state,
+            (&mut touch, frame),
+            push_per_slip,
+            stuck,
+        );
     }
-    let speed = law.zero.when(stuck, speed);
     let normal = touch.normal(law);
     let limit = law.friction * normal.most(law.zero);
-    let hold = Hold::new(law, &touch, (touch.g.1, touch.g.2));
     let load = Load::new(law, &touch, normal, normal + touch.g.0 + touch.bending());
-    let fits = hold.need_size.le(limit);
+
+    // 2. What drives the slip, or would; and the friction against it.
+    let drive = touch.drive();
+    let from = (drive.0.when(stuck, slip.0), drive.1.when(stuck, slip.1));
+    let from_size = size(from);
+    let some = law.zero.lt(from_size);
+    let per_size = law.one / from_size.when(some, law.one);
+    let along = (from.0 * per_size, from.1 * per_size);
+    let need = push_per_slip * from_size;
+    let fits = need.le(limit);
     let loading = law.zero.lt(load.normal_rate);
     let spent = (grip.spent | (stuck & !fits)) & !loading;
     let rolling = stuck & fits & !spent;
-
-    // 2. The friction, and the direction of slip for this step.
-    let from = (
-        hold.drive.0.when(stuck, slip.0),
-        hold.drive.1.when(stuck, slip.1),
-    );
-    let size = (from.0.squared() + from.1.squared()).sqrt();
-    let some = law.zero.lt(size);
-    let per_size = law.one / size.when(some, law.one);
-    let along = (from.0 * per_size, from.1 * per_size);
+    let speed = law.zero.when(stuck, from_size);
     let heading = Heading {
         along,
         least: speed * SLIP_DIRECTION_LOST,
     };
-    let friction = (
-        hold.need.0.when(rolling, -(limit * along.0)),
-        hold.need.1.when(rolling, -(limit * along.1)),
-    );
+    let back = -need.when(rolling, limit);
 
     // 3. The step ends at the first event.
     let to_part = load.time_to_part(law, &touch);
     let to_release = load.time_to_release(law);
-    let give = (
-        touch.bend_1 * touch.v.1 + touch.w.2,
-        touch.bend_2 * touch.v.2 - touch.w.1,
+    let forward = drive.0 * along.0 + drive.1 * along.1;
+    let to_change = time_to_change(
+        law,
+        &load,
+        rolling,
+        Balance {
+            speed,
+            slip_rate: forward - limit * slip_per_push,
+            slip_per_push,
+            spare: limit - need,
+            need_per_squeeze: push_per_slip * touch.give(along),
+        },
     );
-    let to_change = time_to_change(law, &hold, &load, (rolling, speed, limit), along, give);
     let k1 = rate(
         law,
         surface,
         state,
         (&touch, frame),
-        Triple(normal, friction.0, friction.1),
+        Triple(normal, back * along.0, back * along.1),
     );
-    let to_other = other(state, k1.acceleration_m_s2);
-    let until = to_part.least(to_release).least(to_other).least(longest);
-    let dt = until.least(to_change).most(law.zero.lit(SHORTEST_S));
-    let landing = to_change.le(until) & !rolling;
+    let until = to_part
+        .earlier(to_release)
+        .earlier(other(state, k1.acceleration_m_s2))
+        .earlier(Due::after(law, longest));
+    let landing = to_change.by(until) & !rolling;
+    let dt = to_change
+        .earlier(until)
+        .time()
+        .most(law.zero.lit(SHORTEST_S));
     let no_slip = left_over(law, landing, speed, SLIP_ENDED_M_S);
 
     // 4. The classical RK4 step.
@@ -374,32 +443,38 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     }
 }
 
+/// What decides when friction changes its law.
+pub(crate) struct Balance<L> {
+    /// Slip.
+    pub(crate) speed: L,
+    /// Its rate while it lasts.
+    pub(crate) slip_rate: L,
+    /// Rate of slip over the friction that makes it.
+    pub(crate) slip_per_push: L,
+    /// What friction could do beyond what rolling needs.
+    pub(crate) spare: L,
+    /// Rate of what rolling needs, over u''; what else changes it is slow.
+    pub(crate) need_per_squeeze: L,
+}
+
 /// Time until friction changes its law: the slip reaches zero, or rolling needs more than mu N.
 #[inline(always)]
-fn time_to_change<L: Lane>(
+pub(crate) fn time_to_change<L: Lane>(
     law: &Law<L>,
-    hold: &Hold<L>,
     load: &Load<L>,
-    (rolling, speed, limit): (L::Mask, L, L),
-    along: (L, L),
-    give: (L, L),
-) -> L {
-    let per_yielding = law.one / hold.yielding;
-    let slip_rate = hold.drive.0 * along.0 + hold.drive.1 * along.1 - limit * per_yielding;
-    let slip_curve = -(law.friction * load.normal_rate * per_yielding);
-    // While rolling, what is needed changes mainly because the normal velocity does.
-    let some = law.zero.lt(hold.need_size);
-    let per_need = law.one / hold.need_size.when(some, law.one);
-    let need_rate = -(hold.yielding
-        * load.squeeze_rate
-        * (hold.need.0 * give.0 + hold.need.1 * give.1)
-        * per_need);
-    let c0 = (limit - hold.need_size).when(rolling, speed);
-    let c1 = (law.friction * load.normal_rate - need_rate).when(rolling, slip_rate);
+    rolling: L::Mask,
+    balance: Balance<L>,
+) -> Due<L> {
+    let limit_rate = law.friction * load.normal_rate;
+    let slip_curve = -(limit_rate * balance.slip_per_push);
+    let need_rate = balance.need_per_squeeze * load.squeeze_rate;
+    let c0 = balance.spare.when(rolling, balance.speed);
+    let c1 = (limit_rate - need_rate).when(rolling, balance.slip_rate);
     let c2 = (law.friction * load.normal_curve).when(rolling, slip_curve);
     let moving = law.zero.lt(c0) | rolling;
-    let time = first_root(law, c0, c1, c2).when(moving, law.never);
-    time * law.zero.lit(BEYOND).when(rolling, law.one)
+    first_root(law, c0, c1, c2)
+        .later(law.zero.lit(BEYOND).when(rolling, law.one))
+        .when(moving, Due::never(law))
 }
 
 /// Is the compression gone, but for what the parting's own step makes up?

@@ -1,7 +1,7 @@
 //! The default integrator: closed-form flight with touches found for certain, and contacts in RK4
 //! steps that end on the events of friction.
 
-use super::contact::{self, Grip, REACHED_M, SHORTEST_S};
+use super::contact::{self, Due, Grip, REACHED_M};
 use super::flight::{self, Arc};
 use super::outcome::{Contacts, Ending, Touched, Verdict};
 use super::passage::Passage;
@@ -21,7 +21,32 @@ pub(crate) enum On {
     Nothing,
     Board(Grip),
     Ring(Grip),
-    Both([Grip; 2]),
+    Both {
+        /// At the board and at the ring.
+        grips: [Grip; 2],
+        /// Time for which both have been rolled on without a break, s.
+        wedged_s: f64,
+    },
+}
+
+impl On {
+    /// Both, just now.
+    pub(crate) fn both(grips: [Grip; 2]) -> Self {
+        Self::Both {
+            grips,
+            wedged_s: 0.0,
+        }
+    }
+
+    /// After a step on both, of which one or two have been left.
+    pub(crate) fn after_both(left: [bool; 2], grips: [Grip; 2], wedged_s: f64) -> Self {
+        match left {
+            [true, true] => Self::Nothing,
+            [true, false] => Self::Ring(grips[wedge::RING]),
+            [false, true] => Self::Board(grips[wedge::BOARD]),
+            [false, false] => Self::Both { grips, wedged_s },
+        }
+    }
 }
 
 /// How far a shot has come.
@@ -67,8 +92,6 @@ struct Shot<'a, W> {
     rules: &'a Rules,
     watch: &'a mut W,
     now: Progress,
-    /// Time for which board and ring have both been rolled on without a break.
-    wedged_s: f64,
 }
 
 /// Runs one shot to its end.
@@ -83,7 +106,7 @@ pub(crate) fn run<W: Watch>(law: &Law, rules: &Rules, start: State, watch: &mut 
         }
     }
     progress.on = match (on_board, on_ring) {
-        (true, true) => On::Both([fresh; 2]),
+        (true, true) => On::both([fresh; 2]),
         (true, false) => On::Board(fresh),
         (false, true) => On::Ring(fresh),
         (false, false) => On::Nothing,
@@ -115,7 +138,6 @@ pub(crate) fn resume<W: Watch>(
         rules,
         watch,
         now: progress,
-        wedged_s: 0.0,
     };
     for _ in 0..MOST_STRETCHES {
         if let Some(ending) = shot.stretch() {
@@ -132,7 +154,6 @@ pub(crate) fn stretch(law: &Law, rules: &Rules, progress: &mut Progress) -> Opti
         rules,
         watch: &mut (),
         now: *progress,
-        wedged_s: 0.0,
     };
     let ending = shot.stretch();
     *progress = shot.now;
@@ -145,7 +166,7 @@ impl<W: Watch> Shot<'_, W> {
             On::Nothing => self.fly(),
             On::Board(grip) => self.press_board(grip),
             On::Ring(grip) => self.press_ring(grip),
-            On::Both(grips) => self.press_both(grips),
+            On::Both { grips, wedged_s } => self.press_both(grips, wedged_s),
         }
     }
 
@@ -222,10 +243,11 @@ impl<W: Watch> Shot<'_, W> {
                 self.now.on = On::Nothing;
                 return None;
             }
-            if ring_gap(law, &self.now.state).reached(law) {
+            let longest = self.rules.longest_step_s;
+            let gap = ring_gap(law, &self.now.state, longest);
+            if gap.reached(law) {
                 self.touch(Touched::Ring);
-                self.now.on = On::Both([grip, Grip::fresh(law)]);
-                self.wedged_s = 0.0;
+                self.now.on = On::both([grip, Grip::fresh(law)]);
                 return None;
             }
             let before = self.now.state;
@@ -234,8 +256,8 @@ impl<W: Watch> Shot<'_, W> {
                 Board,
                 &mut self.now.state,
                 &mut grip,
-                self.rules.longest_step_s,
-                |state, acceleration| ring_gap(law, state).time(law, acceleration),
+                longest,
+                |_, acceleration| gap.time(law, acceleration),
             );
             if step.parted {
                 self.part(Touched::Board);
@@ -254,18 +276,18 @@ impl<W: Watch> Shot<'_, W> {
         loop {
             if board_reached(law, &self.now.state) {
                 self.touch(Touched::Board);
-                self.now.on = On::Both([Grip::fresh(law), grip]);
-                self.wedged_s = 0.0;
+                self.now.on = On::both([Grip::fresh(law), grip]);
                 return None;
             }
+            let longest = self.rules.longest_step_s;
             let before = self.now.state;
             let step = contact::step(
                 law,
                 Ring,
                 &mut self.now.state,
                 &mut grip,
-                self.rules.longest_step_s,
-                |state, acceleration| time_to_board(law, state, acceleration),
+                longest,
+                |state, acceleration| time_to_board(law, state, acceleration, longest),
             );
             if step.parted {
                 self.part(Touched::Ring);
@@ -279,7 +301,7 @@ impl<W: Watch> Shot<'_, W> {
         }
     }
 
-    fn press_both(&mut self, mut grips: [Grip; 2]) -> Option<Ending> {
+    fn press_both(&mut self, mut grips: [Grip; 2], mut wedged_s: f64) -> Option<Ending> {
         let law = self.law;
         loop {
             let before = self.now.state;
@@ -289,32 +311,27 @@ impl<W: Watch> Shot<'_, W> {
                 &mut grips,
                 self.rules.longest_step_s,
             );
-            let off_board = step.left_board || !flight::on_board(law, &self.now.state);
+            let off_board = step.left[wedge::BOARD] || !flight::on_board(law, &self.now.state);
+            let off_ring = step.left[wedge::RING];
             if off_board {
                 self.part(Touched::Board);
             }
-            if step.left_ring {
+            if off_ring {
                 self.part(Touched::Ring);
             }
-            match (off_board, step.left_ring) {
-                (true, true) => self.now.on = On::Nothing,
-                (true, false) => self.now.on = On::Ring(grips[1]),
-                (false, true) => self.now.on = On::Board(grips[0]),
-                (false, false) => {}
-            }
+            self.now.on = On::after_both([off_board, off_ring], grips, wedged_s);
             if step.dt > 0.0 {
                 let ending = self.after_step(step.dt, &before, step.impulses);
-                let rolls = grips[0].rolling && grips[1].rolling;
-                self.wedged_s = if rolls { self.wedged_s + step.dt } else { 0.0 };
+                wedged_s = wedge::wedged(law, &grips, wedged_s, step.dt);
                 let after = self.rules.lodged_after_s;
                 if ending.is_some() {
                     return ending;
                 }
-                if after > 0.0 && self.wedged_s >= after {
+                if after > 0.0 && wedged_s >= after {
                     return Some(Ending::Wedged);
                 }
             }
-            if off_board || step.left_ring {
+            if off_board || off_ring {
                 return None;
             }
         }
@@ -336,7 +353,9 @@ impl<W: Watch> Shot<'_, W> {
         self.watch
             .step(self.now.time_s, dt, (before, &self.now.state), impulses);
         self.now.time_s += dt;
-        self.now.passage.step(self.law, before, &self.now.state);
+        self.now
+            .passage
+            .step(self.law, before, &self.now.state, true);
         let law = self.law;
         if self.now.state.position_m.0 < law.board_face_x {
             Some(Ending::BehindBoard)
@@ -361,12 +380,22 @@ pub(crate) fn board_reached<L: Lane>(law: &Law<L>, state: &State<L>) -> L::Mask 
         & flight::on_board(law, state)
 }
 
-/// Time until a ball on the ring reaches the board's plane.
+/// Time until a ball on the ring reaches the board's plane, if it can be within `longest`.
 #[inline(always)]
-pub(crate) fn time_to_board<L: Lane>(law: &Law<L>, state: &State<L>, acceleration: Triple<L>) -> L {
+pub(crate) fn time_to_board<L: Lane>(
+    law: &Law<L>,
+    state: &State<L>,
+    acceleration: Triple<L>,
+    longest: L,
+) -> Due<L> {
     let gap = (state.position_m.0 - law.board_touch_x).most(law.zero.lit(REACHED_M));
-    contact::first_root(law, gap, state.velocity_m_s.0, acceleration.0)
+    let motion = (gap, state.velocity_m_s.0, acceleration.0);
+    contact::first_root_within(law, motion, longest)
 }
+
+/// What a step's acceleration may add to the way that its velocity goes, as a part of R (a step of
+/// 2 ms at the hardest bounce: 0.02).
+const ADDED_WAY: f64 = 0.05;
 
 /// The ring seen by a ball that is in contact with the board.
 #[derive(Clone, Copy)]
@@ -379,13 +408,14 @@ pub(crate) struct Gap<L: Lane> {
     normal: Triple<L>,
 }
 
-/// The gap to the ring.
+/// The gap to the ring, for steps of at most `longest`.
 #[inline(always)]
-pub(crate) fn ring_gap<L: Lane>(law: &Law<L>, state: &State<L>) -> Gap<L> {
-    let margin = law.radius * 2.0;
-    let Triple(x, y, z) = state.position_m;
-    let reach = law.ring_radius + margin;
-    let near = z.abs().le(margin) & (x.squared() + y.squared()).le(reach.squared());
+pub(crate) fn ring_gap<L: Lane>(law: &Law<L>, state: &State<L>, longest: L) -> Gap<L> {
+    let Triple(vx, vy, vz) = state.velocity_m_s;
+    let way = (vx.abs() + vy.abs() + vz.abs()) * longest + law.radius * ADDED_WAY;
+    let inward = law.ring_radius - state.axis_square().sqrt();
+    let distance_square = inward.squared() + state.position_m.2.squared();
+    let near = distance_square.le((law.radius + way).squared());
     if !near.any() {
         let zero = law.zero;
         let normal = Triple(zero, zero, zero);
@@ -416,15 +446,14 @@ impl<L: Lane> Gap<L> {
 
     /// Time until the gap closes.
     #[inline(always)]
-    pub(crate) fn time(&self, law: &Law<L>, acceleration: Triple<L>) -> L {
+    pub(crate) fn time(&self, law: &Law<L>, acceleration: Triple<L>) -> Due<L> {
         if !self.near.any() {
-            return law.never;
+            return Due::never(law);
         }
         let Triple(x, y, z) = acceleration;
         let along = self.normal.0 * x + self.normal.1 * y + self.normal.2 * z;
         let gap = self.gap.most(law.zero.lit(REACHED_M));
         let time = contact::first_root(law, gap, self.opening, along + self.bending);
-        time.most(law.zero.lit(SHORTEST_S))
-            .when(self.near, law.never)
+        time.when(self.near, Due::never(law))
     }
 }

@@ -13,6 +13,7 @@ mod outcome;
 mod paper;
 mod passage;
 mod release;
+mod seats;
 mod simulator;
 mod state;
 mod surface;

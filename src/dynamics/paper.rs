@@ -128,7 +128,7 @@ pub(crate) fn run<W: Watch>(
         } else {
             watch.flight(law, time_s, dt, &state);
         }
-        passage.step(law, &state, &next);
+        passage.step(law, &state, &next, true);
         time_s += dt;
         note_changes(&mut contacts, watch, time_s, (pressed, now), &next);
         let below = state.position_m.2 >= -law.radius || state.velocity_m_s.2 >= 0.0;

@@ -40,11 +40,17 @@ impl<L: Lane> Passage<L> {
         self.above = self.above | rises;
     }
 
-    /// After a step in contact.
+    /// After a step in contact, where one was made.
     #[inline(always)]
-    pub(crate) fn step(&mut self, law: &Law<L>, before: &State<L>, after: &State<L>) {
-        let rises = before.position_m.2.lt(law.zero) & law.zero.le(after.position_m.2);
-        let inside = after.axis_distance().lt(law.ring_radius);
+    pub(crate) fn step(
+        &mut self,
+        law: &Law<L>,
+        before: &State<L>,
+        after: &State<L>,
+        stepped: L::Mask,
+    ) {
+        let rises = before.position_m.2.lt(law.zero) & law.zero.le(after.position_m.2) & stepped;
+        let inside = after.axis_square().lt(law.ring_radius.squared());
         self.rose_through = self.rose_through | (rises & inside);
         self.above = self.above | rises;
     }
@@ -52,6 +58,6 @@ impl<L: Lane> Passage<L> {
     /// Is a ball that has fallen through `z = -R` at `state` made?
     #[inline(always)]
     pub(crate) fn made(&self, law: &Law<L>, state: &State<L>) -> L::Mask {
-        self.above & !self.rose_through & state.axis_distance().lt(law.ring_radius)
+        self.above & !self.rose_through & state.axis_square().lt(law.ring_radius.squared())
     }
 }

@@ -48,6 +48,18 @@ pub(crate) struct Rate<L = f64> {
     pub(crate) spin_rate_rad_s2: Triple<L>,
 }
 
+impl<L: Lane> Rate<L> {
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
+        let sum = |a: Triple<L>, b: Triple<L>| Triple(a.0 + b.0, a.1 + b.1, a.2 + b.2);
+        Self {
+            velocity_m_s: sum(self.velocity_m_s, other.velocity_m_s),
+            acceleration_m_s2: sum(self.acceleration_m_s2, other.acceleration_m_s2),
+            spin_rate_rad_s2: sum(self.spin_rate_rad_s2, other.spin_rate_rad_s2),
+        }
+    }
+}
+
 impl<L: Lane> State<L> {
     /// The state after `dt` at the given rate (an Euler step; the building block of RK4).
     #[inline(always)]
@@ -63,12 +75,9 @@ impl<L: Lane> State<L> {
     #[inline(always)]
     pub(crate) fn combined(&self, rates: [&Rate<L>; 4], dt: L) -> Self {
         let [k1, k2, k3, k4] = rates;
-        let sixth = dt * (1.0 / 6.0);
-        let third = dt * (1.0 / 3.0);
-        self.advanced(k1, sixth)
-            .advanced(k2, third)
-            .advanced(k3, third)
-            .advanced(k4, sixth)
+        let ends = k1.plus(k4);
+        let middle = k2.plus(k3);
+        self.advanced(&ends.plus(&middle.plus(&middle)), dt * (1.0 / 6.0))
     }
 
     /// The state after `dt` of free flight.
@@ -93,11 +102,11 @@ impl<L: Lane> State<L> {
         }
     }
 
-    /// Distance of the centre from the hoop's axis, D_theta of the paper.
+    /// Square of the distance of the centre from the hoop's axis, D_theta of the paper.
     #[inline(always)]
-    pub(crate) fn axis_distance(&self) -> L {
+    pub(crate) fn axis_square(&self) -> L {
         let Triple(x, y, _) = self.position_m;
-        (x.squared() + y.squared()).sqrt()
+        x.squared() + y.squared()
     }
 }
 

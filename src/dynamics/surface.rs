@@ -58,6 +58,27 @@ impl<L: Lane> Touch<L> {
             -(screw * turn_1) - self.v.0 * (turn_2 - self.w.1),
         )
     }
+
+    /// Rate of the slip without friction: from motion and gravity.
+    #[inline(always)]
+    pub(crate) fn drive(&self) -> (L, L) {
+        let drift = self.drift();
+        (self.g.1 + drift.0, self.g.2 + drift.1)
+    }
+
+    /// Rate of slip that a unit of friction (per unit of mass) makes: 1 + lever^2 m/I.
+    #[inline(always)]
+    pub(crate) fn slip_per_push(&self, law: &Law<L>) -> L {
+        self.lever.squared() * law.mass_over_inertia + 1.0
+    }
+
+    /// Rate along a direction at which the drive changes, over u'' (the normal velocity in
+    /// [`Touch::drift`] being what changes it most).
+    #[inline(always)]
+    pub(crate) fn give(&self, along: (L, L)) -> L {
+        (self.bend_1 * self.v.1 + self.w.2) * along.0
+            + (self.bend_2 * self.v.2 - self.w.1) * along.1
+    }
 }
 
 /// A surface the ball can touch. Implementations are zero-sized and resolve at compile time.
@@ -70,6 +91,9 @@ pub(crate) trait Surface<L: Lane>: Copy {
 
     /// Components along x, y, z of a vector given along (n, 1, 2).
     fn to_space(self, frame: Self::Frame, vector: Triple<L>) -> Triple<L>;
+
+    /// As [`Surface::to_space`], of a vector along the surface, given along (1, 2).
+    fn along_to_space(self, frame: Self::Frame, vector: (L, L)) -> Triple<L>;
 }
 
 /// The front face of the board, a plane.
@@ -96,6 +120,11 @@ impl<L: Lane> Surface<L> for Board {
     #[inline(always)]
     fn to_space(self, _frame: (), vector: Triple<L>) -> Triple<L> {
         vector
+    }
+
+    #[inline(always)]
+    fn along_to_space(self, _frame: (), (first, second): (L, L)) -> Triple<L> {
+        Triple(first.lit(0.0), first, second)
     }
 }
 
@@ -134,8 +163,9 @@ impl<L: Lane> Surface<L> for Ring {
         let axis = (x.squared() + y.squared()).sqrt();
         let inward = law.ring_radius - axis;
         let lever = (inward.squared() + z.squared()).sqrt();
-        let per_axis = law.one / axis;
-        let per_lever = law.one / lever;
+        // One division for two.
+        let per_both = law.one / (axis * lever);
+        let (per_axis, per_lever) = (per_both * lever, per_both * axis);
         let frame = RingFrame {
             cos_theta: x * per_axis,
             sin_theta: y * per_axis,
@@ -165,6 +195,16 @@ impl<L: Lane> Surface<L> for Ring {
             outward * frame.cos_theta - vector.2 * frame.sin_theta,
             outward * frame.sin_theta + vector.2 * frame.cos_theta,
             vector.0 * frame.sin_phi + vector.1 * frame.cos_phi,
+        )
+    }
+
+    #[inline(always)]
+    fn along_to_space(self, frame: RingFrame<L>, (first, second): (L, L)) -> Triple<L> {
+        let outward = first * frame.sin_phi;
+        Triple(
+            outward * frame.cos_theta - second * frame.sin_theta,
+            outward * frame.sin_theta + second * frame.cos_theta,
+            first * frame.cos_phi,
         )
     }
 }
