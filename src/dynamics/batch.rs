@@ -1,7 +1,7 @@
-//! Many shots at once, eight to a step, in vector lanes.
+//! Many shots at once, eight or sixteen to a step, in vector lanes.
 //!
 //! The shots of a batch wait in four queues, by what comes next: flight, board, ring, both. Flights are
-//! closed-form and are done eight at a time. In contact eight shots step together; a lane whose ball
+//! closed-form and are done a pack at a time. In contact the shots of a pack step together; a lane whose ball
 //! parts is refilled from the queue at once, so short and long contacts mix without waiting. What is
 //! rare (the board's edges, the time limit) leaves its lane for the scalar form and comes back to a
 //! queue when it is over.
@@ -17,7 +17,7 @@ use super::seats::{Seats, bit, lanes_of};
 use super::state::{Law, State, Triple};
 use super::surface::{Board, Ring, Surface};
 use super::wedge;
-use crate::lane::{Lane, Pack, PackMask, WIDTH};
+use crate::lane::{Pack, Packed, Twin};
 use fearless_simd::Simd;
 
 /// Room for a batch, to be used again and again: nothing is allocated once it has grown.
@@ -32,16 +32,33 @@ pub struct Room {
     queue: Vec<u32>,
 }
 
-/// Runs the shots of `starts` to their ends; the verdicts are then in the room.
+/// Runs the shots of `starts` to their ends; the verdicts are then in the room. Sixteen at a time where
+/// one register holds eight, so that two chains of operations run side by side; else eight, which
+/// then are such chains already.
 #[inline(always)]
-pub(super) fn run<S: Simd>(simd: S, law: &Law, rules: &Rules, starts: &[State], room: &mut Room) {
+pub(super) fn run_as_wide_as_pays<S: Simd>(
+    simd: S,
+    law: &Law,
+    rules: &Rules,
+    starts: &[State],
+    room: &mut Room,
+) {
+    if size_of::<S::f64s>() == size_of::<[f64; 8]>() {
+        run::<Twin<Pack<S>>>(simd, law, rules, starts, room);
+    } else {
+        run::<Pack<S>>(simd, law, rules, starts, room);
+    }
+}
+
+#[inline(always)]
+fn run<P: Packed>(simd: P::Simd, law: &Law, rules: &Rules, starts: &[State], room: &mut Room) {
     room.shots.clear();
     room.shots
         .extend(starts.iter().map(|start| Progress::at_release(law, *start)));
     room.verdicts.clear();
     room.verdicts.resize(starts.len(), PENDING);
-    let lanes = law.map(|value| Pack::splat(simd, value));
-    let mut batch = Batch {
+    let lanes = law.map(|value| P::splat(simd, value));
+    let mut batch: Batch<P> = Batch {
         simd,
         law,
         lanes,
@@ -56,10 +73,10 @@ pub(super) fn run<S: Simd>(simd: S, law: &Law, rules: &Rules, starts: &[State], 
         }
     }
     while !batch.room.is_done() {
-        batch.fly();
-        batch.press_board();
-        batch.press_ring();
-        batch.press_both();
+        batch.phase(Phase::Flight);
+        batch.phase(Phase::Board);
+        batch.phase(Phase::Ring);
+        batch.phase(Phase::Both);
     }
 }
 
@@ -96,9 +113,9 @@ impl Room {
         }
     }
 
-    /// Is there enough to do elsewhere to leave lanes of `phase` that cannot all be filled?
-    fn others_fill_lanes(&self, phase: Phase) -> bool {
-        let fills = |(other, queue): &(Phase, &Vec<u32>)| *other != phase && queue.len() >= WIDTH;
+    /// Is there enough to do elsewhere to leave a phase of which not all lanes can be filled?
+    fn others_fill(&self, lanes: usize, phase: Phase) -> bool {
+        let fills = |(other, queue): &(Phase, &Vec<u32>)| *other != phase && queue.len() >= lanes;
         self.queues().iter().any(fills)
     }
 
@@ -114,15 +131,39 @@ impl Room {
     }
 }
 
-struct Batch<'a, S: Simd> {
-    simd: S,
+struct Batch<'a, P: Packed> {
+    simd: P::Simd,
     law: &'a Law,
-    lanes: Law<Pack<S>>,
+    lanes: Law<P>,
     rules: &'a Rules,
     room: &'a mut Room,
 }
 
-impl<S: Simd> Batch<'_, S> {
+impl<P: Packed> Batch<'_, P> {
+    /// Works off the queue of a phase, as a function of its own: all four in one take the compiler
+    /// minutes.
+    #[inline(never)]
+    fn phase(&mut self, phase: Phase) {
+        match phase {
+            Phase::Flight => self.simd.vectorize(
+                #[inline(always)]
+                || self.fly(),
+            ),
+            Phase::Board => self.simd.vectorize(
+                #[inline(always)]
+                || self.press_board(),
+            ),
+            Phase::Ring => self.simd.vectorize(
+                #[inline(always)]
+                || self.press_ring(),
+            ),
+            Phase::Both => self.simd.vectorize(
+                #[inline(always)]
+                || self.press_both(),
+            ),
+        }
+    }
+
     /// Takes a shot through what the lanes do not do, in the scalar form, and queues it again.
     #[cold]
     fn hand_over(&mut self, shot: u32) {
@@ -165,8 +206,8 @@ impl<S: Simd> Batch<'_, S> {
         let queue = self.take_queue(|room| &mut room.flying);
         let fresh = Grip::fresh(self.law);
         let mut seats = Seats::new();
-        for shots in queue.chunks(WIDTH) {
-            for lane in 0..WIDTH {
+        for shots in queue.chunks(P::WIDTH) {
+            for lane in 0..P::WIDTH {
                 // Lanes without a shot repeat the last one.
                 let shot = shots[lane.min(shots.len() - 1)];
                 seats.take(lane, shot, &self.room.shots[shot as usize]);
@@ -180,12 +221,12 @@ impl<S: Simd> Batch<'_, S> {
             seated.state = start.flown(law, dt);
             seated.time_s = seated.time_s + dt;
             let late = law.zero.lit(self.rules.time_limit_s).lt(seated.time_s);
-            let special = (arc.beside_board.lt(dt) | arc.unresolved | late).to_bits();
-            let made = seated.passage.made(law, &seated.state).to_bits();
-            let ring = arc.ring.le(dt).to_bits();
-            let board = arc.board.le(dt).to_bits();
+            let special = P::bits(arc.beside_board.lt(dt) | arc.unresolved | late);
+            let made = P::bits(seated.passage.made(law, &seated.state));
+            let ring = P::bits(arc.ring.le(dt));
+            let board = P::bits(arc.board.le(dt));
             let rose_to = law.zero.lit(-1.0) * law.radius - REACHED_M;
-            let fell = rose_to.lt(seated.state.position_m.2).to_bits();
+            let fell = P::bits(rose_to.lt(seated.state.position_m.2));
             seats.store(&seated);
             for (lane, &shot) in shots.iter().enumerate() {
                 let progress = &mut self.room.shots[shot as usize];
@@ -221,7 +262,7 @@ impl<S: Simd> Batch<'_, S> {
         self.press(Board, Phase::Board, On::Board, |state| {
             let gap = ring_gap(&law, state, longest);
             let leaves = !flight::on_board(&law, state) | gap.reached(&law);
-            let time = move |_: &State<Pack<S>>, push| gap.time(&law, push);
+            let time = move |_: &State<P>, push| gap.time(&law, push);
             (leaves, time)
         });
     }
@@ -231,9 +272,8 @@ impl<S: Simd> Batch<'_, S> {
         let law = self.lanes;
         let longest = law.zero.lit(self.rules.longest_step_s);
         self.press(Ring, Phase::Ring, On::Ring, |state| {
-            let time = move |state: &State<Pack<S>>, push| {
-                exact::time_to_board(&law, state, push, longest)
-            };
+            let time =
+                move |state: &State<P>, push| exact::time_to_board(&law, state, push, longest);
             (exact::board_reached(&law, state), time)
         });
     }
@@ -241,7 +281,7 @@ impl<S: Simd> Batch<'_, S> {
     /// Fills the lanes that are free with shots that wait for `phase`.
     #[inline(always)]
     fn fill(&mut self, seats: &mut Seats, phase: Phase) {
-        for lane in lanes_of(!seats.taken) {
+        for lane in lanes_of(P::ALL & !seats.taken) {
             let Some(shot) = self.room.waiting(phase).pop() else {
                 break;
             };
@@ -258,10 +298,10 @@ impl<S: Simd> Batch<'_, S> {
         surface: T,
         phase: Phase,
         on: fn(Grip) -> On,
-        other: impl Fn(&State<Pack<S>>) -> (PackMask<S>, F),
+        other: impl Fn(&State<P>) -> (P::Mask, F),
     ) where
-        T: Surface<Pack<S>>,
-        F: FnOnce(&State<Pack<S>>, Triple<Pack<S>>) -> Due<Pack<S>>,
+        T: Surface<P>,
+        F: FnOnce(&State<P>, Triple<P>) -> Due<P>,
     {
         let law = self.lanes;
         let longest = law.zero.lit(self.rules.longest_step_s);
@@ -274,9 +314,9 @@ impl<S: Simd> Batch<'_, S> {
             let mut seated = seats.load(self.simd);
             let before = seated.state;
             let (leaves, time_to_other) = other(&before);
-            let suspended = seats.taken != u8::MAX && self.room.others_fill_lanes(phase);
-            let leaves = leaves.to_bits();
-            let out = if suspended { u8::MAX } else { leaves };
+            let suspended = seats.taken != P::ALL && self.room.others_fill(P::WIDTH, phase);
+            let leaves = P::bits(leaves);
+            let out = if suspended { seats.taken } else { leaves };
             for lane in lanes_of(out & seats.taken) {
                 let shot = seats.shot(lane);
                 let progress = &mut self.room.shots[shot as usize];
@@ -304,13 +344,13 @@ impl<S: Simd> Batch<'_, S> {
             seats.store(&seated);
             seats.store_grip(0, &grip);
             let done = step.parted | ends.behind | ends.fell | ends.late;
-            let done = done.to_bits() & seats.taken;
+            let done = P::bits(done) & seats.taken;
             if done == 0 {
                 continue;
             }
-            let parted = step.parted.to_bits();
-            let made = seated.passage.made(&law, &seated.state).to_bits();
-            let (behind, fell) = (ends.behind.to_bits(), ends.fell.to_bits());
+            let parted = P::bits(step.parted);
+            let made = P::bits(seated.passage.made(&law, &seated.state));
+            let (behind, fell) = (P::bits(ends.behind), P::bits(ends.fell));
             for lane in lanes_of(done) {
                 let shot = seats.shot(lane);
                 let progress = &mut self.room.shots[shot as usize];
@@ -343,7 +383,7 @@ impl<S: Simd> Batch<'_, S> {
             if seats.taken == 0 {
                 return;
             }
-            if seats.taken != u8::MAX && self.room.others_fill_lanes(Phase::Both) {
+            if seats.taken != P::ALL && self.room.others_fill(P::WIDTH, Phase::Both) {
                 for lane in lanes_of(seats.taken) {
                     let shot = seats.shot(lane);
                     let progress = &mut self.room.shots[shot as usize];
@@ -367,18 +407,18 @@ impl<S: Simd> Batch<'_, S> {
             let off_ring = step.left[wedge::RING];
             let stepped = law.zero.lt(step.dt);
             let wedged = wedge::wedged(&law, &grips, seats.load_wedged(self.simd), step.dt);
-            let lodged = (lodged_after.le(wedged) & stepped).to_bits();
+            let lodged = P::bits(lodged_after.le(wedged) & stepped);
             let ends = seated.after_step(&law, &before, step.dt, self.rules.time_limit_s);
             seats.store(&seated);
             seats.store_wedged(wedged);
             for i in [wedge::BOARD, wedge::RING] {
                 seats.store_grip(i, &grips[i]);
             }
-            let ended = ((ends.behind | ends.fell | ends.late) & stepped).to_bits();
-            let left = (off_board | off_ring).to_bits();
-            let made = seated.passage.made(&law, &seated.state).to_bits();
-            let (behind, fell) = (ends.behind.to_bits(), ends.fell.to_bits());
-            let (off_board, off_ring) = (off_board.to_bits(), off_ring.to_bits());
+            let ended = P::bits((ends.behind | ends.fell | ends.late) & stepped);
+            let left = P::bits(off_board | off_ring);
+            let made = P::bits(seated.passage.made(&law, &seated.state));
+            let (behind, fell) = (P::bits(ends.behind), P::bits(ends.fell));
+            let (off_board, off_ring) = (P::bits(off_board), P::bits(off_ring));
             for lane in lanes_of((ended | lodged | left) & seats.taken) {
                 let shot = seats.shot(lane);
                 let progress = &mut self.room.shots[shot as usize];

@@ -1,46 +1,47 @@
-//! Eight shots side by side: taken into the lanes one by one, stepped together, and taken out.
+//! Eight or sixteen shots side by side: taken into the lanes one by one, stepped together, and taken out.
 
 use super::contact::Grip;
 use super::exact::{On, Progress};
 use super::passage::Passage;
 use super::state::{Law, State, Triple};
 use super::wedge::{BOARD, RING};
-use crate::lane::{Lane, Pack, PackMask, WIDTH};
-use fearless_simd::Simd;
+use crate::lane::{Bits, Numbers, Packed};
 
-/// What is kept of eight shots between two steps. Lanes that nobody sits in hold what was left there,
+const EMPTY: Numbers = [0.0; Bits::BITS as usize];
+
+/// What is kept of the shots of a pack between two steps. Lanes that nobody sits in hold what was left there,
 /// and are stepped on without harm.
 pub(super) struct Seats {
     /// The nine state variables.
-    block: [[f64; WIDTH]; 9],
-    times: [f64; WIDTH],
-    above: u8,
-    rose_through: u8,
+    block: [Numbers; 9],
+    times: Numbers,
+    above: Bits,
+    rose_through: Bits,
     /// On the one surface, or on board and ring.
     grips: [GripSeats; 2],
-    wedged_s: [f64; WIDTH],
-    shots: [u32; WIDTH],
+    wedged_s: Numbers,
+    shots: [u32; EMPTY.len()],
     /// The lanes that are taken.
-    pub(super) taken: u8,
+    pub(super) taken: Bits,
 }
 
 #[derive(Clone, Copy)]
 struct GripSeats {
-    rolling: u8,
-    spent: u8,
-    no_slip: [f64; WIDTH],
+    rolling: Bits,
+    spent: Bits,
+    no_slip: Numbers,
 }
 
-/// Eight shots as packs.
+/// The shots as packs.
 #[derive(Clone, Copy)]
-pub(super) struct Seated<S: Simd> {
-    pub(super) state: State<Pack<S>>,
-    pub(super) passage: Passage<Pack<S>>,
-    pub(super) time_s: Pack<S>,
+pub(super) struct Seated<P: Packed> {
+    pub(super) state: State<P>,
+    pub(super) passage: Passage<P>,
+    pub(super) time_s: P,
 }
 
 /// The lanes whose bits are set, in order.
-pub(super) fn lanes_of(mut bits: u8) -> impl Iterator<Item = usize> {
+pub(super) fn lanes_of(mut bits: Bits) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
         (bits != 0).then(|| {
             let lane = bits.trailing_zeros() as usize;
@@ -52,14 +53,14 @@ pub(super) fn lanes_of(mut bits: u8) -> impl Iterator<Item = usize> {
 
 /// One lane's bit.
 #[inline(always)]
-pub(super) fn bit(bits: u8, lane: usize) -> bool {
+pub(super) fn bit(bits: Bits, lane: usize) -> bool {
     bits >> lane & 1 == 1
 }
 
 /// Sets one lane's bit.
 #[inline(always)]
-fn put(bits: &mut u8, lane: usize, value: bool) {
-    *bits = *bits & !(1 << lane) | u8::from(value) << lane;
+fn put(bits: &mut Bits, lane: usize, value: bool) {
+    *bits = *bits & !(1 << lane) | Bits::from(value) << lane;
 }
 
 impl Seats {
@@ -67,16 +68,16 @@ impl Seats {
         let grip = GripSeats {
             rolling: 0,
             spent: 0,
-            no_slip: [0.0; WIDTH],
+            no_slip: EMPTY,
         };
         Self {
-            block: [[0.0; WIDTH]; 9],
-            times: [0.0; WIDTH],
+            block: [EMPTY; 9],
+            times: EMPTY,
             above: 0,
             rose_through: 0,
             grips: [grip; 2],
-            wedged_s: [0.0; WIDTH],
-            shots: [0; WIDTH],
+            wedged_s: EMPTY,
+            shots: [0; EMPTY.len()],
             taken: 0,
         }
     }
@@ -154,8 +155,8 @@ impl Seats {
     }
 
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&self, simd: S) -> Seated<S> {
-        let pack = |i: usize| Pack::load(simd, &self.block[i]);
+    pub(super) fn load<P: Packed>(&self, simd: P::Simd) -> Seated<P> {
+        let pack = |i: usize| P::load(simd, &self.block[i]);
         let triple = |i: usize| Triple(pack(i), pack(i + 1), pack(i + 2));
         Seated {
             state: State {
@@ -164,15 +165,15 @@ impl Seats {
                 spin_rad_s: triple(6),
             },
             passage: Passage {
-                above: PackMask::from_bits(simd, self.above),
-                rose_through: PackMask::from_bits(simd, self.rose_through),
+                above: P::mask_of(simd, self.above),
+                rose_through: P::mask_of(simd, self.rose_through),
             },
-            time_s: Pack::load(simd, &self.times),
+            time_s: P::load(simd, &self.times),
         }
     }
 
     #[inline(always)]
-    pub(super) fn store<S: Simd>(&mut self, seated: &Seated<S>) {
+    pub(super) fn store<P: Packed>(&mut self, seated: &Seated<P>) {
         let State {
             position_m: p,
             velocity_m_s: v,
@@ -182,36 +183,36 @@ impl Seats {
         for (row, pack) in self.block.iter_mut().zip(packs) {
             pack.store(row);
         }
-        self.above = seated.passage.above.to_bits();
-        self.rose_through = seated.passage.rose_through.to_bits();
+        self.above = P::bits(seated.passage.above);
+        self.rose_through = P::bits(seated.passage.rose_through);
         seated.time_s.store(&mut self.times);
     }
 
     #[inline(always)]
-    pub(super) fn load_grip<S: Simd>(&self, simd: S, which: usize) -> Grip<Pack<S>> {
+    pub(super) fn load_grip<P: Packed>(&self, simd: P::Simd, which: usize) -> Grip<P> {
         let grip = &self.grips[which];
         Grip {
-            rolling: PackMask::from_bits(simd, grip.rolling),
-            spent: PackMask::from_bits(simd, grip.spent),
-            no_slip: Pack::load(simd, &grip.no_slip),
+            rolling: P::mask_of(simd, grip.rolling),
+            spent: P::mask_of(simd, grip.spent),
+            no_slip: P::load(simd, &grip.no_slip),
         }
     }
 
     #[inline(always)]
-    pub(super) fn store_grip<S: Simd>(&mut self, which: usize, grip: &Grip<Pack<S>>) {
+    pub(super) fn store_grip<P: Packed>(&mut self, which: usize, grip: &Grip<P>) {
         let seats = &mut self.grips[which];
-        seats.rolling = grip.rolling.to_bits();
-        seats.spent = grip.spent.to_bits();
+        seats.rolling = P::bits(grip.rolling);
+        seats.spent = P::bits(grip.spent);
         grip.no_slip.store(&mut seats.no_slip);
     }
 
     #[inline(always)]
-    pub(super) fn load_wedged<S: Simd>(&self, simd: S) -> Pack<S> {
-        Pack::load(simd, &self.wedged_s)
+    pub(super) fn load_wedged<P: Packed>(&self, simd: P::Simd) -> P {
+        P::load(simd, &self.wedged_s)
     }
 
     #[inline(always)]
-    pub(super) fn store_wedged<S: Simd>(&mut self, wedged_s: Pack<S>) {
+    pub(super) fn store_wedged<P: Packed>(&mut self, wedged_s: P) {
         wedged_s.store(&mut self.wedged_s);
     }
 }
@@ -226,22 +227,22 @@ impl GripSeats {
 }
 
 /// How a step in contact ended the shot, lane by lane.
-pub(super) struct Ends<S: Simd> {
-    pub(super) behind: PackMask<S>,
-    pub(super) fell: PackMask<S>,
-    pub(super) late: PackMask<S>,
+pub(super) struct Ends<P: Packed> {
+    pub(super) behind: P::Mask,
+    pub(super) fell: P::Mask,
+    pub(super) late: P::Mask,
 }
 
-impl<S: Simd> Seated<S> {
+impl<P: Packed> Seated<P> {
     /// Brings time and passage up to a step of `dt` from `before`, and tells what ends with it.
     #[inline(always)]
     pub(super) fn after_step(
         &mut self,
-        law: &Law<Pack<S>>,
-        before: &State<Pack<S>>,
-        dt: Pack<S>,
+        law: &Law<P>,
+        before: &State<P>,
+        dt: P,
         time_limit_s: f64,
-    ) -> Ends<S> {
+    ) -> Ends<P> {
         let state = &self.state;
         self.time_s = self.time_s + dt;
         self.passage.step(law, before, state, law.zero.lt(dt));

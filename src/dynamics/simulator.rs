@@ -97,7 +97,7 @@ impl Simulator {
         match (self.integrator, self.lanes.0) {
             (Integrator::Exact { .. }, Some(level)) => {
                 fearless_simd::dispatch!(level, simd => {
-                    batch::run(simd, &self.law, &self.rules, starts, room)
+                    batch::run_as_wide_as_pays(simd, &self.law, &self.rules, starts, room)
                 });
             }
             _ => {

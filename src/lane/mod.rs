@@ -5,10 +5,13 @@
 //! IEEE 754 rounds exactly (`+ - * /`, square root, comparisons) are in the trait and nothing is
 //! fused, so every width gives the same bits.
 
+mod twin;
 mod vector;
 
-pub(crate) use vector::{Pack, PackMask, WIDTH};
+pub(crate) use twin::Twin;
+pub(crate) use vector::Pack;
 
+use fearless_simd::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// Truth values of a comparison, one per lane.
@@ -72,6 +75,34 @@ pub trait Lane:
     fn squared(self) -> Self {
         self * self
     }
+}
+
+/// As many bits as there may be lanes; lane `i` is bit `i`.
+pub(crate) type Bits = u16;
+
+/// Room for as many numbers as there may be lanes.
+pub(crate) type Numbers = [f64; Bits::BITS as usize];
+
+/// Lanes of a vector instruction set, to be filled from memory.
+pub(crate) trait Packed: Lane {
+    /// The instruction set.
+    type Simd: Simd;
+
+    /// The number of lanes.
+    const WIDTH: usize;
+    /// Every lane's bit.
+    const ALL: Bits = Bits::MAX >> (Bits::BITS as usize - Self::WIDTH);
+
+    /// `value` in every lane.
+    fn splat(simd: Self::Simd, value: f64) -> Self;
+    /// The first numbers of `values`.
+    fn load(simd: Self::Simd, values: &[f64]) -> Self;
+    /// Writes the first numbers of `values`.
+    fn store(self, values: &mut [f64]);
+    /// The truth values that `bits` holds.
+    fn mask_of(simd: Self::Simd, bits: Bits) -> Self::Mask;
+    /// Truth values as bits.
+    fn bits(mask: Self::Mask) -> Bits;
 }
 
 impl Mask for bool {

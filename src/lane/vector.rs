@@ -1,12 +1,9 @@
 //! Eight numbers side by side, on whatever vector registers the machine has.
 
-use super::{Lane, Mask};
+use super::{Bits, Lane, Mask, Packed};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x8, mask64x8};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
-
-/// Lanes of a [`Pack`].
-pub(crate) const WIDTH: usize = 8;
 
 /// Eight numbers under the instruction set `S`.
 #[derive(Clone, Copy)]
@@ -16,34 +13,30 @@ pub(crate) struct Pack<S: Simd>(f64x8<S>);
 #[derive(Clone, Copy)]
 pub(crate) struct PackMask<S: Simd>(mask64x8<S>);
 
-impl<S: Simd> Pack<S> {
+impl<S: Simd> Packed for Pack<S> {
+    type Simd = S;
+
+    const WIDTH: usize = 8;
+
     #[inline(always)]
-    pub(crate) fn splat(simd: S, value: f64) -> Self {
+    fn splat(simd: S, value: f64) -> Self {
         Self(f64x8::splat(simd, value))
     }
-
     #[inline(always)]
-    pub(crate) fn load(simd: S, values: &[f64; WIDTH]) -> Self {
-        Self(f64x8::from_slice(simd, values))
+    fn load(simd: S, values: &[f64]) -> Self {
+        Self(f64x8::from_slice(simd, &values[..Self::WIDTH]))
     }
-
     #[inline(always)]
-    pub(crate) fn store(self, values: &mut [f64; WIDTH]) {
-        self.0.store_slice(values);
+    fn store(self, values: &mut [f64]) {
+        self.0.store_slice(&mut values[..Self::WIDTH]);
     }
-}
-
-impl<S: Simd> PackMask<S> {
-    /// Lane `i` is bit `i`.
     #[inline(always)]
-    pub(crate) fn from_bits(simd: S, bits: u8) -> Self {
-        Self(mask64x8::from_bitmask(simd, u64::from(bits)))
+    fn mask_of(simd: S, bits: Bits) -> PackMask<S> {
+        PackMask(mask64x8::from_bitmask(simd, u64::from(bits & 0xff)))
     }
-
-    /// Lane `i` is bit `i`.
     #[inline(always)]
-    pub(crate) fn to_bits(self) -> u8 {
-        self.0.to_bitmask() as u8
+    fn bits(mask: PackMask<S>) -> Bits {
+        mask.0.to_bitmask() as Bits
     }
 }
 
@@ -119,7 +112,7 @@ impl<S: Simd> Lane for Pack<S> {
 
     #[inline(always)]
     fn lit(self, value: f64) -> Self {
-        Self::splat(self.0.simd, value)
+        Self(f64x8::splat(self.0.simd, value))
     }
     #[inline(always)]
     fn mask(self, value: bool) -> PackMask<S> {
