@@ -10,9 +10,10 @@
 
 use super::contact::REACHED_M;
 use super::contact::{self, Due, Grip};
-use super::exact::{self, MOST_STRETCHES, On, Progress, Rules, ring_gap};
+use super::exact::{self, MOST_STRETCHES, On, Rules, ring_gap};
 use super::flight::{self, Arc};
-use super::outcome::{Contacts, Ending, Touched, Verdict};
+use super::outcome::{Ending, Touched};
+use super::room::{Phase, Room};
 use super::seats::{Seats, bit, lanes_of};
 use super::state::{Law, State, Triple};
 use super::surface::{Board, Ring, Surface};
@@ -20,199 +21,128 @@ use super::wedge;
 use crate::lane::{Pack, Packed, Twin};
 use fearless_simd::Simd;
 
-/// Room for a batch, to be used again and again: nothing is allocated once it has grown.
-#[derive(Debug, Default)]
-pub struct Room {
-    shots: Vec<Progress>,
-    pub(super) verdicts: Vec<Verdict>,
-    flying: Vec<u32>,
-    on_board: Vec<u32>,
-    on_ring: Vec<u32>,
-    on_both: Vec<u32>,
-    queue: Vec<u32>,
-}
-
-/// Runs the shots of `starts` to their ends; the verdicts are then in the room. Sixteen at a time where
-/// one register holds eight, so that two chains of operations run side by side; else eight, which
-/// then are such chains already.
+/// Runs the shots of `starts` to their ends; the verdicts are then in the room.
 #[inline(always)]
-pub(super) fn run_as_wide_as_pays<S: Simd>(
-    simd: S,
-    law: &Law,
-    rules: &Rules,
-    starts: &[State],
-    room: &mut Room,
-) {
-    if size_of::<S::f64s>() == size_of::<[f64; 8]>() {
-        run::<Twin<Pack<S>>>(simd, law, rules, starts, room);
-    } else {
-        run::<Pack<S>>(simd, law, rules, starts, room);
-    }
-}
-
-#[inline(always)]
-fn run<P: Packed>(simd: P::Simd, law: &Law, rules: &Rules, starts: &[State], room: &mut Room) {
-    room.shots.clear();
-    room.shots
-        .extend(starts.iter().map(|start| Progress::at_release(law, *start)));
-    room.verdicts.clear();
-    room.verdicts.resize(starts.len(), PENDING);
-    let lanes = law.map(|value| P::splat(simd, value));
-    let mut batch: Batch<P> = Batch {
+pub(super) fn run<S: Simd>(simd: S, law: &Law, rules: &Rules, starts: &[State], room: &mut Room) {
+    room.open(starts.len());
+    let mut batch = Batch {
         simd,
         law,
-        lanes,
         rules,
         room,
     };
-    for (shot, start) in starts.iter().enumerate() {
-        if exact::pressed_at_start(law, start) == (false, false) {
-            batch.room.flying.push(shot as u32);
-        } else {
-            batch.room.verdicts[shot] = exact::run(law, rules, *start, &mut ());
+    loop {
+        batch.room.admit(law, rules, starts);
+        if batch.room.is_empty() {
+            return;
+        }
+        for phase in [Phase::Flight, Phase::Board, Phase::Ring, Phase::Both] {
+            batch.phase(phase);
         }
     }
-    while !batch.room.is_done() {
-        batch.phase(Phase::Flight);
-        batch.phase(Phase::Board);
-        batch.phase(Phase::Ring);
-        batch.phase(Phase::Both);
-    }
 }
 
-/// What the shots of a queue wait for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Phase {
-    Flight,
-    Board,
-    Ring,
-    Both,
-}
-
-impl Room {
-    fn queues(&self) -> [(Phase, &Vec<u32>); 4] {
-        [
-            (Phase::Flight, &self.flying),
-            (Phase::Board, &self.on_board),
-            (Phase::Ring, &self.on_ring),
-            (Phase::Both, &self.on_both),
-        ]
-    }
-
-    fn is_done(&self) -> bool {
-        self.queues().iter().all(|(_, queue)| queue.is_empty())
-    }
-
-    /// The shots that wait for a phase.
-    fn waiting(&mut self, phase: Phase) -> &mut Vec<u32> {
-        match phase {
-            Phase::Flight => &mut self.flying,
-            Phase::Board => &mut self.on_board,
-            Phase::Ring => &mut self.on_ring,
-            Phase::Both => &mut self.on_both,
-        }
-    }
-
-    /// Is there enough to do elsewhere to leave a phase of which not all lanes can be filled?
-    fn others_fill(&self, lanes: usize, phase: Phase) -> bool {
-        let fills = |(other, queue): &(Phase, &Vec<u32>)| *other != phase && queue.len() >= lanes;
-        self.queues().iter().any(fills)
-    }
-
-    /// Queues a shot for what it is on.
-    fn wait(&mut self, shot: u32) {
-        let phase = match self.shots[shot as usize].on {
-            On::Nothing => Phase::Flight,
-            On::Board(_) => Phase::Board,
-            On::Ring(_) => Phase::Ring,
-            On::Both { .. } => Phase::Both,
-        };
-        self.waiting(phase).push(shot);
-    }
-}
-
-struct Batch<'a, P: Packed> {
-    simd: P::Simd,
+struct Batch<'a, S: Simd> {
+    simd: S,
     law: &'a Law,
-    lanes: Law<P>,
     rules: &'a Rules,
     room: &'a mut Room,
 }
 
-impl<P: Packed> Batch<'_, P> {
-    /// Works off the queue of a phase, as a function of its own: all four in one take the compiler
-    /// minutes.
-    #[inline(never)]
+/// Lanes of the narrow packs and of the wide ones.
+const LEAST_WIDTH: usize = 8;
+const MOST_WIDTH: usize = 16;
+
+/// Eight shots side by side.
+type Narrow<S> = Pack<S>;
+/// Sixteen.
+type Wide<S> = Twin<Pack<S>>;
+
+impl<S: Simd> Batch<'_, S> {
+    /// Sixteen shots at a time pay where one register holds eight, for there they are two chains of
+    /// operations that do not wait for one another. Elsewhere eight are such chains already.
+    const WIDE: bool = size_of::<S::f64s>() == size_of::<[f64; 8]>();
+
+    /// Works off the queue of a phase.
     fn phase(&mut self, phase: Phase) {
         match phase {
-            Phase::Flight => self.simd.vectorize(
+            Phase::Flight if Self::WIDE => self.apart(
                 #[inline(always)]
-                || self.fly(),
+                |batch: &mut Self| batch.fly::<Wide<S>>(),
             ),
-            Phase::Board => self.simd.vectorize(
+            Phase::Flight => self.apart(
                 #[inline(always)]
-                || self.press_board(),
+                |batch: &mut Self| batch.fly::<Narrow<S>>(),
             ),
-            Phase::Ring => self.simd.vectorize(
+            Phase::Board => {
+                if Self::WIDE {
+                    self.apart(
+                        #[inline(always)]
+                        |batch: &mut Self| batch.press_board::<Wide<S>>(),
+                    );
+                }
+                self.apart(
+                    #[inline(always)]
+                    |batch: &mut Self| batch.press_board::<Narrow<S>>(),
+                );
+            }
+            Phase::Ring => {
+                if Self::WIDE {
+                    self.apart(
+                        #[inline(always)]
+                        |batch: &mut Self| batch.press_ring::<Wide<S>>(),
+                    );
+                }
+                self.apart(
+                    #[inline(always)]
+                    |batch: &mut Self| batch.press_ring::<Narrow<S>>(),
+                );
+            }
+            Phase::Both => self.apart(
                 #[inline(always)]
-                || self.press_ring(),
-            ),
-            Phase::Both => self.simd.vectorize(
-                #[inline(always)]
-                || self.press_both(),
+                |batch: &mut Self| batch.press_both::<Narrow<S>>(),
             ),
         }
+    }
+
+    /// Does some work as a function of its own: all in one would take the compiler minutes.
+    #[inline(never)]
+    fn apart(&mut self, work: impl FnOnce(&mut Self)) {
+        self.simd.vectorize(
+            #[inline(always)]
+            || work(self),
+        );
     }
 
     /// Takes a shot through what the lanes do not do, in the scalar form, and queues it again.
     #[cold]
     fn hand_over(&mut self, shot: u32) {
-        let progress = &mut self.room.shots[shot as usize];
+        let progress = &mut self.room.slots[shot as usize];
         if progress.stretches >= MOST_STRETCHES {
-            self.finish(shot, Ending::Unresolved, false);
+            self.room.finish(shot, Ending::Unresolved, false);
             return;
         }
         progress.stretches += 1;
         match exact::stretch(self.law, self.rules, progress) {
-            Some(verdict) => self.room.verdicts[shot as usize] = verdict,
+            Some(verdict) => self.room.settle(shot, verdict),
             None => self.room.wait(shot),
         }
     }
 
-    fn finish(&mut self, shot: u32, ending: Ending, made: bool) {
-        let progress = &self.room.shots[shot as usize];
-        self.room.verdicts[shot as usize] = Verdict {
-            made,
-            ending,
-            contacts: progress.contacts,
-            time_s: progress.time_s,
-        };
-    }
-
-    /// A queue to work off, with an empty one in its place; to be given back to `room.queue`.
-    fn take_queue(&mut self, of: impl Fn(&mut Room) -> &mut Vec<u32>) -> Vec<u32> {
-        let spare = std::mem::take(&mut self.room.queue);
-        std::mem::replace(of(self.room), spare)
-    }
-
-    fn give_back(&mut self, mut queue: Vec<u32>) {
-        queue.clear();
-        self.room.queue = queue;
-    }
-
     /// Flies every shot of the queue to its end or its next touch.
     #[inline(always)]
-    fn fly(&mut self) {
-        let queue = self.take_queue(|room| &mut room.flying);
+    fn fly<P: Packed<Simd = S>>(&mut self) {
+        let law = self.law.map(|value| P::splat(self.simd, value));
+        let law = &law;
+        let queue = self.room.take_flying();
         let fresh = Grip::fresh(self.law);
         let mut seats = Seats::new();
         for shots in queue.chunks(P::WIDTH) {
             for lane in 0..P::WIDTH {
                 // Lanes without a shot repeat the last one.
                 let shot = shots[lane.min(shots.len() - 1)];
-                seats.take(lane, shot, &self.room.shots[shot as usize]);
+                seats.take(lane, shot, &self.room.slots[shot as usize]);
             }
-            let law = &self.lanes;
             let mut seated = seats.load(self.simd);
             let start = seated.state;
             let arc = Arc::from(law, &start);
@@ -229,7 +159,7 @@ impl<P: Packed> Batch<'_, P> {
             let fell = P::bits(rose_to.lt(seated.state.position_m.2));
             seats.store(&seated);
             for (lane, &shot) in shots.iter().enumerate() {
-                let progress = &mut self.room.shots[shot as usize];
+                let progress = &mut self.room.slots[shot as usize];
                 progress.on = On::Nothing;
                 if bit(special, lane) || progress.stretches >= MOST_STRETCHES {
                     self.hand_over(shot);
@@ -246,18 +176,18 @@ impl<P: Packed> Batch<'_, P> {
                     progress.on = On::Board(fresh);
                     self.room.on_board.push(shot);
                 } else if bit(fell, lane) {
-                    self.finish(shot, Ending::Fell, bit(made, lane));
+                    self.room.finish(shot, Ending::Fell, bit(made, lane));
                 } else {
-                    self.finish(shot, Ending::NeverRose, false);
+                    self.room.finish(shot, Ending::NeverRose, false);
                 }
             }
         }
-        self.give_back(queue);
+        self.room.give_back(queue);
     }
 
     #[inline(always)]
-    fn press_board(&mut self) {
-        let law = self.lanes;
+    fn press_board<P: Packed<Simd = S>>(&mut self) {
+        let law = self.law.map(|value| P::splat(self.simd, value));
         let longest = law.zero.lit(self.rules.longest_step_s);
         self.press(Board, Phase::Board, On::Board, |state| {
             let gap = ring_gap(&law, state, longest);
@@ -268,8 +198,8 @@ impl<P: Packed> Batch<'_, P> {
     }
 
     #[inline(always)]
-    fn press_ring(&mut self) {
-        let law = self.lanes;
+    fn press_ring<P: Packed<Simd = S>>(&mut self) {
+        let law = self.law.map(|value| P::splat(self.simd, value));
         let longest = law.zero.lit(self.rules.longest_step_s);
         self.press(Ring, Phase::Ring, On::Ring, |state| {
             let time =
@@ -280,12 +210,12 @@ impl<P: Packed> Batch<'_, P> {
 
     /// Fills the lanes that are free with shots that wait for `phase`.
     #[inline(always)]
-    fn fill(&mut self, seats: &mut Seats, phase: Phase) {
+    fn fill<P: Packed<Simd = S>>(&mut self, seats: &mut Seats, phase: Phase) {
         for lane in lanes_of(P::ALL & !seats.taken) {
             let Some(shot) = self.room.waiting(phase).pop() else {
                 break;
             };
-            seats.take(lane, shot, &self.room.shots[shot as usize]);
+            seats.take(lane, shot, &self.room.slots[shot as usize]);
         }
     }
 
@@ -293,33 +223,37 @@ impl<P: Packed> Batch<'_, P> {
     /// the lanes and others to run first. `other` tells that the contact is no longer one with this
     /// surface alone, and gives the time until then.
     #[inline(always)]
-    fn press<T, F>(
+    fn press<P, T, F>(
         &mut self,
         surface: T,
         phase: Phase,
         on: fn(Grip) -> On,
         other: impl Fn(&State<P>) -> (P::Mask, F),
     ) where
+        P: Packed<Simd = S>,
         T: Surface<P>,
         F: FnOnce(&State<P>, Triple<P>) -> Due<P>,
     {
-        let law = self.lanes;
+        let law = self.law.map(|value| P::splat(self.simd, value));
         let longest = law.zero.lit(self.rules.longest_step_s);
         let mut seats = Seats::new();
         loop {
-            self.fill(&mut seats, phase);
+            self.fill::<P>(&mut seats, phase);
             if seats.taken == 0 {
                 return;
             }
             let mut seated = seats.load(self.simd);
             let before = seated.state;
             let (leaves, time_to_other) = other(&before);
-            let suspended = seats.taken != P::ALL && self.room.others_fill(P::WIDTH, phase);
+            // Half of the lanes can be filled as well in a narrower pack.
+            let few = seats.taken.count_ones() as usize <= P::WIDTH / 2 && P::WIDTH > LEAST_WIDTH;
+            let suspended =
+                few || seats.taken != P::ALL && self.room.others_fill(MOST_WIDTH, phase);
             let leaves = P::bits(leaves);
             let out = if suspended { seats.taken } else { leaves };
             for lane in lanes_of(out & seats.taken) {
                 let shot = seats.shot(lane);
-                let progress = &mut self.room.shots[shot as usize];
+                let progress = &mut self.room.slots[shot as usize];
                 seats.leave(lane, progress);
                 progress.on = on(seats.grip(0, lane));
                 if bit(leaves, lane) {
@@ -353,16 +287,16 @@ impl<P: Packed> Batch<'_, P> {
             let (behind, fell) = (P::bits(ends.behind), P::bits(ends.fell));
             for lane in lanes_of(done) {
                 let shot = seats.shot(lane);
-                let progress = &mut self.room.shots[shot as usize];
+                let progress = &mut self.room.slots[shot as usize];
                 seats.leave(lane, progress);
                 if bit(parted, lane) {
                     self.room.flying.push(shot);
                 } else if bit(behind, lane) {
-                    self.finish(shot, Ending::BehindBoard, false);
+                    self.room.finish(shot, Ending::BehindBoard, false);
                 } else if bit(fell, lane) {
-                    self.finish(shot, Ending::Fell, bit(made, lane));
+                    self.room.finish(shot, Ending::Fell, bit(made, lane));
                 } else {
-                    self.finish(shot, Ending::TimeLimit, false);
+                    self.room.finish(shot, Ending::TimeLimit, false);
                 }
             }
         }
@@ -370,8 +304,8 @@ impl<P: Packed> Batch<'_, P> {
 
     /// Steps the shots on board and ring until one contact is left or the ball has lodged.
     #[inline(always)]
-    fn press_both(&mut self) {
-        let law = self.lanes;
+    fn press_both<P: Packed<Simd = S>>(&mut self) {
+        let law = self.law.map(|value| P::splat(self.simd, value));
         let longest = law.zero.lit(self.rules.longest_step_s);
         let lodged_after = match self.rules.lodged_after_s {
             after if after > 0.0 => law.zero.lit(after),
@@ -379,14 +313,14 @@ impl<P: Packed> Batch<'_, P> {
         };
         let mut seats = Seats::new();
         loop {
-            self.fill(&mut seats, Phase::Both);
+            self.fill::<P>(&mut seats, Phase::Both);
             if seats.taken == 0 {
                 return;
             }
-            if seats.taken != P::ALL && self.room.others_fill(P::WIDTH, Phase::Both) {
+            if seats.taken != P::ALL && self.room.others_fill(MOST_WIDTH, Phase::Both) {
                 for lane in lanes_of(seats.taken) {
                     let shot = seats.shot(lane);
-                    let progress = &mut self.room.shots[shot as usize];
+                    let progress = &mut self.room.slots[shot as usize];
                     seats.leave(lane, progress);
                     progress.on = On::Both {
                         grips: [wedge::BOARD, wedge::RING].map(|i| seats.grip(i, lane)),
@@ -421,18 +355,18 @@ impl<P: Packed> Batch<'_, P> {
             let (off_board, off_ring) = (P::bits(off_board), P::bits(off_ring));
             for lane in lanes_of((ended | lodged | left) & seats.taken) {
                 let shot = seats.shot(lane);
-                let progress = &mut self.room.shots[shot as usize];
+                let progress = &mut self.room.slots[shot as usize];
                 seats.leave(lane, progress);
                 if bit(ended, lane) {
                     if bit(behind, lane) {
-                        self.finish(shot, Ending::BehindBoard, false);
+                        self.room.finish(shot, Ending::BehindBoard, false);
                     } else if bit(fell, lane) {
-                        self.finish(shot, Ending::Fell, bit(made, lane));
+                        self.room.finish(shot, Ending::Fell, bit(made, lane));
                     } else {
-                        self.finish(shot, Ending::TimeLimit, false);
+                        self.room.finish(shot, Ending::TimeLimit, false);
                     }
                 } else if bit(lodged, lane) {
-                    self.finish(shot, Ending::Wedged, false);
+                    self.room.finish(shot, Ending::Wedged, false);
                 } else {
                     let grips = [wedge::BOARD, wedge::RING].map(|i| seats.grip(i, lane));
                     let left = [bit(off_board, lane), bit(off_ring, lane)];
@@ -443,11 +377,3 @@ impl<P: Packed> Batch<'_, P> {
         }
     }
 }
-
-/// A verdict to be overwritten.
-const PENDING: Verdict = Verdict {
-    made: false,
-    ending: Ending::Unresolved,
-    contacts: Contacts::NONE,
-    time_s: 0.0,
-};

@@ -1,12 +1,13 @@
 //! The interface to the dynamics: physics and integrator in, outcomes out.
 
-use super::batch::{self, Room};
+use super::batch;
 use super::exact::{self, Rules};
 use super::flight::Arc;
 use super::lanes::Lanes;
 use super::outcome::{Outcome, Touched, Verdict};
 use super::paper::{self, Steps};
 use super::release::Release;
+use super::room::Room;
 use super::state::{Law, State};
 use super::trace::{Recorder, Trace};
 use super::watch::{Summary, Watch};
@@ -97,7 +98,7 @@ impl Simulator {
         match (self.integrator, self.lanes.0) {
             (Integrator::Exact { .. }, Some(level)) => {
                 fearless_simd::dispatch!(level, simd => {
-                    batch::run_as_wide_as_pays(simd, &self.law, &self.rules, starts, room)
+                    batch::run(simd, &self.law, &self.rules, starts, room)
                 });
             }
             _ => {
