@@ -62,14 +62,14 @@ impl<L: Lane> Arc<L> {
 #[inline(always)]
 pub(crate) fn falling_time<L: Lane>(law: &Law<L>, z: L, vz: L, level: L) -> L {
     let square = vz.squared() + law.gravity * (z - level) * 2.0;
-    (vz + square.most(law.zero).sqrt()) / law.gravity
+    (vz + square.most(law.zero).sqrt()) * law.per_gravity
 }
 
 /// Time at which the centre rises through `level`; meaningful only if it starts below and gets there.
 #[inline(always)]
 pub(crate) fn rising_time<L: Lane>(law: &Law<L>, z: L, vz: L, level: L) -> L {
     let square = vz.squared() + law.gravity * (z - level) * 2.0;
-    (vz - square.most(law.zero).sqrt()) / law.gravity
+    (vz - square.most(law.zero).sqrt()) * law.per_gravity
 }
 
 /// Times at which the ball touches the board, and at which it reaches its plane beside it.
@@ -157,10 +157,9 @@ fn ring_time<L: Lane>(law: &Law<L>, state: &State<L>, horizon: L) -> (L, L::Mask
             let root = (half_slope.squared() + bend * value.most(law.zero)).sqrt();
             let closing = half_slope.le(law.zero);
             let away = law.zero.lt(bend);
-            let s = (value / (root - half_slope).when(closing, law.one)).when(
-                closing,
-                ((half_slope + root) / bend.when(away, law.one)).when(away, law.never),
-            );
+            let over = value.when(closing, (half_slope + root).when(away, law.never));
+            let under = (root - half_slope).when(closing, bend.when(away, law.one));
+            let s = over / under;
             let touch = closing & value.le(touched) & searching;
             found = t.when(touch, found);
             // Jumps over stretches where no touch is possible.

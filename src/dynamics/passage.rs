@@ -32,7 +32,7 @@ impl<L: Lane> Passage<L> {
         let Triple(x, y, z) = start.position_m;
         let Triple(vx, vy, vz) = start.velocity_m_s;
         let square = vz.squared() + law.gravity * z * 2.0;
-        let t = (vz - square.most(law.zero).sqrt()) / law.gravity;
+        let t = (vz - square.most(law.zero).sqrt()) * law.per_gravity;
         let rises = z.lt(law.zero) & law.zero.le(square) & law.zero.lt(vz) & t.lt(dt);
         let distance_square = (x + vx * t).squared() + (y + vy * t).squared();
         let inside = distance_square.lt(law.ring_radius.squared());

@@ -140,6 +140,8 @@ pub(crate) struct Law<L = f64> {
     pub(crate) board_top_z: L,
     pub(crate) gravity: L,
     pub(crate) half_gravity: L,
+    /// 1/g, s^2/m.
+    pub(crate) per_gravity: L,
     /// k/m, 1/s^2.
     pub(crate) stiffness: L,
     /// c/m, 1/s.
@@ -169,6 +171,7 @@ impl Law {
             board_top_z: physics.board_centre_height_m + half_height,
             gravity: physics.gravity_m_s2,
             half_gravity: 0.5 * physics.gravity_m_s2,
+            per_gravity: 1.0 / physics.gravity_m_s2,
             stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
             damping: physics.damping_kg_s / physics.ball_mass_kg,
             friction: physics.friction,
@@ -192,6 +195,7 @@ impl Law {
             board_top_z: lit(self.board_top_z),
             gravity: lit(self.gravity),
             half_gravity: lit(self.half_gravity),
+            per_gravity: lit(self.per_gravity),
             stiffness: lit(self.stiffness),
             damping: lit(self.damping),
             friction: lit(self.friction),

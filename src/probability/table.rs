@@ -157,14 +157,19 @@ impl Table {
         let block = builder.speeds.len() * builder.spins.len();
         let mut sums = vec![0.0; plan.pitch.count * plan.polar.count * block];
         progress.begin("simulating", plan.shots);
-        sums.par_chunks_mut(block).enumerate().for_each_init(
-            Workplace::default,
-            |place, (pair, block)| {
-                let cell = (pair / plan.polar.count, pair % plan.polar.count);
-                builder.fill(cell, block, place);
-                progress.advance((plan.backspin.count * plan.speeds_per_line) as u64);
-            },
-        );
+        let shots_of_cell = plan.backspin.count * plan.speeds_per_line;
+        let cells = (BATCH_SHOTS / shots_of_cell).max(1);
+        sums.par_chunks_mut(block * cells)
+            .enumerate()
+            .for_each_init(Workplace::default, |place, (batch, blocks)| {
+                let count = blocks.len() / block;
+                let cells = (batch * cells..).take(count).map(|pair| {
+                    let (pitch, polar) = (pair / plan.polar.count, pair % plan.polar.count);
+                    (pitch, polar)
+                });
+                builder.fill(cells, blocks.chunks_mut(block), place);
+                progress.advance((count * shots_of_cell) as u64);
+            });
         progress.end();
         Self {
             plan: plan.clone(),
@@ -207,12 +212,18 @@ impl Table {
     }
 }
 
+/// Shots that are simulated together: the more, the better they fill the lanes to the end; the fewer,
+/// the better they spread over threads.
+const BATCH_SHOTS: usize = 8192;
+
 /// Memory that each thread uses from cell to cell.
 #[derive(Default)]
 struct Workplace {
     room: Room,
     starts: Vec<crate::dynamics::State>,
     speeds: Vec<f64>,
+    /// Of each cell.
+    lines: Vec<Option<Axis>>,
     sums: Vec<f64>,
 }
 
@@ -228,22 +239,70 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Simulates the lines of one (pitch, polar) cell and sums them over speed and backspin.
-    fn fill(&self, (pitch, polar): (usize, usize), block: &mut [f64], place: &mut Workplace) {
+    /// Simulates the lines of some (pitch, polar) cells together and sums those of each over speed and
+    /// backspin.
+    fn fill<'a>(
+        &self,
+        cells: impl Iterator<Item = (usize, usize)> + Clone,
+        blocks: impl Iterator<Item = &'a mut [f64]>,
+        place: &mut Workplace,
+    ) {
+        place.starts.clear();
+        place.speeds.clear();
+        place.lines.clear();
+        for cell in cells.clone() {
+            self.draw(cell, place);
+        }
+        let verdicts = self.simulator.verdicts(&place.starts, &mut place.room);
+        let mut verdicts = verdicts.iter();
+        let mut speeds = place.speeds.iter();
+        for ((cell, line), block) in cells.zip(&place.lines).zip(blocks) {
+            let Some(line) = line else {
+                continue;
+            };
+            for spin_rad_s in self.spins_of(cell) {
+                place.sums.clear();
+                place.sums.resize(self.speeds.len(), 0.0);
+                let mut made = false;
+                let shots = verdicts.by_ref().zip(speeds.by_ref()).take(line.count);
+                for (verdict, &speed) in shots {
+                    if verdict.made {
+                        made = true;
+                        for (sum, &nominal) in place.sums.iter_mut().zip(&self.speeds) {
+                            *sum += weight(speed, nominal, line.step());
+                        }
+                    }
+                }
+                if made {
+                    let rows = block.chunks_mut(self.speeds.len());
+                    for (row, &nominal) in rows.zip(&self.spins) {
+                        let weight = weight(spin_rad_s, nominal, self.plan.backspin.step());
+                        add(row, weight, &place.sums);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Lays out the shots of a cell: a line of speeds for each backspin, or none where no speed of the
+    /// plan's is in the bracket.
+    fn draw(&self, (pitch, polar): (usize, usize), place: &mut Workplace) {
         let plan = self.plan;
         let pitch_rad = plan.pitch.value(pitch, 0.5);
         let polar_rad = plan.polar.value(polar, points_of_line::polar(pitch));
-        let Some((least, most)) = plan.bracket.speeds_m_s(pitch_rad, polar_rad) else {
+        let line = plan
+            .bracket
+            .speeds_m_s(pitch_rad, polar_rad)
+            .map(|(least, most)| Axis {
+                low: least.max(plan.speed_m_s.0),
+                high: most.min(plan.speed_m_s.1),
+                count: plan.speeds_per_line,
+            })
+            .filter(|line| line.low < line.high);
+        place.lines.push(line);
+        let Some(line) = line else {
             return;
         };
-        let line = Axis {
-            low: least.max(plan.speed_m_s.0),
-            high: most.min(plan.speed_m_s.1),
-            count: plan.speeds_per_line,
-        };
-        if !(line.low < line.high) {
-            return;
-        }
         let aim = Aim::new(&self.profile.release(&Nominal {
             speed_m_s: 0.0,
             pitch_rad,
@@ -252,40 +311,18 @@ impl Builder<'_> {
             rifle_spin_rad_s: plan.nominal.rifle_spin_rad_s,
             side_spin_rad_s: plan.nominal.side_spin_rad_s,
         }));
-        place.starts.clear();
-        place.speeds.clear();
-        let spins = plan.backspin.values(points_of_line::spin(pitch, polar));
-        for (spin, spin_rad_s) in spins.clone().enumerate() {
+        for (spin, spin_rad_s) in self.spins_of((pitch, polar)).enumerate() {
             for speed in line.values(points_of_line::speed(pitch, polar, spin)) {
                 place.speeds.push(speed);
                 place.starts.push(aim.state(speed, spin_rad_s));
             }
         }
-        let verdicts = self.simulator.verdicts(&place.starts, &mut place.room);
-        let lines = verdicts
-            .chunks(line.count)
-            .zip(place.speeds.chunks(line.count))
-            .zip(spins);
-        for ((verdicts, speeds), spin_rad_s) in lines {
-            place.sums.clear();
-            place.sums.resize(self.speeds.len(), 0.0);
-            let mut made = false;
-            for (verdict, &speed) in verdicts.iter().zip(speeds) {
-                if verdict.made {
-                    made = true;
-                    for (sum, &nominal) in place.sums.iter_mut().zip(&self.speeds) {
-                        *sum += weight(speed, nominal, line.step());
-                    }
-                }
-            }
-            if made {
-                let rows = block.chunks_mut(self.speeds.len());
-                for (row, &nominal) in rows.zip(&self.spins) {
-                    let weight = weight(spin_rad_s, nominal, plan.backspin.step());
-                    add(row, weight, &place.sums);
-                }
-            }
-        }
+    }
+
+    /// The backspins of a cell's lines, rad/s.
+    fn spins_of(&self, (pitch, polar): (usize, usize)) -> impl Iterator<Item = f64> + use<> {
+        let backspin = self.plan.backspin;
+        backspin.values(points_of_line::spin(pitch, polar))
     }
 }
 
