@@ -215,7 +215,9 @@ impl<S: Simd> Batch<'_, S> {
             let Some(shot) = self.room.waiting(phase).pop() else {
                 break;
             };
-            seats.take(lane, shot, &self.room.slots[shot as usize]);
+            let progress = &self.room.slots[shot as usize];
+            seats.take(lane, shot, progress);
+            seats.take_grips(lane, progress);
         }
     }
 

@@ -76,7 +76,7 @@ pub(crate) struct Due<L> {
 impl<L: Lane> Due<L> {
     /// After `time`.
     #[inline(always)]
-    pub(crate) fn after(law: &Law<L>, time: L) -> Self {
+    fn after(law: &Law<L>, time: L) -> Self {
         Self {
             over: time,
             under: law.one,
@@ -106,6 +106,13 @@ impl<L: Lane> Due<L> {
     #[inline(always)]
     pub(crate) fn earlier(self, other: Self) -> Self {
         self.when(self.by(other), other)
+    }
+
+    /// Or `longest`, if that is earlier.
+    #[inline(always)]
+    pub(crate) fn within(self, law: &Law<L>, longest: L) -> Self {
+        let mask = self.over.le(longest * self.under);
+        self.when(mask, Self::after(law, longest))
     }
 
     /// `factor` times as late.
@@ -178,18 +185,25 @@ impl<L: Lane> Load<L> {
         }
     }
 
-    /// Time until the compression is gone.
+    /// Time until the contact presses no more: until the normal force is zero and, where it is already,
+    /// until the compression is gone. (The force of a ball on its way out is zero first.)
     #[inline(always)]
-    pub(crate) fn time_to_part(&self, law: &Law<L>, touch: &Touch<L>) -> Due<L> {
+    pub(crate) fn time_to_end(&self, law: &Law<L>, touch: &Touch<L>) -> Due<L> {
+        let pressing = law.zero.lit(NO_FORCE_M_S2).lt(self.normal);
         let (u, du, ddu) = (
             touch.compression.most(law.zero),
             -touch.v.0,
             self.squeeze_rate,
         );
-        let guess = first_root(law, u, du, ddu);
-        let time = guess.time();
-        let found = time.lt(law.never);
-        // One Newton step on the Taylor polynomial with u''' = -N' and u'''' = -N''.
+        let end = first_root(
+            law,
+            self.normal.when(pressing, u),
+            self.normal_rate.when(pressing, du),
+            self.normal_curve.when(pressing, ddu),
+        );
+        let time = end.time();
+        let found = time.lt(law.never) & !pressing;
+        // Of the compression, one Newton step on the Taylor polynomial with u''' = -N' and u'''' = -N''.
         let t = time.when(found, law.zero);
         let d3 = -self.normal_rate;
         let d4 = -self.normal_curve;
@@ -200,16 +214,8 @@ impl<L: Lane> Load<L> {
             under: -slope,
         };
         let good = slope.lt(law.zero) & law.zero.lt(better.over) & found;
-        better.when(good, guess)
-    }
-
-    /// Time until the normal force is zero, for a contact that still presses.
-    #[inline(always)]
-    pub(crate) fn time_to_release(&self, law: &Law<L>) -> Due<L> {
-        let pressing = law.zero.lit(NO_FORCE_M_S2).lt(self.normal);
-        let root = first_root(law, self.normal, self.normal_rate, self.normal_curve);
-        root.later(law.zero.lit(BEYOND))
-            .when(pressing, Due::never(law))
+        let release = end.later(law.zero.lit(BEYOND).when(pressing, law.one));
+        better.when(good, release)
     }
 }
 
@@ -388,8 +394,7 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     let back = -need.when(rolling, limit);
 
     // 3. The step ends at the first event.
-    let to_part = load.time_to_part(law, &touch);
-    let to_release = load.time_to_release(law);
+    let to_end = load.time_to_end(law, &touch);
     let forward = drive.0 * along.0 + drive.1 * along.1;
     let to_change = time_to_change(
         law,
@@ -410,10 +415,9 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
         (&touch, frame),
         Triple(normal, back * along.0, back * along.1),
     );
-    let until = to_part
-        .earlier(to_release)
+    let until = to_end
         .earlier(other(state, k1.acceleration_m_s2))
-        .earlier(Due::after(law, longest));
+        .within(law, longest);
     let landing = to_change.by(until) & !rolling;
     let dt = to_change
         .earlier(until)

@@ -88,7 +88,7 @@ impl Seats {
         self.shots[lane]
     }
 
-    /// Takes a shot in, with its grips.
+    /// Takes a shot in.
     #[inline(always)]
     pub(super) fn take(&mut self, lane: usize, shot: u32, progress: &Progress) {
         let State {
@@ -103,6 +103,13 @@ impl Seats {
         self.times[lane] = progress.time_s;
         put(&mut self.above, lane, progress.passage.above);
         put(&mut self.rose_through, lane, progress.passage.rose_through);
+        self.shots[lane] = shot;
+        put(&mut self.taken, lane, true);
+    }
+
+    /// Takes the grips of a shot in contact in.
+    #[inline(always)]
+    pub(super) fn take_grips(&mut self, lane: usize, progress: &Progress) {
         match &progress.on {
             On::Nothing => {}
             On::Board(grip) | On::Ring(grip) => self.grips[0].set(lane, grip),
@@ -112,8 +119,6 @@ impl Seats {
                 self.wedged_s[lane] = *wedged_s;
             }
         }
-        self.shots[lane] = shot;
-        put(&mut self.taken, lane, true);
     }
 
     /// Takes the shot of a lane out; what it is on is left to say.

@@ -4,8 +4,7 @@
 //! contacts roll, their frictions are coupled: four linear equations say that both slips stay zero.
 
 use super::contact::{
-    self, Balance, Due, Grip, Load, NO_FORCE_M_S2, SHORTEST_S, SLIP_DIRECTION_LOST, size,
-    time_to_change,
+    self, Balance, Grip, Load, NO_FORCE_M_S2, SHORTEST_S, SLIP_DIRECTION_LOST, size, time_to_change,
 };
 use super::state::{Law, Rate, State, Triple};
 use super::surface::{Board, Ring, Surface, Touch};
@@ -353,12 +352,8 @@ pub(crate) fn step<L: Lane>(
         let acceleration = dot(pair.axes[i][0], k1.acceleration_m_s2) + touch.bending();
         Load::new(law, touch, pair.normals[i], acceleration)
     });
-    let mut until = Due::after(law, longest);
-    for i in [BOARD, RING] {
-        until = until
-            .earlier(loads[i].time_to_part(law, &pair.touches[i]))
-            .earlier(loads[i].time_to_release(law));
-    }
+    let ends = each!(i => loads[i].time_to_end(law, &pair.touches[i]));
+    let until = ends[BOARD].earlier(ends[RING]).within(law, longest);
     let changes = each!(i => {
         let (first, second) = frictions[1 - i];
         let drive = pair.driven(i, Triple(pair.normals[1 - i], first, second));
