@@ -138,11 +138,12 @@ impl<S: Simd> Batch<'_, S> {
         let fresh = Grip::fresh(self.law);
         let mut seats = Seats::new();
         for shots in queue.chunks(P::WIDTH) {
-            for lane in 0..P::WIDTH {
-                // Lanes without a shot repeat the last one.
-                let shot = shots[lane.min(shots.len() - 1)];
-                seats.take(lane, shot, &self.room.slots[shot as usize]);
-            }
+            // Lanes without a shot repeat the last one.
+            let mut next = shots
+                .iter()
+                .copied()
+                .chain(std::iter::repeat(shots[shots.len() - 1]));
+            seats.fill(P::ALL, &self.room.slots, || next.next());
             let mut seated = seats.load(self.simd);
             let start = seated.state;
             let arc = Arc::from(law, &start);
@@ -158,28 +159,38 @@ impl<S: Simd> Batch<'_, S> {
             let rose_to = law.zero.lit(-1.0) * law.radius - REACHED_M;
             let fell = P::bits(rose_to.lt(seated.state.position_m.2));
             seats.store(&seated);
-            for (lane, &shot) in shots.iter().enumerate() {
-                let progress = &mut self.room.slots[shot as usize];
+            let mut left = P::ALL >> (P::WIDTH - shots.len());
+            for lane in lanes_of(left) {
+                let progress = &mut self.room.slots[shots[lane] as usize];
                 progress.on = On::Nothing;
                 if bit(special, lane) || progress.stretches >= MOST_STRETCHES {
-                    self.hand_over(shot);
+                    left &= !(1 << lane);
+                    self.hand_over(shots[lane]);
                     continue;
                 }
                 progress.stretches += 1;
                 seats.leave(lane, progress);
-                if bit(ring, lane) {
-                    progress.contacts.push(Touched::Ring);
-                    progress.on = On::Ring(fresh);
-                    self.room.on_ring.push(shot);
-                } else if bit(board, lane) {
-                    progress.contacts.push(Touched::Board);
-                    progress.on = On::Board(fresh);
-                    self.room.on_board.push(shot);
-                } else if bit(fell, lane) {
-                    self.room.finish(shot, Ending::Fell, bit(made, lane));
+            }
+            // End by end: to ask each lane for its end would be to guess wrong as often as not.
+            for lane in lanes_of(left & ring) {
+                let progress = &mut self.room.slots[shots[lane] as usize];
+                progress.contacts.push(Touched::Ring);
+                progress.on = On::Ring(fresh);
+                self.room.on_ring.push(shots[lane]);
+            }
+            for lane in lanes_of(left & board & !ring) {
+                let progress = &mut self.room.slots[shots[lane] as usize];
+                progress.contacts.push(Touched::Board);
+                progress.on = On::Board(fresh);
+                self.room.on_board.push(shots[lane]);
+            }
+            for lane in lanes_of(left & !ring & !board) {
+                let (ending, made) = if bit(fell, lane) {
+                    (Ending::Fell, bit(made, lane))
                 } else {
-                    self.room.finish(shot, Ending::NeverRose, false);
-                }
+                    (Ending::NeverRose, false)
+                };
+                self.room.finish(shots[lane], ending, made);
             }
         }
         self.room.give_back(queue);
@@ -211,14 +222,10 @@ impl<S: Simd> Batch<'_, S> {
     /// Fills the lanes that are free with shots that wait for `phase`.
     #[inline(always)]
     fn fill<P: Packed<Simd = S>>(&mut self, seats: &mut Seats, phase: Phase) {
-        for lane in lanes_of(P::ALL & !seats.taken) {
-            let Some(shot) = self.room.waiting(phase).pop() else {
-                break;
-            };
-            let progress = &self.room.slots[shot as usize];
-            seats.take(lane, shot, progress);
-            seats.take_grips(lane, progress);
-        }
+        let free = P::ALL & !seats.taken();
+        let (slots, queue) = self.room.slots_and_queue(phase);
+        seats.fill(free, slots, || queue.pop());
+        seats.take_grips(free, slots);
     }
 
     /// Steps the shots that wait for one surface until they part, or until there are too few to fill
@@ -241,19 +248,19 @@ impl<S: Simd> Batch<'_, S> {
         let mut seats = Seats::new();
         loop {
             self.fill::<P>(&mut seats, phase);
-            if seats.taken == 0 {
+            if seats.taken() == 0 {
                 return;
             }
             let mut seated = seats.load(self.simd);
             let before = seated.state;
             let (leaves, time_to_other) = other(&before);
             // Half of the lanes can be filled as well in a narrower pack.
-            let few = seats.taken.count_ones() as usize <= P::WIDTH / 2 && P::WIDTH > LEAST_WIDTH;
+            let few = seats.taken().count_ones() as usize <= P::WIDTH / 2 && P::WIDTH > LEAST_WIDTH;
             let suspended =
-                few || seats.taken != P::ALL && self.room.others_fill(MOST_WIDTH, phase);
+                few || seats.taken() != P::ALL && self.room.others_fill(MOST_WIDTH, phase);
             let leaves = P::bits(leaves);
-            let out = if suspended { seats.taken } else { leaves };
-            for lane in lanes_of(out & seats.taken) {
+            let out = if suspended { seats.taken() } else { leaves };
+            for lane in lanes_of(out & seats.taken()) {
                 let shot = seats.shot(lane);
                 let progress = &mut self.room.slots[shot as usize];
                 seats.leave(lane, progress);
@@ -280,7 +287,7 @@ impl<S: Simd> Batch<'_, S> {
             seats.store(&seated);
             seats.store_grip(0, &grip);
             let done = step.parted | ends.behind | ends.fell | ends.late;
-            let done = P::bits(done) & seats.taken;
+            let done = P::bits(done) & seats.taken();
             if done == 0 {
                 continue;
             }
@@ -316,11 +323,11 @@ impl<S: Simd> Batch<'_, S> {
         let mut seats = Seats::new();
         loop {
             self.fill::<P>(&mut seats, Phase::Both);
-            if seats.taken == 0 {
+            if seats.taken() == 0 {
                 return;
             }
-            if seats.taken != P::ALL && self.room.others_fill(MOST_WIDTH, Phase::Both) {
-                for lane in lanes_of(seats.taken) {
+            if seats.taken() != P::ALL && self.room.others_fill(MOST_WIDTH, Phase::Both) {
+                for lane in lanes_of(seats.taken()) {
                     let shot = seats.shot(lane);
                     let progress = &mut self.room.slots[shot as usize];
                     seats.leave(lane, progress);
@@ -355,7 +362,7 @@ impl<S: Simd> Batch<'_, S> {
             let made = P::bits(seated.passage.made(&law, &seated.state));
             let (behind, fell) = (P::bits(ends.behind), P::bits(ends.fell));
             let (off_board, off_ring) = (P::bits(off_board), P::bits(off_ring));
-            for lane in lanes_of((ended | lodged | left) & seats.taken) {
+            for lane in lanes_of((ended | lodged | left) & seats.taken()) {
                 let shot = seats.shot(lane);
                 let progress = &mut self.room.slots[shot as usize];
                 seats.leave(lane, progress);

@@ -88,12 +88,18 @@ impl Room {
 
     /// The shots that wait for a phase.
     pub(super) fn waiting(&mut self, phase: Phase) -> &mut Vec<u32> {
-        match phase {
+        self.slots_and_queue(phase).1
+    }
+
+    /// The shots on the way, and those of them that wait for a phase.
+    pub(super) fn slots_and_queue(&mut self, phase: Phase) -> (&[Progress], &mut Vec<u32>) {
+        let queue = match phase {
             Phase::Flight => &mut self.flying,
             Phase::Board => &mut self.on_board,
             Phase::Ring => &mut self.on_ring,
             Phase::Both => &mut self.on_both,
-        }
+        };
+        (&self.slots, queue)
     }
 
     /// Is there enough to do elsewhere to leave a phase of which not all lanes can be filled?

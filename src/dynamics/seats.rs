@@ -15,21 +15,22 @@ pub(super) struct Seats {
     /// The nine state variables.
     block: [Numbers; 9],
     times: Numbers,
-    above: Bits,
-    rose_through: Bits,
-    /// On the one surface, or on board and ring.
-    grips: [GripSeats; 2],
+    /// Slips that count as none, on the one surface, or on board and ring.
+    no_slips: [Numbers; 2],
     wedged_s: Numbers,
     shots: [u32; EMPTY.len()],
-    /// The lanes that are taken.
-    pub(super) taken: Bits,
+    flags: Flags,
 }
 
-#[derive(Clone, Copy)]
-struct GripSeats {
-    rolling: Bits,
-    spent: Bits,
-    no_slip: Numbers,
+/// What is true or false of each lane. Worked on as a copy, it stays in registers.
+#[derive(Clone, Copy, Default)]
+struct Flags {
+    above: Bits,
+    rose_through: Bits,
+    rolling: [Bits; 2],
+    spent: [Bits; 2],
+    /// The lane is taken.
+    taken: Bits,
 }
 
 /// The shots as packs.
@@ -65,21 +66,38 @@ fn put(bits: &mut Bits, lane: usize, value: bool) {
 
 impl Seats {
     pub(super) fn new() -> Self {
-        let grip = GripSeats {
-            rolling: 0,
-            spent: 0,
-            no_slip: EMPTY,
-        };
         Self {
             block: [EMPTY; 9],
             times: EMPTY,
-            above: 0,
-            rose_through: 0,
-            grips: [grip; 2],
+            no_slips: [EMPTY; 2],
             wedged_s: EMPTY,
             shots: [0; EMPTY.len()],
-            taken: 0,
+            flags: Flags::default(),
         }
+    }
+
+    /// The lanes that are taken.
+    #[inline(always)]
+    pub(super) fn taken(&self) -> Bits {
+        self.flags.taken
+    }
+
+    /// Takes shots into some lanes, as long as `next` gives any.
+    #[inline(always)]
+    pub(super) fn fill<'a>(
+        &mut self,
+        lanes: Bits,
+        slots: &'a [Progress],
+        mut next: impl FnMut() -> Option<u32>,
+    ) {
+        let mut flags = self.flags;
+        for lane in lanes_of(lanes) {
+            let Some(shot) = next() else {
+                break;
+            };
+            self.take(lane, shot, &slots[shot as usize], &mut flags);
+        }
+        self.flags = flags;
     }
 
     /// The shot in a lane.
@@ -88,9 +106,8 @@ impl Seats {
         self.shots[lane]
     }
 
-    /// Takes a shot in.
     #[inline(always)]
-    pub(super) fn take(&mut self, lane: usize, shot: u32, progress: &Progress) {
+    fn take(&mut self, lane: usize, shot: u32, progress: &Progress, flags: &mut Flags) {
         let State {
             position_m: p,
             velocity_m_s: v,
@@ -101,24 +118,33 @@ impl Seats {
             row[lane] = value;
         }
         self.times[lane] = progress.time_s;
-        put(&mut self.above, lane, progress.passage.above);
-        put(&mut self.rose_through, lane, progress.passage.rose_through);
         self.shots[lane] = shot;
-        put(&mut self.taken, lane, true);
+        put(&mut flags.above, lane, progress.passage.above);
+        put(&mut flags.rose_through, lane, progress.passage.rose_through);
+        put(&mut flags.taken, lane, true);
     }
 
-    /// Takes the grips of a shot in contact in.
+    /// Takes the grips of the shots in some lanes in.
     #[inline(always)]
-    pub(super) fn take_grips(&mut self, lane: usize, progress: &Progress) {
-        match &progress.on {
-            On::Nothing => {}
-            On::Board(grip) | On::Ring(grip) => self.grips[0].set(lane, grip),
-            On::Both { grips, wedged_s } => {
-                self.grips[BOARD].set(lane, &grips[BOARD]);
-                self.grips[RING].set(lane, &grips[RING]);
-                self.wedged_s[lane] = *wedged_s;
+    pub(super) fn take_grips(&mut self, lanes: Bits, slots: &[Progress]) {
+        let mut flags = self.flags;
+        for lane in lanes_of(lanes & flags.taken) {
+            let mut set = |which: usize, grip: &Grip| {
+                put(&mut flags.rolling[which], lane, grip.rolling);
+                put(&mut flags.spent[which], lane, grip.spent);
+                self.no_slips[which][lane] = grip.no_slip;
+            };
+            match &slots[self.shots[lane] as usize].on {
+                On::Nothing => {}
+                On::Board(grip) | On::Ring(grip) => set(0, grip),
+                On::Both { grips, wedged_s } => {
+                    set(BOARD, &grips[BOARD]);
+                    set(RING, &grips[RING]);
+                    self.wedged_s[lane] = *wedged_s;
+                }
             }
         }
+        self.flags = flags;
     }
 
     /// Takes the shot of a lane out; what it is on is left to say.
@@ -138,20 +164,19 @@ impl Seats {
         };
         progress.time_s = self.times[lane];
         progress.passage = Passage {
-            above: bit(self.above, lane),
-            rose_through: bit(self.rose_through, lane),
+            above: bit(self.flags.above, lane),
+            rose_through: bit(self.flags.rose_through, lane),
         };
-        put(&mut self.taken, lane, false);
+        put(&mut self.flags.taken, lane, false);
     }
 
     /// The first grip of a lane, or both.
     #[inline(always)]
     pub(super) fn grip(&self, which: usize, lane: usize) -> Grip {
-        let grip = &self.grips[which];
         Grip {
-            rolling: bit(grip.rolling, lane),
-            spent: bit(grip.spent, lane),
-            no_slip: grip.no_slip[lane],
+            rolling: bit(self.flags.rolling[which], lane),
+            spent: bit(self.flags.spent[which], lane),
+            no_slip: self.no_slips[which][lane],
         }
     }
 
@@ -170,8 +195,8 @@ impl Seats {
                 spin_rad_s: triple(6),
             },
             passage: Passage {
-                above: P::mask_of(simd, self.above),
-                rose_through: P::mask_of(simd, self.rose_through),
+                above: P::mask_of(simd, self.flags.above),
+                rose_through: P::mask_of(simd, self.flags.rose_through),
             },
             time_s: P::load(simd, &self.times),
         }
@@ -188,27 +213,25 @@ impl Seats {
         for (row, pack) in self.block.iter_mut().zip(packs) {
             pack.store(row);
         }
-        self.above = P::bits(seated.passage.above);
-        self.rose_through = P::bits(seated.passage.rose_through);
+        self.flags.above = P::bits(seated.passage.above);
+        self.flags.rose_through = P::bits(seated.passage.rose_through);
         seated.time_s.store(&mut self.times);
     }
 
     #[inline(always)]
     pub(super) fn load_grip<P: Packed>(&self, simd: P::Simd, which: usize) -> Grip<P> {
-        let grip = &self.grips[which];
         Grip {
-            rolling: P::mask_of(simd, grip.rolling),
-            spent: P::mask_of(simd, grip.spent),
-            no_slip: P::load(simd, &grip.no_slip),
+            rolling: P::mask_of(simd, self.flags.rolling[which]),
+            spent: P::mask_of(simd, self.flags.spent[which]),
+            no_slip: P::load(simd, &self.no_slips[which]),
         }
     }
 
     #[inline(always)]
     pub(super) fn store_grip<P: Packed>(&mut self, which: usize, grip: &Grip<P>) {
-        let seats = &mut self.grips[which];
-        seats.rolling = P::bits(grip.rolling);
-        seats.spent = P::bits(grip.spent);
-        grip.no_slip.store(&mut seats.no_slip);
+        self.flags.rolling[which] = P::bits(grip.rolling);
+        self.flags.spent[which] = P::bits(grip.spent);
+        grip.no_slip.store(&mut self.no_slips[which]);
     }
 
     #[inline(always)]
@@ -219,15 +242,6 @@ impl Seats {
     #[inline(always)]
     pub(super) fn store_wedged<P: Packed>(&mut self, wedged_s: P) {
         wedged_s.store(&mut self.wedged_s);
-    }
-}
-
-impl GripSeats {
-    #[inline(always)]
-    fn set(&mut self, lane: usize, grip: &Grip) {
-        put(&mut self.rolling, lane, grip.rolling);
-        put(&mut self.spent, lane, grip.spent);
-        self.no_slip[lane] = grip.no_slip;
     }
 }
 
