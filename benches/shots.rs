@@ -41,7 +41,7 @@ fn main() {
     let with = |integrator| Simulator::with_integrator(&physics, integrator).unwrap();
     let exact = with(Integrator::EXACT);
     let paper = with(Integrator::PAPER);
-    let shots = 20_000;
+    let shots = 200_000;
     let samples = [
         ("foul", 0.0, 0.0),
         ("side direct", 67.5, 67.5),
@@ -50,10 +50,13 @@ fn main() {
     for (name, court, polar) in samples {
         let starts = states(&sample(shots, court, polar));
         let mut group = criterion.benchmark_group(name);
-        group.throughput(Throughput::Elements(shots as u64));
+        // A part of them, so that a run ends within a second.
+        let few = &starts[..20_000];
+        group.throughput(Throughput::Elements(few.len() as u64));
         group.bench_function("paper, one at a time", |bencher| {
-            bencher.iter(|| count(black_box(&starts), |start| paper.verdict_from(*start).made));
+            bencher.iter(|| count(black_box(few), |start| paper.verdict_from(*start).made));
         });
+        group.throughput(Throughput::Elements(shots as u64));
         for (lanes_name, lanes) in Lanes::available() {
             let simulator = exact.clone().with_lanes(lanes);
             let mut room = Room::default();
@@ -64,8 +67,13 @@ fn main() {
         group.finish();
     }
     whole(&mut criterion);
-    report(&states(&sample(20_000, 0.0, 0.0)), &with);
-    threads(&exact, &states(&sample(1_000_000, 0.0, 0.0)));
+    let million = states(&sample(1_000_000, 0.0, 0.0));
+    report(
+        &states(&sample(20_000, 0.0, 0.0)),
+        &million[..200_000],
+        &with,
+    );
+    threads(&exact, &million);
 }
 
 fn states(releases: &[Release]) -> Vec<State> {
@@ -76,18 +84,10 @@ fn count(starts: &[State], made: impl Fn(&State) -> bool) -> usize {
     starts.iter().filter(|start| made(start)).count()
 }
 
-/// Made shots, in batches.
+/// Made shots, in one batch.
 fn made(simulator: &Simulator, starts: &[State], room: &mut Room) -> usize {
-    let batches = starts.chunks(4096);
-    batches
-        .map(|batch| {
-            simulator
-                .verdicts(batch, room)
-                .iter()
-                .filter(|v| v.made)
-                .count()
-        })
-        .sum()
+    let verdicts = simulator.verdicts(starts, room);
+    verdicts.iter().filter(|v| v.made).count()
 }
 
 /// One table and one whole `best` of the free throw.
@@ -132,49 +132,40 @@ fn in_turn(runs: u32, tasks: &mut [(&str, Box<dyn FnMut() + '_>)]) -> Vec<f64> {
     least
 }
 
-/// Rates, agreement and ratios side by side.
-fn report(starts: &[State], with: &dyn Fn(Integrator) -> Simulator) {
+/// Rates in batches of `many`, agreement on `few`, and ratios, side by side.
+fn report(few: &[State], many: &[State], with: &dyn Fn(Integrator) -> Simulator) {
     let truth: Vec<bool> = {
         let reference = with(Integrator::Exact {
             steps_per_contact: 1000,
         });
-        starts
-            .iter()
+        few.iter()
             .map(|start| reference.verdict_from(*start).made)
             .collect()
     };
-    let simulators = [
-        ("exact, in lanes", with(Integrator::EXACT)),
-        (
-            "exact, scalar",
-            with(Integrator::EXACT).with_lanes(Lanes::SCALAR),
-        ),
-        ("paper, its steps", with(Integrator::PAPER)),
-        // At equal agreement: the paper's longest step, the shortest refined until 99.9 % agree.
-        (
-            "paper, 15/0.10 ms",
-            with(Integrator::Paper {
-                dt_max_s: 0.015,
-                dt_min_s: 0.000_1,
-            }),
-        ),
-        (
-            "paper, 15/0.07 ms",
-            with(Integrator::Paper {
-                dt_max_s: 0.015,
-                dt_min_s: 0.000_07,
-            }),
-        ),
-        (
-            "paper, 15/0.05 ms",
-            with(Integrator::Paper {
-                dt_max_s: 0.015,
-                dt_min_s: 0.000_05,
-            }),
-        ),
-    ];
+    let exact = with(Integrator::EXACT);
+    let mut simulators: Vec<(String, Simulator, &[State])> = Lanes::available()
+        .into_iter()
+        .rev()
+        .map(|(name, lanes)| {
+            let starts = if name == "scalar" { few } else { many };
+            (
+                format!("exact, {name}"),
+                exact.clone().with_lanes(lanes),
+                starts,
+            )
+        })
+        .collect();
+    // At equal agreement: the paper's longest step, the shortest refined until 99.9 % agree.
+    for dt_min_s in [0.000_5, 0.000_1, 0.000_07, 0.000_05] {
+        let paper = Integrator::Paper {
+            dt_max_s: 0.015,
+            dt_min_s,
+        };
+        let name = format!("paper, 15/{:.2} ms", 1e3 * dt_min_s);
+        simulators.push((name, with(paper), few));
+    }
     let mut tasks: Vec<(&str, Box<dyn FnMut() + '_>)> = Vec::new();
-    for (name, simulator) in &simulators {
+    for (name, simulator, starts) in &simulators {
         let mut room = Room::default();
         tasks.push((
             name,
@@ -183,27 +174,30 @@ fn report(starts: &[State], with: &dyn Fn(Integrator) -> Simulator) {
             }),
         ));
     }
-    let times = in_turn(3, &mut tasks);
-    println!("\nfoul, one core, {} shots", starts.len());
-    for ((name, simulator), time) in simulators.iter().zip(&times) {
+    let times = in_turn(5, &mut tasks);
+    println!(
+        "\nfoul, one core, in batches of {} (lanes) and {}; agreement on {}",
+        many.len(),
+        few.len(),
+        few.len()
+    );
+    let shot_times: Vec<f64> = simulators
+        .iter()
+        .zip(&times)
+        .map(|((_, _, starts), time)| time / starts.len() as f64)
+        .collect();
+    for ((name, simulator, _), time) in simulators.iter().zip(&shot_times) {
         let mut room = Room::default();
-        let same: usize = starts
-            .chunks(4096)
-            .zip(truth.chunks(4096))
-            .map(|(batch, truth)| {
-                let verdicts = simulator.verdicts(batch, &mut room);
-                verdicts
-                    .iter()
-                    .zip(truth)
-                    .filter(|(v, made)| v.made == **made)
-                    .count()
-            })
-            .sum();
+        let verdicts = simulator.verdicts(few, &mut room);
+        let same = verdicts
+            .iter()
+            .zip(&truth)
+            .filter(|(v, made)| v.made == **made);
         println!(
-            "{name:18} {:>9.0} shots/s   {:.3} % agree with tiny steps   {:6.2} times the time of exact in lanes",
-            starts.len() as f64 / time,
-            100.0 * same as f64 / starts.len() as f64,
-            time / times[0]
+            "{name:18} {:>9.0} shots/s   {:.3} % agree with tiny steps   {:6.2} times the time of the first",
+            1.0 / time,
+            100.0 * same.count() as f64 / few.len() as f64,
+            time / shot_times[0]
         );
     }
 }
@@ -218,7 +212,7 @@ fn threads(simulator: &Simulator, starts: &[State]) {
         move || {
             pool.install(|| {
                 let made: usize = starts
-                    .par_chunks(4096)
+                    .par_chunks(starts.len() / 32)
                     .map_init(Room::default, |room, batch| made(simulator, batch, room))
                     .sum();
                 black_box(made);

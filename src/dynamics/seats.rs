@@ -84,10 +84,10 @@ impl Seats {
 
     /// Takes shots into some lanes, as long as `next` gives any.
     #[inline(always)]
-    pub(super) fn fill<'a>(
+    pub(super) fn fill(
         &mut self,
         lanes: Bits,
-        slots: &'a [Progress],
+        slots: &[Progress],
         mut next: impl FnMut() -> Option<u32>,
     ) {
         let mut flags = self.flags;

@@ -108,7 +108,7 @@ impl<L: Lane> Pair<L> {
 
     /// Slip rates at a contact from the other contact's push.
     #[inline(always)]
-    fn from_other(&self, which: usize, push: Triple<L>) -> (L, L) {
+    fn by_other(&self, which: usize, push: Triple<L>) -> (L, L) {
         self.slip_rate(which, self.response(1 - which, push))
     }
 
@@ -116,7 +116,7 @@ impl<L: Lane> Pair<L> {
     #[inline(always)]
     fn driven(&self, which: usize, other_push: Triple<L>) -> (L, L) {
         let drive = self.touches[which].drive();
-        let other = self.from_other(which, other_push);
+        let other = self.by_other(which, other_push);
         (drive.0 + other.0, drive.1 + other.1)
     }
 
@@ -176,8 +176,8 @@ impl<L: Lane> Pair<L> {
     #[inline(always)]
     fn coupling(&self, law: &Law<L>, which: usize, held: L::Mask) -> Matrix<L> {
         let (zero, one) = (law.zero, law.one);
-        let first = self.from_other(which, Triple(zero, one, zero));
-        let second = self.from_other(which, Triple(zero, zero, one));
+        let first = self.by_other(which, Triple(zero, one, zero));
+        let second = self.by_other(which, Triple(zero, zero, one));
         Matrix {
             a: first.0.when(held, zero),
             b: second.0.when(held, zero),

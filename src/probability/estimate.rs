@@ -19,7 +19,7 @@ pub const REPLICATES: u64 = 32;
 const FIRST_POINTS: u32 = 512;
 /// Least and most points of one parallel block: small enough to keep every thread busy, large enough for
 /// the lanes.
-const BLOCK: (u32, u32) = (256, 8192);
+const BLOCK: (u32, u32) = (256, 16_384);
 /// Shots at least and at most; at the most the target is given up.
 pub const LEAST_SHOTS: u64 = 2 * REPLICATES;
 /// See [`LEAST_SHOTS`].

@@ -158,7 +158,9 @@ impl Table {
         let mut sums = vec![0.0; plan.pitch.count * plan.polar.count * block];
         progress.begin("simulating", plan.shots);
         let shots_of_cell = plan.backspin.count * plan.speeds_per_line;
-        let cells = (BATCH_SHOTS / shots_of_cell).max(1);
+        let even = plan.shots as usize / (BATCHES_PER_THREAD * rayon::current_num_threads());
+        let shots = even.clamp(BATCH_SHOTS.0, BATCH_SHOTS.1);
+        let cells = (shots / shots_of_cell).max(1);
         sums.par_chunks_mut(block * cells)
             .enumerate()
             .for_each_init(Workplace::default, |place, (batch, blocks)| {
@@ -212,9 +214,11 @@ impl Table {
     }
 }
 
-/// Shots that are simulated together: the more, the better they fill the lanes to the end; the fewer,
-/// the better they spread over threads.
-const BATCH_SHOTS: usize = 8192;
+/// Least and most shots that are simulated together: the more, the better they fill the lanes to the
+/// end; the fewer, the less memory they take.
+const BATCH_SHOTS: (usize, usize) = (8192, 65_536);
+/// Batches for each thread, so that all end at about the same time. (No result depends on it.)
+const BATCHES_PER_THREAD: usize = 8;
 
 /// Memory that each thread uses from cell to cell.
 #[derive(Default)]
