@@ -19,7 +19,7 @@ fn check(physics: &Physics, starts: &[State]) {
     for (name, lanes) in available {
         let simulator = scalar.clone().with_lanes(lanes);
         let mut room = Room::default();
-        for size in [1000, 4096] {
+        for size in [1000, 4096, starts.len()] {
             let found: Vec<Verdict> = starts
                 .chunks(size)
                 .flat_map(|chunk| simulator.verdicts(chunk, &mut room).to_vec())
@@ -39,6 +39,12 @@ fn contract_lanes_equal_the_scalar_form_on_a_hundred_thousand_shots() {
         &Physics::with_restitution(0.8457).unwrap(),
         &starts[..20_000],
     );
+    // Lodged balls stepped on to the time limit.
+    let patient = Physics {
+        lodged_after_s: 0.0,
+        ..Physics::paper()
+    };
+    check(&patient, &starts[..5_000]);
 }
 
 #[test]

@@ -8,8 +8,7 @@
 //!
 //! The equations are those of the scalar form, so the verdicts are the same, bit for bit.
 
-use super::contact::REACHED_M;
-use super::contact::{self, Due, Grip};
+use super::contact::{self, Due, Grip, REACHED_M};
 use super::exact::{self, MOST_STRETCHES, On, Rules, ring_gap};
 use super::flight::{self, Arc};
 use super::outcome::{Ending, Touched};
@@ -58,6 +57,16 @@ type Narrow<S> = Pack<S>;
 /// Sixteen.
 type Wide<S> = Twin<Pack<S>>;
 
+/// Calls a method as a function of its own, compiled for the vector instructions.
+macro_rules! apart {
+    ($batch:ident.$work:ident::<$lanes:ty>) => {
+        $batch.apart(
+            #[inline(always)]
+            |batch: &mut Self| batch.$work::<$lanes>(),
+        )
+    };
+}
+
 impl<S: Simd> Batch<'_, S> {
     /// Sixteen shots at a time pay where one register holds eight, for there they are two chains of
     /// operations that do not wait for one another. Elsewhere eight are such chains already.
@@ -66,42 +75,21 @@ impl<S: Simd> Batch<'_, S> {
     /// Works off the queue of a phase.
     fn phase(&mut self, phase: Phase) {
         match phase {
-            Phase::Flight if Self::WIDE => self.apart(
-                #[inline(always)]
-                |batch: &mut Self| batch.fly::<Wide<S>>(),
-            ),
-            Phase::Flight => self.apart(
-                #[inline(always)]
-                |batch: &mut Self| batch.fly::<Narrow<S>>(),
-            ),
+            Phase::Flight if Self::WIDE => apart!(self.fly::<Wide<S>>),
+            Phase::Flight => apart!(self.fly::<Narrow<S>>),
             Phase::Board => {
                 if Self::WIDE {
-                    self.apart(
-                        #[inline(always)]
-                        |batch: &mut Self| batch.press_board::<Wide<S>>(),
-                    );
+                    apart!(self.press_board::<Wide<S>>);
                 }
-                self.apart(
-                    #[inline(always)]
-                    |batch: &mut Self| batch.press_board::<Narrow<S>>(),
-                );
+                apart!(self.press_board::<Narrow<S>>);
             }
             Phase::Ring => {
                 if Self::WIDE {
-                    self.apart(
-                        #[inline(always)]
-                        |batch: &mut Self| batch.press_ring::<Wide<S>>(),
-                    );
+                    apart!(self.press_ring::<Wide<S>>);
                 }
-                self.apart(
-                    #[inline(always)]
-                    |batch: &mut Self| batch.press_ring::<Narrow<S>>(),
-                );
+                apart!(self.press_ring::<Narrow<S>>);
             }
-            Phase::Both => self.apart(
-                #[inline(always)]
-                |batch: &mut Self| batch.press_both::<Narrow<S>>(),
-            ),
+            Phase::Both => apart!(self.press_both::<Narrow<S>>),
         }
     }
 

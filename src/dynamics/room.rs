@@ -38,7 +38,14 @@ pub(super) enum Phase {
 impl Room {
     /// Makes ready for a batch of `count` shots.
     pub(super) fn open(&mut self, count: usize) {
-        for list in [&mut self.shots, &mut self.free] {
+        for list in [
+            &mut self.shots,
+            &mut self.free,
+            &mut self.flying,
+            &mut self.on_board,
+            &mut self.on_ring,
+            &mut self.on_both,
+        ] {
             list.clear();
         }
         self.slots.clear();
