@@ -202,7 +202,7 @@ fn report(few: &[State], many: &[State], with: &dyn Fn(Integrator) -> Simulator)
     }
 }
 
-/// Two threads against one on a batch of a million.
+/// Two threads against one on a million shots, in 32 batches.
 fn threads(simulator: &Simulator, starts: &[State]) {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()

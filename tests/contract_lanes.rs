@@ -45,6 +45,31 @@ fn contract_lanes_equal_the_scalar_form_on_a_hundred_thousand_shots() {
         ..Physics::paper()
     };
     check(&patient, &starts[..5_000]);
+    // Bounces that lose nothing, or next to nothing.
+    for restitution in [0.99, 1.0] {
+        let physics = Physics::with_restitution(restitution).unwrap();
+        check(&physics, &starts[..10_000]);
+    }
+    let slippery = Physics {
+        friction: 0.0,
+        ..Physics::paper()
+    };
+    check(&slippery, &starts[..10_000]);
+}
+
+#[test]
+fn contract_a_batch_of_any_size_is_run_to_its_end() {
+    let starts: Vec<State> = foul(3000, 45).iter().map(Release::state).collect();
+    let simulator = Simulator::new(&Physics::paper()).unwrap();
+    let mut room = Room::default();
+    // One room for all, large batches before small ones.
+    for size in [3000, 0, 1, 7, 17, 2049] {
+        let found = simulator.verdicts(&starts[..size], &mut room);
+        assert_eq!(found.len(), size);
+        for (found, start) in found.iter().zip(&starts) {
+            assert_eq!(*found, simulator.verdict_from(*start));
+        }
+    }
 }
 
 #[test]

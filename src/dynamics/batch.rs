@@ -3,8 +3,8 @@
 //! The shots of a batch wait in four queues, by what comes next: flight, board, ring, both. Flights are
 //! closed-form and are done a pack at a time. In contact the shots of a pack step together; a lane whose ball
 //! parts is refilled from the queue at once, so short and long contacts mix without waiting. What is
-//! rare (the board's edges, the time limit) leaves its lane for the scalar form and comes back to a
-//! queue when it is over.
+//! rare (the step from one contact to both, the board's edges, the time limit) leaves its lane for the
+//! scalar form and comes back to a queue when it is over.
 //!
 //! The equations are those of the scalar form, so the verdicts are the same, bit for bit.
 
@@ -47,10 +47,6 @@ struct Batch<'a, S: Simd> {
     rules: &'a Rules,
     room: &'a mut Room,
 }
-
-/// Lanes of the narrow packs and of the wide ones.
-const LEAST_WIDTH: usize = 8;
-const MOST_WIDTH: usize = 16;
 
 /// Eight shots side by side.
 type Narrow<S> = Pack<S>;
@@ -104,16 +100,16 @@ impl<S: Simd> Batch<'_, S> {
 
     /// Takes a shot through what the lanes do not do, in the scalar form, and queues it again.
     #[cold]
-    fn hand_over(&mut self, shot: u32) {
-        let progress = &mut self.room.slots[shot as usize];
+    fn hand_over(&mut self, slot: u32) {
+        let progress = &mut self.room.slots[slot as usize];
         if progress.stretches >= MOST_STRETCHES {
-            self.room.finish(shot, Ending::Unresolved, false);
+            self.room.finish(slot, Ending::Unresolved, false);
             return;
         }
         progress.stretches += 1;
         match exact::stretch(self.law, self.rules, progress) {
-            Some(verdict) => self.room.settle(shot, verdict),
-            None => self.room.wait(shot),
+            Some(verdict) => self.room.settle(slot, verdict),
+            None => self.room.enqueue(slot),
         }
     }
 
@@ -125,12 +121,12 @@ impl<S: Simd> Batch<'_, S> {
         let queue = self.room.take_flying();
         let fresh = Grip::fresh(self.law);
         let mut seats = Seats::new();
-        for shots in queue.chunks(P::WIDTH) {
+        for slots in queue.chunks(P::WIDTH) {
             // Lanes without a shot repeat the last one.
-            let mut next = shots
+            let mut next = slots
                 .iter()
                 .copied()
-                .chain(std::iter::repeat(shots[shots.len() - 1]));
+                .chain(std::iter::repeat(slots[slots.len() - 1]));
             seats.fill(P::ALL, &self.room.slots, || next.next());
             let mut seated = seats.load(self.simd);
             let start = seated.state;
@@ -147,13 +143,13 @@ impl<S: Simd> Batch<'_, S> {
             let rose_to = law.zero.lit(-1.0) * law.radius - REACHED_M;
             let fell = P::bits(rose_to.lt(seated.state.position_m.2));
             seats.store(&seated);
-            let mut left = P::ALL >> (P::WIDTH - shots.len());
+            let mut left = P::ALL >> (P::WIDTH - slots.len());
             for lane in lanes_of(left) {
-                let progress = &mut self.room.slots[shots[lane] as usize];
+                let progress = &mut self.room.slots[slots[lane] as usize];
                 progress.on = On::Nothing;
                 if bit(special, lane) || progress.stretches >= MOST_STRETCHES {
                     left &= !(1 << lane);
-                    self.hand_over(shots[lane]);
+                    self.hand_over(slots[lane]);
                     continue;
                 }
                 progress.stretches += 1;
@@ -161,16 +157,16 @@ impl<S: Simd> Batch<'_, S> {
             }
             // End by end: to ask each lane for its end would be to guess wrong as often as not.
             for lane in lanes_of(left & ring) {
-                let progress = &mut self.room.slots[shots[lane] as usize];
+                let progress = &mut self.room.slots[slots[lane] as usize];
                 progress.contacts.push(Touched::Ring);
                 progress.on = On::Ring(fresh);
-                self.room.on_ring.push(shots[lane]);
+                self.room.on_ring.push(slots[lane]);
             }
             for lane in lanes_of(left & board & !ring) {
-                let progress = &mut self.room.slots[shots[lane] as usize];
+                let progress = &mut self.room.slots[slots[lane] as usize];
                 progress.contacts.push(Touched::Board);
                 progress.on = On::Board(fresh);
-                self.room.on_board.push(shots[lane]);
+                self.room.on_board.push(slots[lane]);
             }
             for lane in lanes_of(left & !ring & !board) {
                 let (ending, made) = if bit(fell, lane) {
@@ -178,7 +174,7 @@ impl<S: Simd> Batch<'_, S> {
                 } else {
                     (Ending::NeverRose, false)
                 };
-                self.room.finish(shots[lane], ending, made);
+                self.room.finish(slots[lane], ending, made);
             }
         }
         self.room.give_back(queue);
@@ -243,20 +239,21 @@ impl<S: Simd> Batch<'_, S> {
             let before = seated.state;
             let (leaves, time_to_other) = other(&before);
             // Half of the lanes can be filled as well in a narrower pack.
-            let few = seats.taken().count_ones() as usize <= P::WIDTH / 2 && P::WIDTH > LEAST_WIDTH;
+            let few = seats.taken().count_ones() as usize <= P::WIDTH / 2
+                && P::WIDTH > Narrow::<S>::WIDTH;
             let suspended =
-                few || seats.taken() != P::ALL && self.room.others_fill(MOST_WIDTH, phase);
+                few || seats.taken() != P::ALL && self.room.others_fill(Wide::<S>::WIDTH, phase);
             let leaves = P::bits(leaves);
             let out = if suspended { seats.taken() } else { leaves };
             for lane in lanes_of(out & seats.taken()) {
-                let shot = seats.shot(lane);
-                let progress = &mut self.room.slots[shot as usize];
+                let slot = seats.slot(lane);
+                let progress = &mut self.room.slots[slot as usize];
                 seats.leave(lane, progress);
                 progress.on = on(seats.grip(0, lane));
                 if bit(leaves, lane) {
-                    self.hand_over(shot);
+                    self.hand_over(slot);
                 } else {
-                    self.room.waiting(phase).push(shot);
+                    self.room.queue_mut(phase).push(slot);
                 }
             }
             if suspended {
@@ -283,17 +280,17 @@ impl<S: Simd> Batch<'_, S> {
             let made = P::bits(seated.passage.made(&law, &seated.state));
             let (behind, fell) = (P::bits(ends.behind), P::bits(ends.fell));
             for lane in lanes_of(done) {
-                let shot = seats.shot(lane);
-                let progress = &mut self.room.slots[shot as usize];
+                let slot = seats.slot(lane);
+                let progress = &mut self.room.slots[slot as usize];
                 seats.leave(lane, progress);
                 if bit(parted, lane) {
-                    self.room.flying.push(shot);
+                    self.room.flying.push(slot);
                 } else if bit(behind, lane) {
-                    self.room.finish(shot, Ending::BehindBoard, false);
+                    self.room.finish(slot, Ending::BehindBoard, false);
                 } else if bit(fell, lane) {
-                    self.room.finish(shot, Ending::Fell, bit(made, lane));
+                    self.room.finish(slot, Ending::Fell, bit(made, lane));
                 } else {
-                    self.room.finish(shot, Ending::TimeLimit, false);
+                    self.room.finish(slot, Ending::TimeLimit, false);
                 }
             }
         }
@@ -314,16 +311,16 @@ impl<S: Simd> Batch<'_, S> {
             if seats.taken() == 0 {
                 return;
             }
-            if seats.taken() != P::ALL && self.room.others_fill(MOST_WIDTH, Phase::Both) {
+            if seats.taken() != P::ALL && self.room.others_fill(Wide::<S>::WIDTH, Phase::Both) {
                 for lane in lanes_of(seats.taken()) {
-                    let shot = seats.shot(lane);
-                    let progress = &mut self.room.slots[shot as usize];
+                    let slot = seats.slot(lane);
+                    let progress = &mut self.room.slots[slot as usize];
                     seats.leave(lane, progress);
                     progress.on = On::Both {
                         grips: [wedge::BOARD, wedge::RING].map(|i| seats.grip(i, lane)),
                         wedged_s: seats.wedged_s(lane),
                     };
-                    self.room.on_both.push(shot);
+                    self.room.on_both.push(slot);
                 }
                 return;
             }
@@ -351,24 +348,24 @@ impl<S: Simd> Batch<'_, S> {
             let (behind, fell) = (P::bits(ends.behind), P::bits(ends.fell));
             let (off_board, off_ring) = (P::bits(off_board), P::bits(off_ring));
             for lane in lanes_of((ended | lodged | left) & seats.taken()) {
-                let shot = seats.shot(lane);
-                let progress = &mut self.room.slots[shot as usize];
+                let slot = seats.slot(lane);
+                let progress = &mut self.room.slots[slot as usize];
                 seats.leave(lane, progress);
                 if bit(ended, lane) {
                     if bit(behind, lane) {
-                        self.room.finish(shot, Ending::BehindBoard, false);
+                        self.room.finish(slot, Ending::BehindBoard, false);
                     } else if bit(fell, lane) {
-                        self.room.finish(shot, Ending::Fell, bit(made, lane));
+                        self.room.finish(slot, Ending::Fell, bit(made, lane));
                     } else {
-                        self.room.finish(shot, Ending::TimeLimit, false);
+                        self.room.finish(slot, Ending::TimeLimit, false);
                     }
                 } else if bit(lodged, lane) {
-                    self.room.finish(shot, Ending::Wedged, false);
+                    self.room.finish(slot, Ending::Wedged, false);
                 } else {
                     let grips = [wedge::BOARD, wedge::RING].map(|i| seats.grip(i, lane));
                     let left = [bit(off_board, lane), bit(off_ring, lane)];
                     progress.on = On::after_both(left, grips, 0.0);
-                    self.room.wait(shot);
+                    self.room.enqueue(slot);
                 }
             }
         }

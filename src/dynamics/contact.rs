@@ -99,13 +99,13 @@ impl<L: Lane> Due<L> {
 
     /// Not after `other`.
     #[inline(always)]
-    pub(crate) fn by(self, other: Self) -> L::Mask {
+    pub(crate) fn not_after(self, other: Self) -> L::Mask {
         (self.over * other.under).le(other.over * self.under)
     }
 
     #[inline(always)]
     pub(crate) fn earlier(self, other: Self) -> Self {
-        self.when(self.by(other), other)
+        self.when(self.not_after(other), other)
     }
 
     /// Or `longest`, if that is earlier.
@@ -117,7 +117,7 @@ impl<L: Lane> Due<L> {
 
     /// `factor` times as late.
     #[inline(always)]
-    fn later(self, factor: L) -> Self {
+    fn scaled(self, factor: L) -> Self {
         Self {
             over: self.over * factor,
             under: self.under,
@@ -185,8 +185,9 @@ impl<L: Lane> Load<L> {
         }
     }
 
-    /// Time until the contact presses no more: until the normal force is zero and, where it is already,
-    /// until the compression is gone. (The force of a ball on its way out is zero first.)
+    /// Time until the contact presses no more: until the normal force is zero (which that of a ball on its
+    /// way out is before the compression is gone) and, where it is already or will not be, until the
+    /// compression is gone.
     #[inline(always)]
     pub(crate) fn time_to_end(&self, law: &Law<L>, touch: &Touch<L>) -> Due<L> {
         let pressing = law.zero.lit(NO_FORCE_M_S2).lt(self.normal);
@@ -195,14 +196,18 @@ impl<L: Lane> Load<L> {
             -touch.v.0,
             self.squeeze_rate,
         );
+        // Has N + N' t + N'' t^2/2 a zero ahead?
+        let real = (self.normal * self.normal_curve * 2.0).le(self.normal_rate.squared());
+        let falls = self.normal_rate.lt(law.zero) | self.normal_curve.lt(law.zero);
+        let releases = pressing & real & falls;
         let end = first_root(
             law,
-            self.normal.when(pressing, u),
-            self.normal_rate.when(pressing, du),
-            self.normal_curve.when(pressing, ddu),
+            self.normal.when(releases, u),
+            self.normal_rate.when(releases, du),
+            self.normal_curve.when(releases, ddu),
         );
         let time = end.time();
-        let found = time.lt(law.never) & !pressing;
+        let found = time.lt(law.never) & !releases;
         // Of the compression, one Newton step on the Taylor polynomial with u''' = -N' and u'''' = -N''.
         let t = time.when(found, law.zero);
         let d3 = -self.normal_rate;
@@ -214,7 +219,12 @@ impl<L: Lane> Load<L> {
             under: -slope,
         };
         let good = slope.lt(law.zero) & law.zero.lt(better.over) & found;
-        let release = end.later(law.zero.lit(BEYOND).when(pressing, law.one));
+        // Not so far beyond the release that a ball with little damping would be past its parting.
+        let beyond = (end.over * BEYOND).least(end.over + law.release_to_part * end.under);
+        let release = Due {
+            over: beyond.when(releases, end.over),
+            under: end.under,
+        };
         better.when(good, release)
     }
 }
@@ -355,7 +365,7 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     // 1. Where friction stands now.
     let slip = touch.slip();
     let slip_square = slip.0.squared() + slip.1.squared();
-    let stuck = grip.rolling | slip_square.le(grip.no_slip.squared());
+    let stuck = (grip.rolling | slip_square.le(grip.no_slip.squared())) & !parted;
     let slip_per_push = touch.slip_per_push(law);
     // Needed of stuck contacts only.
     let mut push_per_slip = law.one;
@@ -418,7 +428,7 @@ pub(crate) fn step<L: Lane, S: Surface<L>>(
     let until = to_end
         .earlier(other(state, k1.acceleration_m_s2))
         .within(law, longest);
-    let landing = to_change.by(until) & !rolling;
+    let landing = to_change.not_after(until) & !rolling;
     let dt = to_change
         .earlier(until)
         .time()
@@ -477,7 +487,7 @@ pub(crate) fn time_to_change<L: Lane>(
     let c2 = (law.friction * load.normal_curve).when(rolling, slip_curve);
     let moving = law.zero.lt(c0) | rolling;
     first_root(law, c0, c1, c2)
-        .later(law.zero.lit(BEYOND).when(rolling, law.one))
+        .scaled(law.zero.lit(BEYOND).when(rolling, law.one))
         .when(moving, Due::never(law))
 }
 
@@ -509,4 +519,48 @@ fn settle_parting<L: Lane, S: Surface<L>>(
     let push = Triple(touch.normal(law), law.zero, law.zero);
     let last = rate(law, surface, state, (touch, frame), push);
     *state = state.advanced(&last, dt);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Physics;
+    use proptest::prelude::*;
+
+    fn law() -> Law {
+        Law::new(&Physics::paper())
+    }
+
+    proptest! {
+        #[test]
+        fn prop_the_earliest_fraction_is_the_earliest_time(
+            a in (0.0..1.0, 1e-3..10.0),
+            b in (0.0..1.0, 1e-3..10.0),
+            longest in 1e-6..1.0,
+        ) {
+            let [a, b] = [a, b].map(|(over, under)| Due { over, under });
+            let never = Due::never(&law());
+            let close = |x: f64, y: f64| (x - y).abs() <= 1e-15 * y;
+            prop_assert!(close(a.earlier(b).time(), a.time().min(b.time())));
+            prop_assert!(close(never.earlier(b).time(), b.time()));
+            prop_assert!(close(a.within(&law(), longest).time(), a.time().min(longest)));
+        }
+
+        #[test]
+        fn prop_no_root_within_a_step_is_left_out(
+            c0 in 1e-6..1.0, c1 in -10.0..10.0, c2 in -1e3..1e3, longest in 1e-4..1e-2,
+        ) {
+            let root = first_root(&law(), c0, c1, c2).time();
+            let within = first_root_within(&law(), (c0, c1, c2), longest).time();
+            if root <= longest {
+                prop_assert_eq!(within, root);
+            } else {
+                prop_assert!(within > longest);
+            }
+            if root < law().never {
+                let scale = c0 + (c1 * root).abs() + (c2 * root * root).abs();
+                prop_assert!((c0 + c1 * root + 0.5 * c2 * root * root).abs() < 1e-12 * scale);
+            }
+        }
+    }
 }

@@ -319,7 +319,6 @@ impl<W: Watch> Shot<'_, W> {
             if off_ring {
                 self.part(Touched::Ring);
             }
-            self.now.on = On::after_both([off_board, off_ring], grips, wedged_s);
             if step.dt > 0.0 {
                 let ending = self.after_step(step.dt, &before, step.impulses);
                 wedged_s = wedge::wedged(law, &grips, wedged_s, step.dt);
@@ -332,6 +331,7 @@ impl<W: Watch> Shot<'_, W> {
                 }
             }
             if off_board || off_ring {
+                self.now.on = On::after_both([off_board, off_ring], grips, wedged_s);
                 return None;
             }
         }
@@ -393,10 +393,6 @@ pub(crate) fn time_to_board<L: Lane>(
     contact::first_root_within(law, motion, longest)
 }
 
-/// What a step's acceleration may add to the way that its velocity goes, as a part of R (a step of
-/// 2 ms at the hardest bounce: 0.02).
-const ADDED_WAY: f64 = 0.05;
-
 /// The ring seen by a ball that is in contact with the board.
 #[derive(Clone, Copy)]
 pub(crate) struct Gap<L: Lane> {
@@ -412,7 +408,12 @@ pub(crate) struct Gap<L: Lane> {
 #[inline(always)]
 pub(crate) fn ring_gap<L: Lane>(law: &Law<L>, state: &State<L>, longest: L) -> Gap<L> {
     let Triple(vx, vy, vz) = state.velocity_m_s;
-    let way = (vx.abs() + vy.abs() + vz.abs()) * longest + law.radius * ADDED_WAY;
+    // The way of a step: the velocity's, and what the hardest push of the board within it can add.
+    let speed = vx.abs() + vy.abs() + vz.abs();
+    let squeeze = (law.board_touch_x - state.position_m.0).most(law.zero) + vx.abs() * longest;
+    let push = law.stiffness * squeeze + law.damping * vx.abs();
+    let most = push * (law.friction + 1.0) + law.gravity;
+    let way = (speed + most * longest * 0.5) * longest;
     let inward = law.ring_radius - state.axis_square().sqrt();
     let distance_square = inward.squared() + state.position_m.2.squared();
     let near = distance_square.le((law.radius + way).squared());

@@ -5,7 +5,7 @@ use super::outcome::{Contacts, Ending, Verdict};
 use super::state::{Law, State};
 
 /// Shots that are on the way at once: enough that all lanes stay filled, and few enough to stay in the
-/// cache (about 220 bytes each).
+/// cache (some 150 bytes each).
 const SLOTS: usize = 2048;
 
 /// Room for a batch, to be used again and again: nothing is allocated once it has grown.
@@ -94,7 +94,7 @@ impl Room {
     }
 
     /// The shots that wait for a phase.
-    pub(super) fn waiting(&mut self, phase: Phase) -> &mut Vec<u32> {
+    pub(super) fn queue_mut(&mut self, phase: Phase) -> &mut Vec<u32> {
         self.slots_and_queue(phase).1
     }
 
@@ -116,14 +116,14 @@ impl Room {
     }
 
     /// Queues a shot for what it is on.
-    pub(super) fn wait(&mut self, slot: u32) {
+    pub(super) fn enqueue(&mut self, slot: u32) {
         let phase = match self.slots[slot as usize].on {
             On::Nothing => Phase::Flight,
             On::Board(_) => Phase::Board,
             On::Ring(_) => Phase::Ring,
             On::Both { .. } => Phase::Both,
         };
-        self.waiting(phase).push(slot);
+        self.queue_mut(phase).push(slot);
     }
 
     /// Those who wait to fly, with an empty queue in their place; to be given back.

@@ -18,7 +18,7 @@ pub(super) struct Seats {
     /// Slips that count as none, on the one surface, or on board and ring.
     no_slips: [Numbers; 2],
     wedged_s: Numbers,
-    shots: [u32; EMPTY.len()],
+    slots: [u32; EMPTY.len()],
     flags: Flags,
 }
 
@@ -71,7 +71,7 @@ impl Seats {
             times: EMPTY,
             no_slips: [EMPTY; 2],
             wedged_s: EMPTY,
-            shots: [0; EMPTY.len()],
+            slots: [0; EMPTY.len()],
             flags: Flags::default(),
         }
     }
@@ -92,22 +92,22 @@ impl Seats {
     ) {
         let mut flags = self.flags;
         for lane in lanes_of(lanes) {
-            let Some(shot) = next() else {
+            let Some(slot) = next() else {
                 break;
             };
-            self.take(lane, shot, &slots[shot as usize], &mut flags);
+            self.take(lane, slot, &slots[slot as usize], &mut flags);
         }
         self.flags = flags;
     }
 
     /// The shot in a lane.
     #[inline(always)]
-    pub(super) fn shot(&self, lane: usize) -> u32 {
-        self.shots[lane]
+    pub(super) fn slot(&self, lane: usize) -> u32 {
+        self.slots[lane]
     }
 
     #[inline(always)]
-    fn take(&mut self, lane: usize, shot: u32, progress: &Progress, flags: &mut Flags) {
+    fn take(&mut self, lane: usize, slot: u32, progress: &Progress, flags: &mut Flags) {
         let State {
             position_m: p,
             velocity_m_s: v,
@@ -118,7 +118,7 @@ impl Seats {
             row[lane] = value;
         }
         self.times[lane] = progress.time_s;
-        self.shots[lane] = shot;
+        self.slots[lane] = slot;
         put(&mut flags.above, lane, progress.passage.above);
         put(&mut flags.rose_through, lane, progress.passage.rose_through);
         put(&mut flags.taken, lane, true);
@@ -134,7 +134,7 @@ impl Seats {
                 put(&mut flags.spent[which], lane, grip.spent);
                 self.no_slips[which][lane] = grip.no_slip;
             };
-            match &slots[self.shots[lane] as usize].on {
+            match &slots[self.slots[lane] as usize].on {
                 On::Nothing => {}
                 On::Board(grip) | On::Ring(grip) => set(0, grip),
                 On::Both { grips, wedged_s } => {

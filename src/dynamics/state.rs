@@ -146,6 +146,8 @@ pub(crate) struct Law<L = f64> {
     pub(crate) stiffness: L,
     /// c/m, 1/s.
     pub(crate) damping: L,
+    /// c/k, s: from the release (N = 0) of a ball on its way out to its parting (u = 0), about.
+    pub(crate) release_to_part: L,
     pub(crate) friction: L,
     /// m/I, 1/m^2.
     pub(crate) mass_over_inertia: L,
@@ -174,6 +176,7 @@ impl Law {
             per_gravity: 1.0 / physics.gravity_m_s2,
             stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
             damping: physics.damping_kg_s / physics.ball_mass_kg,
+            release_to_part: physics.damping_kg_s / physics.stiffness_n_m,
             friction: physics.friction,
             mass_over_inertia: 1.0 / inertia,
             zero: 0.0,
@@ -198,6 +201,7 @@ impl Law {
             per_gravity: lit(self.per_gravity),
             stiffness: lit(self.stiffness),
             damping: lit(self.damping),
+            release_to_part: lit(self.release_to_part),
             friction: lit(self.friction),
             mass_over_inertia: lit(self.mass_over_inertia),
             zero: lit(self.zero),

@@ -359,7 +359,7 @@ pub(crate) fn step<L: Lane>(
         let drive = pair.driven(i, Triple(pair.normals[1 - i], first, second));
         let slip_per_push = pair.touches[i].slip_per_push(law);
         let forward = drive.0 * along[i].0 + drive.1 * along[i].1;
-        // What rolling needs is hard to foresee with two: the change of the limit alone is.
+        // How what rolling needs will change is hard to foresee with two contacts; that of the limit is not.
         let spare = (limits[i] - size(frictions[i])).most(law.zero.lit(NO_FORCE_M_S2));
         let balance = Balance {
             speed: speeds[i],
@@ -391,7 +391,7 @@ pub(crate) fn step<L: Lane>(
             .plus(push2[i], third)
             .plus(push3[i], third)
             .plus(push4[i], sixth);
-        let landing = changes[i].by(next) & !rolling[i];
+        let landing = changes[i].not_after(next) & !rolling[i];
         let loading = law.zero.lt(loads[i].normal_rate);
         grips[i] = Grip {
             rolling: pick(over, grips[i].rolling, rolling[i]),
@@ -472,4 +472,55 @@ fn stop_slips<L: Lane>(
     });
     *pair = Pair::meet(law, state);
     impulses
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Physics;
+
+    /// A ball on board and ring, moving and turning.
+    fn pair() -> (Law, Pair<f64>) {
+        let law = Law::new(&Physics::paper());
+        let x = law.board_touch_x - 0.001;
+        let off = law.ring_radius - (x * x + 0.01).sqrt();
+        let state = State {
+            position_m: Triple(x, 0.1, (law.radius.powi(2) - off * off).sqrt() - 0.001),
+            velocity_m_s: Triple(-0.3, 0.2, -1.0),
+            spin_rad_s: Triple(3.0, -2.0, 1.0),
+        };
+        let pair = Pair::meet(&law, &state);
+        (law, pair)
+    }
+
+    #[test]
+    fn prop_held_slips_change_as_wanted() {
+        let (law, pair) = pair();
+        let wanted = [(0.7, -0.4), (-0.2, 0.5)];
+        for held in [[true, true], [true, false], [false, true], [false, false]] {
+            let found = pair.solve(&law, held, wanted);
+            for i in [BOARD, RING] {
+                let push = |of: usize| Triple(0.0, found[of].0, found[of].1);
+                let own = pair.slip_rate(i, pair.response(i, push(i)));
+                let other = pair.by_other(i, push(1 - i));
+                let expected = if held[i] {
+                    (own.0 + other.0, own.1 + other.1)
+                } else {
+                    found[i]
+                };
+                assert!((expected.0 - wanted[i].0).abs() < 1e-12, "{held:?}");
+                assert!((expected.1 - wanted[i].1).abs() < 1e-12, "{held:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn prop_a_singular_matrix_leaves_the_work_to_one_contact() {
+        let law = Law::new(&Physics::paper());
+        let [a, b, c, d] = [1.0, 2.0, 2.0, 4.0];
+        assert_eq!(
+            Matrix { a, b, c, d }.solve(&law, (3.0, 5.0), 2.0),
+            (1.5, 2.5)
+        );
+    }
 }

@@ -138,3 +138,51 @@ impl<L: Packed> Packed for Twin<L> {
         L::bits(mask.0) | L::bits(mask.1) << L::WIDTH
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lane::{Numbers, Pack};
+    use fearless_simd::{Level, Simd};
+
+    fn check<S: Simd>(simd: S) {
+        type Wide<S> = Twin<Pack<S>>;
+        let from = |f: &dyn Fn(f64) -> f64| -> Numbers { std::array::from_fn(|i| f(i as f64)) };
+        let (a, b) = (from(&|i| i - 7.5), from(&|i| 3.0 / (i + 1.0)));
+        let [x, y] = [&a, &b].map(|values| Wide::<S>::load(simd, values));
+        let least = Wide::<S>::bits(x.lt(y));
+        let mut found: Numbers = [0.0; 16];
+        for (pack, f) in [
+            (x + y, (|a, b| a + b) as fn(f64, f64) -> f64),
+            (x - y, |a, b| a - b),
+            (x * y, |a, b| a * b),
+            (x / y, |a, b| a / b),
+            (x.abs().sqrt(), |a, _| a.abs().sqrt()),
+            (-x, |a, _| -a),
+            (x.when(x.lt(y), y), |a, b| if a < b { a } else { b }),
+            (x * 2.0 + 1.0 - 0.5, |a, _| a * 2.0 + 1.0 - 0.5),
+        ] {
+            pack.store(&mut found);
+            for i in 0..16 {
+                assert_eq!(found[i], f(a[i], b[i]));
+            }
+        }
+        for bits in [0, 1, 0x8001, 0x00ff, 0xff00, Wide::<S>::ALL, least] {
+            let mask = Wide::<S>::mask_of(simd, bits);
+            assert_eq!(Wide::<S>::bits(mask), bits);
+            assert_eq!(Wide::<S>::bits(!mask), !bits);
+            assert_eq!((mask.any(), mask.all()), (bits != 0, bits == u16::MAX));
+        }
+        assert_eq!(
+            least.count_ones() as usize,
+            (0..16).filter(|&i| a[i] < b[i]).count()
+        );
+    }
+
+    #[test]
+    fn contract_sixteen_lanes_compute_as_one() {
+        for level in [Level::baseline(), Level::new()] {
+            fearless_simd::dispatch!(level, simd => check(simd));
+        }
+    }
+}

@@ -32,7 +32,7 @@ impl<S: Simd> Packed for Pack<S> {
     }
     #[inline(always)]
     fn mask_of(simd: S, bits: Bits) -> PackMask<S> {
-        PackMask(mask64x8::from_bitmask(simd, u64::from(bits & 0xff)))
+        PackMask(mask64x8::from_bitmask(simd, u64::from(bits & Self::ALL)))
     }
     #[inline(always)]
     fn bits(mask: PackMask<S>) -> Bits {

@@ -216,7 +216,7 @@ impl Table {
 
 /// Least and most shots that are simulated together: the more, the better they fill the lanes to the
 /// end; the fewer, the less memory they take.
-const BATCH_SHOTS: (usize, usize) = (8192, 65_536);
+const BATCH_SHOTS: (usize, usize) = (2048, 65_536);
 /// Batches for each thread, so that all end at about the same time. (No result depends on it.)
 const BATCHES_PER_THREAD: usize = 8;
 

@@ -179,6 +179,17 @@ impl Correlation {
         })
     }
 
+    /// The least eigenvalue of the matrix of these pairs: negative where they are impossible together.
+    #[must_use]
+    pub fn least_eigenvalue(pairs: &[(usize, usize, f64)]) -> f64 {
+        let mut matrix = nalgebra::SMatrix::<f64, ERRORS, ERRORS>::identity();
+        for &(i, j, value) in pairs {
+            matrix[(i, j)] = value;
+            matrix[(j, i)] = value;
+        }
+        matrix.symmetric_eigenvalues().min()
+    }
+
     /// Correlated standard normals from independent ones.
     #[must_use]
     pub fn apply(&self, independent: [f64; ERRORS]) -> [f64; ERRORS] {
@@ -252,6 +263,8 @@ mod tests {
         // Two that go with a third, but against each other.
         let pairs = [(0, 1, 0.9), (0, 2, 0.9), (1, 2, -0.9)];
         assert_eq!(Correlation::new(&pairs), None);
+        // Of [[1, r, r], [r, 1, -r], [r, -r, 1]]: 1 + r twice and 1 - 2 r.
+        assert!((Correlation::least_eigenvalue(&pairs) - (1.0 - 2.0 * 0.9)).abs() < 1e-12);
         assert!(Correlation::new(&[(0, 1, 1.0), (0, 2, 0.5), (1, 2, 0.5)]).is_some());
         assert_eq!(
             Correlation::new(&[(0, 1, 1.0), (0, 2, 0.5), (1, 2, 0.4)]),

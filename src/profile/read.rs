@@ -327,12 +327,14 @@ fn read_correlation(shooter: &mut Keys<'_, '_>, faults: &mut Vec<Fault>) -> Corr
         );
         pairs.extend(value.map(|value| (*i, *j, value)));
     }
-    let here = keys.here("these coefficients are impossible together: the matrix of correlations is not positive semi-definite");
+    let correlation = Correlation::new(&pairs);
+    let impossible = correlation.is_none().then(|| {
+        let least = Correlation::least_eigenvalue(&pairs);
+        keys.here(format!("these coefficients are impossible together: the matrix of correlations is not positive semi-definite (its least eigenvalue is {least:.3})"))
+    });
     keys.finish(faults);
-    Correlation::new(&pairs).unwrap_or_else(|| {
-        faults.push(here);
-        Correlation::NONE
-    })
+    faults.extend(impossible);
+    correlation.unwrap_or(Correlation::NONE)
 }
 
 /// The keys of `[shooter.correlation]` with the places of their two errors, in the order of
