@@ -6,6 +6,7 @@ use super::terminal::{answer, tell};
 use bankshot::dynamics::{Room, Simulator};
 use bankshot::output;
 use bankshot::plan::Plan;
+use bankshot::probability::BATCH_BYTES;
 use bankshot::profile::{self, LARGEST_PROFILE_BYTES, Nominal, Profile};
 use bankshot::sweep::configuration::is_sweep;
 use bankshot::units::{DEGREE_RAD, REV_RAD};
@@ -99,6 +100,9 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         plan.mass_outside(&profile, &middle),
         plan.mass_outside(&profile, &edge),
     );
+    // The table, a batch of shots on each thread, and the program.
+    let threads = rayon::current_num_threads();
+    let memory = plan.memory_bytes as f64 + (threads * BATCH_BYTES) as f64 + 10e6;
     if options.json {
         let mut record = output::provenance(&profile.hash());
         record.push((
@@ -106,6 +110,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
             serde_json::to_value(&plan).unwrap_or_default(),
         ));
         record.push(("forecast_s".to_owned(), output::number(seconds)));
+        record.push(("memory_bytes".to_owned(), output::number(memory.round())));
         record.push((
             "wide_sample".to_owned(),
             serde_json::to_value(wide).unwrap_or_default(),
@@ -124,7 +129,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         )
     };
     let mut text = format!(
-        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} {long}/s\nshots       {} in the search, {} in each window about a best\nmemory      {:.0} MiB\ntime        about {:.1} s on {} threads, the search for the best included\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
+        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} {long}/s\nshots       {} in the search, {} in each window about a best\nmemory      about {:.0} MiB\ntime        about {:.1} s on {} threads, the search for the best included\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
         deg(plan.pitch),
         deg(plan.polar),
         plan.backspin.low / REV_RAD,
@@ -135,9 +140,9 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
         plan.nominal.speed.high / foot,
         plan.shots,
         profile.grid.points(),
-        plan.memory_bytes as f64 / f64::from(1 << 20),
+        memory / f64::from(1 << 20),
         seconds,
-        rayon::current_num_threads(),
+        threads,
         mass.0,
         mass.1,
     );
@@ -153,9 +158,9 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     answer(&text)
 }
 
-/// Forecast of the time that `best` takes, from a few shots of the bracket.
+/// Forecast of the time that `best` takes, from a batch of shots of the bracket.
 fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
-    const SHOTS: u32 = 8000;
+    const SHOTS: u32 = 65_536;
     let began = Instant::now();
     let mut starts = Vec::new();
     for i in 0..SHOTS {

@@ -9,7 +9,7 @@ use super::signals;
 use super::terminal::{answer, tell};
 use bankshot::output::{self, files};
 use bankshot::plan::{Plan, PlanError};
-use bankshot::probability::Progress;
+use bankshot::probability::{BATCH_BYTES, Progress};
 use bankshot::sweep::configuration::{Texts, names, parse_sweep};
 use bankshot::sweep::folder::{Folder, is_held};
 use bankshot::sweep::jobs::{Jobs, Shard};
@@ -73,7 +73,8 @@ pub(crate) fn plan(path: &Path, json: bool, quiet: bool) -> Result<u8, Failure> 
     let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
     let disk = store * jobs.count() as f64 + tables * rows;
     // Each thread has a table of the search or a window, and a batch of shots.
-    let memory = threads as f64 * (2.0 * memory + 6e6) + 4000.0 * jobs.count() as f64 + 10e6;
+    let memory =
+        threads as f64 * (2.0 * memory + BATCH_BYTES as f64) + 4000.0 * jobs.count() as f64 + 10e6;
     let mib = |bytes: f64| bytes / f64::from(1 << 20);
     answer(&if json {
         let mut record = output::provenance(&configuration.hash());

@@ -17,7 +17,7 @@ pub mod release_map;
 pub mod sobol;
 mod table;
 
-pub use table::{Probabilities, Table};
+pub use table::{BATCH_BYTES, Probabilities, Table};
 
 /// Told how far a long computation has come.
 pub trait Progress: Sync {

@@ -217,6 +217,9 @@ impl Table {
 /// Least and most shots that are simulated together: the more, the better they fill the lanes to the
 /// end; the fewer, the less memory they take.
 const BATCH_SHOTS: (usize, usize) = (2048, 65_536);
+/// Most memory that a thread needs for its batch, bytes.
+pub const BATCH_BYTES: usize = BATCH_SHOTS.1
+    * (size_of::<crate::dynamics::State>() + size_of::<crate::dynamics::Verdict>() + 8);
 /// Batches for each thread, so that all end at about the same time. (No result depends on it.)
 const BATCHES_PER_THREAD: usize = 8;
 
