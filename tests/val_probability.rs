@@ -106,7 +106,7 @@ fn val_table_agrees_with_sobol_for_narrow_and_wide_shooters_in_front_and_at_the_
 }
 
 #[test]
-#[ignore = "a campaign of 4 minutes: cargo test --test val_probability campaign_table -- --ignored --nocapture"]
+#[ignore = "a campaign of one minute: cargo test --test val_probability campaign_table -- --ignored --nocapture"]
 fn campaign_table_is_good_to_a_thousandth() {
     let [bias, rms, worst] = spread(&table_errors(6));
     assert!(
@@ -247,7 +247,7 @@ fn prop_best_is_not_below_its_own_table() {
 }
 
 #[test]
-#[ignore = "a campaign of 5 minutes: cargo test --test val_probability campaign_best -- --ignored --nocapture"]
+#[ignore = "a campaign of two minutes: cargo test --test val_probability campaign_best -- --ignored --nocapture"]
 fn campaign_best_is_within_three_thousandths_of_a_brute_force_search() {
     // Brute force: a table of 3.6 million shots over everything the shooter may intend, and the thirty best of
     // its nominal shots of each kind, no two of them neighbours, integrated to 0.0005.

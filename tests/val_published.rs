@@ -47,7 +47,7 @@ fn correlation(pairs: &[(f64, f64)]) -> f64 {
 }
 
 #[test]
-#[ignore = "a campaign of 2 minutes: cargo test --test val_published -- --ignored --nocapture"]
+#[ignore = "a campaign of one minute: cargo test --test val_published -- --ignored --nocapture"]
 fn campaign_published() {
     let college = load("free_throw");
     let simulator = Simulator::new(&college.physics).unwrap();
