@@ -93,7 +93,7 @@ impl Simulator {
 
     /// The verdicts of many shots, from their states at the release: the fast form of
     /// [`Simulator::verdict_from`], equal to it bit for bit. The more shots a call, the better
-    /// the lanes are filled to its end: ten thousand lose a tenth of the speed of a hundred thousand. The
+    /// the lanes are filled to its end: twenty thousand lose a tenth of the speed of two hundred thousand. The
     /// room takes a third of a megabyte, and 32 bytes for each verdict.
     pub fn verdicts<'r>(&self, starts: &[State], room: &'r mut Room) -> &'r [Verdict] {
         match (self.integrator, self.lanes.0) {
