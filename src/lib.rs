@@ -1,74 +1,87 @@
 //! bankshot: a parallel batch probability engine for the basketball shot.
 //!
-//! Data flows one way: a [`profile`] is checked, a [`plan`] says which releases are worth trying,
-//! [`dynamics`] simulates them, [`probability`] reduces them to probabilities and best shots, and
-//! [`output`] writes those down; a [`sweep`] does so for every place of a [`court`]. No module imports one further down that line.
+//! Data flows one way: a checked [`shooter::Profile`] (from TOML by [`config`]), the releases worth trying
+//! ([`search_space`]), the simulation ([`dynamics`]), probabilities ([`probability`]), what they depend on
+//! ([`analysis`]), and the best shots ([`best_shot`]). No module imports one further down the list below.
 //!
 //! The model is that of "Numerical Analysis of the Basketball Shot" (J. Dyn. Sys. Meas. Control,
 //! DOI 10.1115/1.1636193), with its errata; `docs/model.md` has the equations.
 //!
-//! ```
-//! use bankshot::probability::{Silent, best};
-//! use bankshot::profile;
+//! With `default-features = false` the crate is this engine alone. The feature `app` (default) adds the
+//! command line, tables, sweeps on disk, plots and reports.
 //!
-//! let mut profile = profile::parse(
-//!     r#"
-//!     [shooter]
-//!     release_height = "7 ft"
-//!     max_backspin = "3 rev/s"
-//!     [shooter.errors]
-//!     c10 = "0.25 ft/s"
-//!     c20 = "1.2 deg"
-//!     c30 = "1.22 deg"
-//!     c40 = "0.3 rev/s"
-//!     [location]
-//!     distance = "13.75 ft"
-//!     angle = "0 deg"
-//!     [grid]
-//!     speed = 16
-//!     pitch = 10
-//!     polar = 10
-//!     backspin = 4
-//!     [search]
-//!     standard_error = 0.01
-//!     "#,
-//!     "example",
-//! )?;
-//! profile.shooter.name = "guard".to_owned();
-//! let best = best::find(&profile, &Silent)?;
-//! let direct = best.direct?;
-//! assert!(direct.estimate.probability > 0.6);
+//! ```
+//! use bankshot::probability::Silent;
+//! use bankshot::shooter::{Location, ProfileSettings, ReleaseDispersion, Shooter, TableGrid};
+//! use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+//!
+//! let mut settings = ProfileSettings::new(Shooter {
+//!     name: "guard".to_owned(),
+//!     release_height_m: 7.0 * FOOT_M,
+//!     max_backspin_rad_s: 3.0 * REV_RAD,
+//!     max_side_spin_rad_s: 0.0,
+//!     dispersion: ReleaseDispersion {
+//!         c10_m_s: 0.25 * FOOT_M,
+//!         c20_rad: 1.2 * DEGREE_RAD,
+//!         c30_rad: 1.22 * DEGREE_RAD,
+//!         c40_rad_s: 0.3 * REV_RAD,
+//!         ..ReleaseDispersion::NONE
+//!     },
+//! });
+//! // Small, so that the example is fast.
+//! settings.grid = TableGrid { speed: 16, pitch: 10, polar: 10, backspin: 4 };
+//! settings.search.standard_error = Some(0.01);
+//! let profile = settings.at(Location {
+//!     distance_m: 13.75 * FOOT_M,
+//!     angle_rad: 0.0,
+//! })?;
+//! let best = bankshot::best_shot::find(&profile, &Silent)?;
+//! assert!(best.direct?.estimate.probability > 0.6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-// Constants of ball, ring and board, in SI units.
-pub mod physics;
+/// Numbers, vectors and distributions.
+pub mod math;
 
-// Quantities with their units, at the border of the program.
+/// Units of measurement.
 pub mod units;
 
-// The lines of a court.
-pub mod court;
+/// Physical constants, geometry of the solids, state of the ball, lines of the court.
+pub mod model;
 
-mod lane;
-
-// The ball in flight and in contact: from a release to made or missed.
+/// The ball in flight and in contact.
 pub mod dynamics;
 
-// A shooter's profile, checked.
-pub mod profile;
+/// Release errors, location, and the checked profile.
+pub mod shooter;
 
-// Which releases are worth simulating, and the cost.
-pub mod plan;
+/// Configuration files in TOML.
+pub mod config;
 
-// Probabilities and best shots.
+/// The releases that are worth simulating.
+pub mod search_space;
+
+/// The probability of making a shot.
 pub mod probability;
 
-// Records, tables and files.
+/// Aim, sensitivity, misses, and maps of releases.
+pub mod analysis;
+
+/// The best direct and the best bank shot.
+pub mod best_shot;
+
+/// Tables, JSON, CSV and files.
+#[cfg(feature = "app")]
 pub mod output;
 
-// Best shots at many places, on disk as they come.
+/// Best shots at every spot of a region, on disk.
+#[cfg(feature = "app")]
 pub mod sweep;
 
-// Results to look at.
-pub mod picture;
+/// Plots as SVG and PNG.
+#[cfg(feature = "app")]
+pub mod plots;
+
+/// Reports as HTML pages.
+#[cfg(feature = "app")]
+pub mod report;

@@ -11,10 +11,10 @@
 #include <time.h>
 
 /* Units of the paper: ft, s, lb (weight), slug. */
-static const double PI = 3.14159265358979323846, G = 32.2, MASS = 21.0 / 16.0 / 32.2, K = 2000.0, C = 1.53, MU = 1.0;
+static const double PI = 3.14159265358979323846, G = 32.2, MASS = 21.0 / 16.0 / 32.2, K = 2000.0, MU = 1.0;
 static const double RING = (9.0 + 5.0 / 16.0) / 12.0, FACE = -1.25, HALF_WIDTH = 3.0, BOTTOM = -0.5, TOP = 3.0;
 static const double HOOP = 10.0, TIME_LIMIT = 10.0;
-static double RADIUS;
+static double RADIUS, C = 1.53; /* C: damping, lb s/ft; a third argument replaces it */
 
 typedef struct {
     double x[9]; /* position, velocity, spin */
@@ -113,6 +113,7 @@ static int made(State s, double dt_max, double dt_min) {
 
 int main(int count, char **arguments) {
     double dt_max = count > 1 ? atof(arguments[1]) : 0.015, dt_min = count > 2 ? atof(arguments[2]) : 0.0005;
+    if (count > 3) C = atof(arguments[3]);
     RADIUS = 29.75 / (24 * PI);
     size_t shots = 0, room = 1024;
     State *starts = malloc(room * sizeof *starts);

@@ -1,192 +1,176 @@
-//! `bankshot compare`: bank and direct against each other, on the court or at one place; or two shooters.
+//! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two shooters.
 
-use super::arguments::CompareOptions;
-use super::best::named_folder;
+use super::args::CompareOptions;
+use super::config_files::{load_profile, load_sweep, read_text};
 use super::failure::{Failure, code};
-use super::plan::{load, read_text};
-use super::progress::Bars;
-use super::sweep;
-use super::terminal::{answer, tell};
-use bankshot::dynamics::Simulator;
-use bankshot::output::files;
-use bankshot::picture::sweep_maps::{Picture, Sweep, against};
-use bankshot::picture::{comparison, report, svg};
-use bankshot::probability::best;
-use bankshot::profile::Profile;
-use bankshot::sweep::Configuration;
-use bankshot::sweep::configuration::is_sweep;
-use bankshot::sweep::folder::Folder;
+use super::plot_files;
+use super::progress_bars::ProgressBars;
+use super::run_folder;
+use super::sweep_summary;
+use super::terminal::{print_answer, print_remark};
+use bankshot::best_shot::{self, BestShots};
+use bankshot::output::atomic_file;
+use bankshot::plots::plot::Plot;
+use bankshot::plots::plotted_shot::PlottedShot;
+use bankshot::plots::sweep_results::SweepResults;
+use bankshot::plots::{
+    bank_direct_release_map, sweep_bank_direct_map, sweep_best_shot_maps, sweep_difference_map,
+};
+use bankshot::shooter::Profile;
+use bankshot::sweep::SweepConfig;
 use bankshot::sweep::jobs::Jobs;
-use bankshot::sweep::row::Row;
+use bankshot::sweep::result_row::ResultRow;
+use bankshot::sweep::sweep_file::is_sweep;
+use bankshot::sweep::sweep_folder::SweepFolder;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Pixels of a PNG for each of its drawing's.
-const SCALE: f32 = 1.5;
+/// A file beside the plots of a sweep that names the sweep's folder.
+const SWEEP_LINK: &str = "of_sweep.json";
 
 pub(crate) fn run(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
-    match swept(&options.what)? {
-        Some(one) => {
-            let other = options.against.as_deref().map(|path| match swept(path)? {
-                Some(other) => Ok(other),
-                None => Err(Failure::usage(format!(
-                    "{}: is no sweep, but {} is; compare like with like",
-                    path.display(),
-                    options.what.display()
-                ))),
-            });
-            courts(options, one, other.transpose()?, quiet)
-        }
-        None => place(options, quiet),
-    }
+    let Some(sweep) = open_sweep(&options.what)? else {
+        return compare_at_location(options, quiet);
+    };
+    let other = match &options.against {
+        None => None,
+        Some(path) => Some(open_sweep(path)?.ok_or_else(|| {
+            Failure::usage(format!(
+                "{}: is not a sweep, but {} is; compare two of the same type",
+                path.display(),
+                options.what.display()
+            ))
+        })?),
+    };
+    compare_on_court(options, &sweep, other.as_ref(), quiet)
 }
 
 /// A sweep's folder with its results.
-type Swept = (Folder, Configuration, BTreeMap<u64, Row>);
+struct OpenSweep {
+    folder: SweepFolder,
+    config: SweepConfig,
+    rows: BTreeMap<u64, ResultRow>,
+}
 
-/// The sweep of a folder, or of a TOML file whose sweep has its usual folder.
-fn swept(path: &Path) -> Result<Option<Swept>, Failure> {
+impl OpenSweep {
+    fn exit_code(&self) -> u8 {
+        sweep_summary::exit_code(&Jobs::new(&self.config), &self.rows)
+    }
+}
+
+/// The sweep of a folder, or of a TOML file whose sweep has its default folder; `None` for a profile.
+fn open_sweep(path: &Path) -> Result<Option<OpenSweep>, Failure> {
     let path = if path.is_dir() {
         path.to_owned()
     } else if is_sweep(&read_text(path)?) {
-        sweep::usual_folder(&sweep::load(path)?.0)
+        run_folder::of_sweep(&load_sweep(path)?.0)?
     } else {
         return Ok(None);
     };
-    let (folder, configuration) = Folder::to_look_at(&path)?;
+    let (folder, config) = SweepFolder::open_read_only(&path)?;
     let (rows, remarks) = folder.union()?;
     for remark in remarks {
-        tell(&format!("remark: {remark}"));
+        print_remark(&format!("remark: {remark}"));
     }
-    Ok(Some((folder, configuration, rows)))
+    Ok(Some(OpenSweep {
+        folder,
+        config,
+        rows,
+    }))
 }
 
-fn courts(
+fn compare_on_court(
     options: &CompareOptions,
-    (sweep, configuration, rows): Swept,
-    other: Option<Swept>,
+    sweep: &OpenSweep,
+    other: Option<&OpenSweep>,
     quiet: bool,
 ) -> Result<u8, Failure> {
-    let one = Sweep::new(&configuration, &rows);
-    let mut pictures = Vec::new();
-    if let Some((_, configuration, rows)) = &other {
-        let other = Sweep::new(configuration, rows);
-        let Some(picture) = against(&one, &other) else {
-            return Err(Failure::usage(
-                "the two sweeps have no place in common with a result",
-            ));
-        };
-        pictures.push(picture);
-    } else {
-        pictures.extend(one.bank_and_direct());
-        pictures.extend(one.best_maps());
+    let results = SweepResults::new(&sweep.config, &sweep.rows);
+    let mut plots = Vec::new();
+    match other {
+        Some(other) => {
+            let other = SweepResults::new(&other.config, &other.rows);
+            let plot = sweep_difference_map::draw(&results, &other);
+            plots.push(plot.ok_or_else(|| {
+                Failure::usage("the two sweeps have no place in common with a result")
+            })?);
+        }
+        None => {
+            plots.extend(sweep_bank_direct_map::draw(&results));
+            plots.extend(sweep_best_shot_maps::draw_all(&results));
+        }
     }
-    let folder = options
-        .out
-        .clone()
-        .unwrap_or_else(|| sweep.path().join("pictures"));
-    write(&folder, &pictures)?;
-    let of = std::fs::canonicalize(sweep.path()).unwrap_or(sweep.path().to_owned());
-    let note = format!(
-        "{:#}\n",
-        serde_json::json!({ "sweep": of.display().to_string() })
-    );
-    let file = folder.join("of_sweep.json");
-    files::write(&file, note.as_bytes()).map_err(|error| Failure::io(file.display(), &error))?;
-    let mut exit = sweep::exit_of(&Jobs::new(&configuration), &rows);
-    if let Some((_, configuration, rows)) = &other {
-        exit = exit.max(sweep::exit_of(&Jobs::new(configuration), rows));
-    }
-    tell_of(&folder, &pictures, quiet)?;
-    if exit != code::WHOLE && !quiet {
-        tell("remark: the sweep is not whole; what is missing or failed is grey");
+    let sweep_path = sweep.folder.path();
+    let folder = match &options.out {
+        Some(folder) => folder.clone(),
+        None => sweep_path.join("plots"),
+    };
+    plot_files::write(&folder, &plots)?;
+    let target = std::fs::canonicalize(sweep_path).unwrap_or(sweep_path.to_owned());
+    let link = serde_json::json!({ "sweep": target.display().to_string() });
+    let file = folder.join(SWEEP_LINK);
+    atomic_file::write(&file, format!("{link:#}\n").as_bytes())
+        .map_err(|error| Failure::io(file.display(), &error))?;
+    plot_files::print_captions(&folder, &plots, quiet)?;
+    let exit = sweep
+        .exit_code()
+        .max(other.map_or(code::DONE, OpenSweep::exit_code));
+    if exit != code::DONE && !quiet {
+        print_remark("remark: the sweep is incomplete; what is missing or failed is grey");
     }
     Ok(exit)
 }
 
-fn place(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profiles = vec![load(&options.what)?];
-    if let Some(other) = &options.against {
-        profiles.push(load(other)?);
+fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
+    let profile = load_profile(&options.what)?;
+    let other = match &options.against {
+        None => None,
+        Some(path) => Some(load_profile(path)?),
+    };
+    let bars = ProgressBars::new(quiet);
+    let best = best_shot::find(&profile, &bars)?;
+    let shots = PlottedShot::of_best(&best);
+    let mut plots: Vec<Plot> = Vec::new();
+    plots.extend(bank_direct_release_map::draw_outcomes(&profile, &shots));
+    plots.extend(bank_direct_release_map::draw_probabilities(&profile, &shots));
+    let mut text = probabilities_text(&profile, &best);
+    let mut exit = run_folder::exit_code(&profile, &best);
+    if let Some(other) = other {
+        let best = best_shot::find(&other, &bars)?;
+        let shots = PlottedShot::of_best(&best);
+        if let Some(mut plot) = bank_direct_release_map::draw_probabilities(&other, &shots) {
+            plot.name.push_str("_against");
+            plots.push(plot);
+        }
+        text.push_str(&probabilities_text(&other, &best));
+        exit = exit.max(run_folder::exit_code(&other, &best));
     }
-    let mut pictures = Vec::new();
-    let mut text = String::new();
-    let bars = Bars::new(quiet);
-    let mut first = None;
-    let mut exit = code::WHOLE;
-    for (i, profile) in profiles.iter().enumerate() {
-        let simulator = Simulator::with_integrator(&profile.physics, profile.integrator)
-            .map_err(Failure::usage)?;
-        let best = best::find(profile, &bars)?;
-        exit = exit.max(super::best::exit_code(profile, &best));
-        for (kind, shot) in [("direct", &best.direct), ("bank", &best.bank)] {
-            text.push_str(&match shot {
+    let folder = match &options.out {
+        Some(folder) => folder.clone(),
+        None => run_folder::of_profile(&profile, None),
+    };
+    plot_files::write(&folder, &plots)?;
+    run_folder::write_best_shots(&folder, &options.what, &profile, &best)?;
+    // The folder may have had the plots of a sweep.
+    let _ = std::fs::remove_file(folder.join(SWEEP_LINK));
+    print_answer(&text)?;
+    plot_files::print_captions(&folder, &plots, quiet)?;
+    Ok(exit)
+}
+
+/// P of the best shots of a profile, or why there is none.
+fn probabilities_text(profile: &Profile, best: &BestShots) -> String {
+    best.by_kind()
+        .into_iter()
+        .map(|(kind, shot)| {
+            let (name, kind) = (&profile.shooter().name, kind.name());
+            match shot {
                 Ok(shot) => format!(
-                    "{}, {kind}: P {:.4} \u{b1} {:.4}\n",
-                    profile.shooter.name, shot.estimate.probability, shot.estimate.standard_error
+                    "{name}, {kind}: P {:.4} \u{b1} {:.4}\n",
+                    shot.estimate.probability, shot.estimate.standard_error
                 ),
-                Err(reason) => format!("{}, {kind}: {reason}\n", profile.shooter.name),
-            });
-        }
-        let shots = report::shots_of(profile, &best);
-        if i == 0 {
-            pictures.extend(comparison::outcomes_about(profile, &simulator, &shots));
-        }
-        if let Some(mut picture) = comparison::in_release_space(profile, &simulator, &shots) {
-            if i > 0 {
-                picture.name.push_str("_against");
+                Err(reason) => format!("{name}, {kind}: {reason}\n"),
             }
-            pictures.push(picture);
-        }
-        if i == 0 {
-            first = Some((profile, best));
-        }
-    }
-    let folder = options.out.clone().unwrap_or_else(|| usual(&profiles[0]));
-    write(&folder, &pictures)?;
-    if let Some((profile, best)) = first {
-        super::best::write(&folder, &options.what, profile, &best, profile.output.units)?;
-    }
-    // What a sweep may have left there.
-    let _ = std::fs::remove_file(folder.join("of_sweep.json"));
-    answer(&text)?;
-    tell_of(&folder, &pictures, quiet)?;
-    Ok(exit)
-}
-
-fn usual(profile: &Profile) -> PathBuf {
-    PathBuf::from(&profile.output.folder).join(named_folder(&profile.shooter.name, &profile.hash()))
-}
-
-/// Draws the paper's figures.
-pub(crate) fn figures(out: &Path, quiet: bool) -> Result<u8, Failure> {
-    let pictures = bankshot::picture::figures::all().map_err(Failure::bug)?;
-    write(out, &pictures)?;
-    tell_of(out, &pictures, quiet)
-}
-
-/// Writes each picture as SVG and as PNG.
-pub(crate) fn write(folder: &Path, pictures: &[Picture]) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), &error))?;
-    for picture in pictures {
-        let png = svg::to_png(&picture.svg, SCALE).map_err(Failure::bug)?;
-        for (ending, bytes) in [("svg", picture.svg.as_bytes()), ("png", &png[..])] {
-            let path = folder.join(format!("{}.{ending}", picture.name));
-            files::write(&path, bytes).map_err(|error| Failure::io(path.display(), &error))?;
-        }
-    }
-    Ok(())
-}
-
-pub(crate) fn tell_of(folder: &Path, pictures: &[Picture], quiet: bool) -> Result<u8, Failure> {
-    for picture in pictures {
-        answer(&format!("{}: {}\n", picture.name, picture.caption))?;
-    }
-    if !quiet {
-        tell(&format!(
-            "pictures written to {} (svg and png)",
-            folder.display()
-        ));
-    }
-    Ok(code::WHOLE)
+        })
+        .collect()
 }

@@ -1,23 +1,25 @@
-//! Why a command failed, and the exit code that says so.
+//! Why a command failed, with its exit code.
 
-use bankshot::plan::PlanError;
-use bankshot::probability::best::BestError;
-use bankshot::profile::ProfileError;
-use bankshot::sweep::folder::FolderError;
-use bankshot::sweep::store::StoreError;
+use bankshot::best_shot::BestShotError;
+use bankshot::config::ConfigError;
+use bankshot::dynamics::StateError;
+use bankshot::search_space::PlanError;
+use bankshot::shooter::{IdentityError, ProfileError};
+use bankshot::sweep::SweepFolderError;
+use bankshot::sweep::result_store::StoreError;
 use std::fmt::Display;
 
 /// Exit codes.
 pub(crate) mod code {
-    /// Everything asked for is there.
-    pub(crate) const WHOLE: u8 = 0;
-    /// Ran, but missed the standard error asked for.
-    pub(crate) const MISSED: u8 = 1;
+    /// Everything is done.
+    pub(crate) const DONE: u8 = 0;
+    /// Done, but the wanted standard error was not reached.
+    pub(crate) const IMPRECISE: u8 = 1;
     /// Usage or configuration refused; nothing was written.
     pub(crate) const USAGE: u8 = 2;
     /// Incomplete, or some rows or jobs failed; the others are done.
     pub(crate) const INCOMPLETE: u8 = 3;
-    /// Data damaged, foreign or contradictory.
+    /// Data damaged, of another sweep, or contradictory.
     pub(crate) const DAMAGED: u8 = 4;
     /// A bug.
     pub(crate) const BUG: u8 = 70;
@@ -29,7 +31,7 @@ pub(crate) mod code {
     pub(crate) const INTERRUPTED: u8 = 130;
 }
 
-/// A command that could not do what was asked.
+/// A command that failed.
 #[derive(Debug)]
 pub(crate) struct Failure {
     pub(crate) code: u8,
@@ -59,16 +61,17 @@ impl Failure {
     }
 }
 
-impl From<FolderError> for Failure {
-    fn from(error: FolderError) -> Self {
+impl From<SweepFolderError> for Failure {
+    fn from(error: SweepFolderError) -> Self {
         let code = match &error {
-            FolderError::Io { .. } => code::IO,
-            FolderError::Store(error) => return Self::from(error.clone()),
-            FolderError::InUse { .. } => code::STOPPED,
-            FolderError::NoSweep { .. } => code::USAGE,
-            FolderError::Changed { .. }
-            | FolderError::Contradiction { .. }
-            | FolderError::Profile(_) => code::DAMAGED,
+            SweepFolderError::Io { .. } => code::IO,
+            SweepFolderError::Store(error) => return Self::from(error.clone()),
+            SweepFolderError::InUse { .. } => code::STOPPED,
+            SweepFolderError::NoSweep { .. } => code::USAGE,
+            SweepFolderError::OtherSweep { .. }
+            | SweepFolderError::Contradiction { .. }
+            | SweepFolderError::Config(_) => code::DAMAGED,
+            SweepFolderError::Identity(_) => code::BUG,
         };
         Self {
             code,
@@ -89,20 +92,21 @@ impl From<StoreError> for Failure {
     }
 }
 
-impl From<ProfileError> for Failure {
-    fn from(error: ProfileError) -> Self {
-        Self::usage(error)
+impl From<IdentityError> for Failure {
+    fn from(error: IdentityError) -> Self {
+        Self::bug(error)
     }
 }
 
-impl From<PlanError> for Failure {
-    fn from(error: PlanError) -> Self {
-        Self::usage(error)
-    }
+/// Errors in the input: refused.
+macro_rules! usage_errors {
+    ($($error:ty),+ $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::usage(error)
+            }
+        })+
+    };
 }
 
-impl From<BestError> for Failure {
-    fn from(error: BestError) -> Self {
-        Self::usage(error)
-    }
-}
+usage_errors!(ConfigError, ProfileError, PlanError, BestShotError, StateError);

@@ -1,26 +1,36 @@
-//! The command line: arguments in, work called, answers out. Only this layer prints.
+//! The command line: parses options, calls the library, prints answers. Only this module prints.
 
-mod arguments;
+mod args;
 mod best;
+mod check;
 mod compare;
+mod config_files;
 mod failure;
-mod nominal;
+mod figures;
+mod nominal_options;
 mod plan;
+mod plot_files;
 mod probability;
-mod progress;
+mod progress_bars;
 mod report;
+mod run_folder;
 mod signals;
 mod simulate;
 mod sweep;
+mod sweep_plan;
+mod sweep_status;
+mod sweep_summary;
 mod terminal;
 mod trace;
+mod trace_text;
+mod value_parsers;
 
-use arguments::{Arguments, Command};
+use args::{Arguments, Command};
 use clap::{CommandFactory, Parser};
 use failure::{Failure, code};
 use std::process::ExitCode;
 
-/// Runs the program; the exit code is documented in `--help`.
+/// Runs the program. `--help` lists the exit codes.
 pub(crate) fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -28,21 +38,20 @@ pub(crate) fn main() -> ExitCode {
             let printed = error.print();
             return ExitCode::from(match (error.use_stderr(), printed) {
                 (true, _) => code::USAGE,
-                (false, Ok(())) => code::WHOLE,
+                (false, Ok(())) => code::DONE,
                 (false, Err(_)) => code::IO,
             });
         }
     };
-    signals::watch();
-    let result = std::panic::catch_unwind(|| run(&arguments));
-    match result {
+    signals::handle();
+    match std::panic::catch_unwind(|| run(&arguments)) {
         Ok(Ok(code)) => ExitCode::from(code),
         Ok(Err(failure)) => {
-            terminal::complain(&failure.message);
+            terminal::print_error(&failure.message);
             ExitCode::from(failure.code)
         }
         Err(_) => {
-            terminal::complain(
+            terminal::print_error(
                 "this is a bug in bankshot; please report it with the command and its input",
             );
             ExitCode::from(code::BUG)
@@ -51,33 +60,34 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<u8, Failure> {
+    let quiet = arguments.quiet;
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
-        Command::Best(options) => best::run(options, arguments.quiet),
-        Command::Compare(options) => compare::run(options, arguments.quiet),
-        Command::Check(options) => plan::check(options),
-        Command::Plan(options) => plan::run(options, arguments.quiet),
-        Command::Probability(options) => probability::run(options, arguments.quiet),
-        Command::Simulate(options) => simulate::run(options, arguments.quiet),
-        Command::Sweep(options) => sweep::run(options, arguments.quiet),
-        Command::Status(options) => sweep::status(options),
-        Command::Verify(options) => sweep::verify(options, arguments.quiet),
-        Command::Missing(options) => sweep::missing(options),
-        Command::Merge(options) => sweep::merge(options, arguments.quiet),
-        Command::Report(options) => report::run(options, arguments.quiet),
-        Command::Figures { out } => compare::figures(out, arguments.quiet),
-        Command::Trace(options) => trace::run(options, arguments.quiet),
+        Command::Best(options) => best::run(options, quiet),
+        Command::Compare(options) => compare::run(options, quiet),
+        Command::Check(options) => check::run(options),
+        Command::Plan(options) => plan::run(options, quiet),
+        Command::Probability(options) => probability::run(options, quiet),
+        Command::Simulate(options) => simulate::run(options, quiet),
+        Command::Sweep(options) => sweep::run(options, quiet),
+        Command::Status(options) => sweep_status::status(options),
+        Command::Verify(options) => sweep_status::verify(options, quiet),
+        Command::Missing(options) => sweep_status::missing(options),
+        Command::Merge(options) => sweep::merge(options, quiet),
+        Command::Report(options) => report::run(options, quiet),
+        Command::Figures { out } => figures::run(out, quiet),
+        Command::Trace(options) => trace::run(options, quiet),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "bankshot", &mut script);
-            terminal::answer_bytes(&script)
+            terminal::print_bytes(&script)
         }
         Command::Man => {
             let mut page = Vec::new();
             clap_mangen::Man::new(Arguments::command())
                 .render(&mut page)
-                .map_err(|error| Failure::io("the man page", &error))?;
-            terminal::answer_bytes(&page)
+                .map_err(|error| Failure::io("the manual page", &error))?;
+            terminal::print_bytes(&page)
         }
     })
 }

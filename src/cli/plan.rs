@@ -1,126 +1,112 @@
-//! `bankshot check` and `bankshot plan`: what a profile says, and what it would cost.
+//! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
-use super::arguments::{CheckOptions, PlanOptions};
+use super::args::PlanOptions;
+use super::config_files::{load_profile, read_text};
 use super::failure::Failure;
-use super::terminal::{answer, tell};
-use bankshot::dynamics::{Room, Simulator};
-use bankshot::output;
-use bankshot::plan::Plan;
-use bankshot::probability::BATCH_BYTES;
-use bankshot::profile::{self, LARGEST_PROFILE_BYTES, Nominal, Profile};
-use bankshot::sweep::configuration::is_sweep;
+use super::sweep_plan;
+use super::terminal::{print_answer, print_remark};
+use bankshot::dynamics::BatchWorkspace;
+use bankshot::math::grid::CellAxis;
+use bankshot::output::json_record::{number, object, provenance};
+use bankshot::probability::MAX_BATCH_BYTES;
+use bankshot::search_space::{TablePlan, WideSample, sample_wide};
+use bankshot::shooter::{Nominal, Profile};
+use bankshot::sweep::sweep_file::is_sweep;
 use bankshot::units::{DEGREE_RAD, REV_RAD};
-use std::io::Read;
-use std::path::Path;
 use std::time::Instant;
 
-/// Reads a text file of at most 16 MiB.
-pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
-    let shown = path.display();
-    let about =
-        std::fs::metadata(path).map_err(|error| Failure::usage(format!("{shown}: {error}")))?;
-    if !about.is_file() {
-        return Err(Failure::usage(format!(
-            "{shown}: is not a file; give a TOML file"
-        )));
-    }
-    if about.len() > LARGEST_PROFILE_BYTES {
-        return Err(Failure::usage(format!(
-            "{shown}: has {} bytes; at most {LARGEST_PROFILE_BYTES} are read",
-            about.len()
-        )));
-    }
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(LARGEST_PROFILE_BYTES).read_to_end(&mut bytes))
-        .map_err(|error| Failure::usage(format!("{shown}: {error}")))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let place = error.utf8_error().valid_up_to();
-        Failure::usage(format!(
-            "{shown}: is not UTF-8 text (byte {place}); save it as UTF-8"
-        ))
-    })
-}
-
-/// Reads and checks a profile.
-pub(crate) fn load(path: &Path) -> Result<Profile, Failure> {
-    let text = read_text(path)?;
-    Ok(profile::parse(&text, &path.display().to_string())?)
-}
-
-/// Shots that the climbs and the final integrals take, about.
+/// About the number of shots of the climbs and the final estimates.
 const SEARCH_SHOTS: u64 = 1_000_000;
-/// Windows that a search takes, about: one for each kind.
+/// About the number of windows of a search: one for each kind.
 const WINDOWS: u64 = 2;
+/// Shots that the forecast is based on.
+const FORECAST_SHOTS: u32 = 65_536;
+/// About the memory of the program itself, bytes.
+const PROGRAM_BYTES: f64 = 10e6;
 
-pub(crate) fn check(options: &CheckOptions) -> Result<u8, Failure> {
-    if is_sweep(&read_text(&options.profile)?) {
-        let (configuration, _) = super::sweep::load(&options.profile)?;
-        let places = configuration.spots.len();
-        let (path, name) = (options.profile.display(), &configuration.name);
-        return answer(&format!("{path}: fine ({name}, {places} places)\n"));
-    }
-    let profile = load(&options.profile)?;
-    Plan::new(&profile)?;
-    let (long, metre) = profile.output.units.length();
-    answer(&format!(
-        "{}: fine ({}, {:.2} {long} from the hoop at {:.1} deg)\n",
-        options.profile.display(),
-        profile.shooter.name,
-        profile.place.distance_m / metre,
-        profile.place.angle_rad / DEGREE_RAD
-    ))
+/// What `best` would take.
+struct Forecast {
+    seconds: f64,
+    threads: usize,
+    memory_bytes: f64,
+    /// Bound of the probability beyond the table: for a shot in the middle of its pitch angles and backspins,
+    /// and for one at their lower edge.
+    mass_outside: (f64, f64),
+    wide_sample: Option<WideSample>,
 }
 
 pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
-    let text = read_text(&options.profile)?;
-    if is_sweep(&text) {
-        return super::sweep::plan(&options.profile, options.json, quiet);
+    if is_sweep(&read_text(&options.profile)?) {
+        return sweep_plan::run(&options.profile, options.json, quiet);
     }
-    let profile = load(&options.profile)?;
-    let plan = Plan::new(&profile)?;
-    let simulator =
-        Simulator::with_integrator(&profile.physics, profile.integrator).map_err(Failure::usage)?;
-    let seconds = forecast_s(&profile, &plan, &simulator);
-    let wide = (options.wide_sample > 0)
-        .then(|| plan.wide_sample(&profile, &simulator, options.wide_sample));
+    let profile = load_profile(&options.profile)?;
+    let plan = TablePlan::for_search(&profile)?;
+    let forecast = forecast(&profile, &plan, options.wide_sample);
+    if options.json {
+        return print_answer(&json(&profile, &plan, &forecast)?);
+    }
+    let misses_makes = forecast
+        .wide_sample
+        .is_some_and(|sample| sample.made_outside > 0);
+    if misses_makes && !quiet {
+        print_remark(
+            "remark: shots outside the search range were made; raise speed_max, or report it",
+        );
+    }
+    print_answer(&text(&profile, &plan, &forecast))
+}
+
+fn forecast(profile: &Profile, plan: &TablePlan, wide_sample: u64) -> Forecast {
     let middle = Nominal {
         speed_m_s: plan.nominal.speed.low,
         pitch_rad: 0.5 * (plan.pitch.low + plan.pitch.high),
-        polar_rad: profile.place.angle_rad,
-        backspin_rad_s: 0.5 * profile.shooter.max_backspin_rad_s,
+        polar_rad: profile.location().angle_rad,
+        backspin_rad_s: 0.5 * profile.shooter().max_backspin_rad_s,
         ..Nominal::default()
     };
     let edge = Nominal {
-        pitch_rad: profile.search.pitch_min_rad,
+        pitch_rad: profile.search().pitch_min_rad,
         backspin_rad_s: 0.0,
         ..middle
     };
-    let mass = (
-        plan.mass_outside(&profile, &middle),
-        plan.mass_outside(&profile, &edge),
-    );
-    // The table, a batch of shots on each thread, and the program.
     let threads = rayon::current_num_threads();
-    let memory = plan.memory_bytes as f64 + (threads * BATCH_BYTES) as f64 + 10e6;
-    if options.json {
-        let mut record = output::provenance(&profile.hash());
-        record.push((
-            "plan".to_owned(),
-            serde_json::to_value(&plan).unwrap_or_default(),
-        ));
-        record.push(("forecast_s".to_owned(), output::number(seconds)));
-        record.push(("memory_bytes".to_owned(), output::number(memory.round())));
-        record.push((
-            "wide_sample".to_owned(),
-            serde_json::to_value(wide).unwrap_or_default(),
-        ));
-        record.push(("mass_outside_middle".to_owned(), output::number(mass.0)));
-        record.push(("mass_outside_edge".to_owned(), output::number(mass.1)));
-        return answer(&format!("{:#}\n", output::object(record)));
+    Forecast {
+        seconds: forecast_s(profile, plan),
+        threads,
+        // The table, a batch of shots on each thread, and the program.
+        memory_bytes: plan.memory_bytes as f64
+            + (threads * MAX_BATCH_BYTES) as f64
+            + PROGRAM_BYTES,
+        mass_outside: (
+            plan.mass_outside(profile, &middle),
+            plan.mass_outside(profile, &edge),
+        ),
+        wide_sample: (wide_sample > 0).then(|| sample_wide(profile, plan, wide_sample)),
     }
-    let (long, foot) = profile.output.units.length();
-    let deg = |axis: bankshot::plan::Axis| {
+}
+
+fn json(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> Result<String, Failure> {
+    let mut record = provenance(profile.hash());
+    let plan = serde_json::to_value(plan).map_err(Failure::bug)?;
+    let wide_sample = serde_json::to_value(forecast.wide_sample).map_err(Failure::bug)?;
+    let (middle, edge) = forecast.mass_outside;
+    record.extend([
+        ("plan".to_owned(), plan),
+        ("forecast_s".to_owned(), number(forecast.seconds)),
+        (
+            "memory_bytes".to_owned(),
+            number(forecast.memory_bytes.round()),
+        ),
+        ("wide_sample".to_owned(), wide_sample),
+        ("mass_outside_middle".to_owned(), number(middle)),
+        ("mass_outside_edge".to_owned(), number(edge)),
+    ]);
+    Ok(format!("{:#}\n", object(record)))
+}
+
+fn text(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> String {
+    let (long, metre) = profile.output().units.length();
+    let angles = |axis: CellAxis| {
         format!(
             "{:.1} to {:.1} deg, {} points",
             axis.low / DEGREE_RAD,
@@ -128,42 +114,55 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
             axis.count
         )
     };
-    let mut text = format!(
-        "pitch       {}\npolar       {}\nbackspin    {:.2} to {:.2} rev/s, {} points\nspeed       {} points on each line, bracketed line by line; nominal {:.2} to {:.2} {long}/s\nshots       {} in the search, {} in each window about a best\nmemory      about {:.0} MiB\ntime        about {:.1} s on {} threads, the search for the best included\nmass beyond {:.1e} in the middle of the pitch angles and backspins, {:.1e} at their lower edge\n",
-        deg(plan.pitch),
-        deg(plan.polar),
-        plan.backspin.low / REV_RAD,
-        plan.backspin.high / REV_RAD,
-        plan.backspin.count,
-        plan.speeds_per_line,
-        plan.nominal.speed.low / foot,
-        plan.nominal.speed.high / foot,
-        plan.shots,
-        profile.grid.points(),
-        memory / f64::from(1 << 20),
-        seconds,
-        threads,
-        mass.0,
-        mass.1,
-    );
-    if let Some(wide) = wide {
+    let mut text = [
+        format!("pitch       {}\n", angles(plan.pitch)),
+        format!("polar       {}\n", angles(plan.polar)),
+        format!(
+            "backspin    {:.2} to {:.2} rev/s, {} points\n",
+            plan.backspin.low / REV_RAD,
+            plan.backspin.high / REV_RAD,
+            plan.backspin.count
+        ),
+        format!(
+            "speed       {} points on each line, within the search range; nominal {:.2} to {:.2} {long}/s\n",
+            plan.speeds_per_line,
+            plan.nominal.speed.low / metre,
+            plan.nominal.speed.high / metre
+        ),
+        format!(
+            "shots       {} in the search, {} in each window about a best shot\n",
+            plan.shots,
+            profile.grid().points()
+        ),
+        format!(
+            "memory      about {:.0} MiB\n",
+            forecast.memory_bytes / f64::from(1 << 20)
+        ),
+        format!(
+            "time        about {:.1} s on {} threads, the whole search\n",
+            forecast.seconds, forecast.threads
+        ),
+        format!(
+            "outside     probability {:.1e} beyond the table in the middle of its pitch angles and backspins, {:.1e} at their lower edge\n",
+            forecast.mass_outside.0, forecast.mass_outside.1
+        ),
+    ]
+    .concat();
+    if let Some(sample) = forecast.wide_sample {
         text.push_str(&format!(
-            "bracket     of {} shots drawn wide, {} lie outside the bracket; {} of those were made\n",
-            wide.drawn, wide.outside, wide.made_outside
+            "range       of {} shots from a wider range, {} lie outside the search range; {} of those were made\n",
+            sample.drawn, sample.outside, sample.made_outside
         ));
-        if wide.made_outside > 0 && !quiet {
-            tell("remark: shots outside the bracket were made; raise speed_max, or report it");
-        }
     }
-    answer(&text)
+    text
 }
 
-/// Forecast of the time that `best` takes, from a batch of shots of the bracket.
-fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
-    const SHOTS: u32 = 65_536;
+/// Forecast of the time of `best`, from a batch of shots of the bracket.
+fn forecast_s(profile: &Profile, plan: &TablePlan) -> f64 {
     let began = Instant::now();
     let mut starts = Vec::new();
-    for i in 0..SHOTS {
+    for i in 0..FORECAST_SHOTS {
+        // A Kronecker sequence.
         let part = |step: f64| (f64::from(i) * step).fract();
         let pitch_rad = plan.pitch.low + part(0.754_877_666) * (plan.pitch.high - plan.pitch.low);
         let polar_rad = plan.polar.low + part(0.569_840_291) * (plan.polar.high - plan.polar.low);
@@ -179,8 +178,9 @@ fn forecast_s(profile: &Profile, plan: &Plan, simulator: &Simulator) -> f64 {
         };
         starts.push(profile.release(&nominal).state());
     }
-    std::hint::black_box(simulator.verdicts(&starts, &mut Room::default()));
-    let per_shot = began.elapsed().as_secs_f64() / f64::from(SHOTS);
-    per_shot * (plan.shots + WINDOWS * profile.grid.points() + SEARCH_SHOTS) as f64
+    let mut workspace = BatchWorkspace::default();
+    let _ = std::hint::black_box(profile.simulator().verdicts(&starts, &mut workspace));
+    let per_shot = began.elapsed().as_secs_f64() / f64::from(FORECAST_SHOTS);
+    per_shot * (plan.shots + WINDOWS * profile.grid().points() + SEARCH_SHOTS) as f64
         / rayon::current_num_threads() as f64
 }

@@ -1,113 +1,129 @@
-//! `bankshot probability`: P of one nominal shot under any of the nine errors.
+//! `bankshot probability`: P of one nominal shot under up to nine errors.
 
-use super::arguments::{Method, ProbabilityOptions};
+use super::args::{Method, ProbabilityOptions};
+use super::config_files::load_profile;
 use super::failure::{Failure, code};
-use super::plan::load;
-use super::progress::Bars;
-use super::terminal::{answer, tell};
+use super::progress_bars::ProgressBars;
+use super::terminal::{print_answer, print_remark};
 use super::trace;
-use bankshot::dynamics::{Release, Simulator};
-use bankshot::output::probability::{self, Answer};
-use bankshot::plan::Plan;
-use bankshot::probability::estimate::{Estimate, LEAST_SHOTS, MOST_SHOTS, Sampler};
-use bankshot::probability::{grid, misses, monte_carlo};
-use bankshot::profile::{Nominal, Profile};
+use bankshot::analysis::miss_breakdown::classify_misses;
+use bankshot::dynamics::Release;
+use bankshot::output::probability_answer::{ProbabilityAnswer, answer_json, answer_text};
+use bankshot::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, eq25_grids, monte_carlo};
+use bankshot::search_space::TablePlan;
+use bankshot::shooter::{Nominal, Profile};
 
-/// Values along each axis of the paper's grid, and of the shifted grids.
-const LETTER: usize = 40;
-const SHIFTED: usize = 20;
+/// Default values along each axis of the paper's grid.
+const PAPER_GRID_VALUES: usize = 40;
+/// Default values along each axis of the shifted grids.
+const SHIFTED_GRID_VALUES: usize = 20;
+
+/// How precisely P is wanted.
+struct Precision {
+    target: f64,
+    budget: u64,
+    seed: u64,
+}
 
 pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load(&options.profile)?;
-    profile.output.units = options.units.unwrap_or(profile.output.units);
-    let nominal = options.nominal.resolve(&profile)?;
-    let simulator =
-        Simulator::with_integrator(&profile.physics, profile.integrator).map_err(Failure::usage)?;
-    if let Some((seed, index)) = options.replay {
-        let release = replayed(options.method, &profile, &simulator, &nominal, seed, index)?;
-        return trace::show(&simulator, &release, profile.output.units, options.json);
+    let mut profile = load_profile(&options.profile)?;
+    if let Some(units) = options.units {
+        profile = profile.with(|settings| settings.output.units = units.into())?;
     }
-    let seed = options.seed.unwrap_or(profile.search.seed);
-    let target = options.target.unwrap_or(profile.search.standard_error);
-    let budget = options.budget.unwrap_or(MOST_SHOTS);
-    let estimate = integrate(
-        options,
-        &profile,
-        &simulator,
-        &nominal,
-        (target, budget, seed),
-        quiet,
-    )?;
-    let sorts = matches!(options.method, Method::Sobol | Method::MonteCarlo);
-    let answered = Answer {
+    let nominal = options.nominal.resolve(&profile)?;
+    if let Some((seed, index)) = options.replay {
+        let release = replayed(options.method, &profile, &nominal, seed, index)?;
+        return trace::show(&profile, &release, options.json);
+    }
+    let precision = Precision {
+        target: options.target.unwrap_or(profile.search().standard_error),
+        budget: options.budget.unwrap_or(MAX_SHOTS),
+        seed: options.seed.unwrap_or(profile.search().seed),
+    };
+    let estimate = estimate(options, &profile, &nominal, &precision, quiet)?;
+    let draws_samples = matches!(options.method, Method::Sobol | Method::MonteCarlo);
+    let answer = ProbabilityAnswer {
         profile: &profile,
         nominal: &nominal,
         method: options.method.name(),
         estimate: &estimate,
-        misses: sorts.then(|| misses::sort(&profile, &simulator, &nominal, &estimate, seed)),
-        seed,
-        target,
+        misses: draws_samples
+            .then(|| classify_misses(&profile, &nominal, &estimate, precision.seed)),
+        seed: precision.seed,
+        target: precision.target,
     };
-    answer(&if options.json {
-        format!("{:#}\n", probability::json(&answered))
+    print_answer(&if options.json {
+        format!("{:#}\n", answer_json(&answer))
     } else {
-        probability::words(&answered)
+        answer_text(&answer)
     })?;
-    let missed = estimate.standard_error > target;
-    if missed && !quiet {
-        tell("the standard error asked for was not reached; raise --budget, or ask for less");
+    if estimate.standard_error <= precision.target {
+        return Ok(code::DONE);
     }
-    Ok(if missed { code::MISSED } else { code::WHOLE })
+    if !quiet {
+        print_remark(
+            "the wanted standard error was not reached; raise --budget, or choose a larger --target",
+        );
+    }
+    Ok(code::IMPRECISE)
 }
 
-fn integrate(
-    options: &ProbabilityOptions,
-    profile: &Profile,
-    simulator: &Simulator,
-    nominal: &Nominal,
-    (target, budget, seed): (f64, u64, u64),
-    quiet: bool,
-) -> Result<Estimate, Failure> {
-    let bars = Bars::new(quiet);
-    if options.grid.is_some() && !options.method.is_grid() {
+/// Refuses options that the method does not have.
+fn check_method(options: &ProbabilityOptions, profile: &Profile) -> Result<(), Failure> {
+    let is_grid = options.method.is_grid();
+    if options.grid.is_some() && !is_grid {
         return Err(Failure::usage(
             "--grid: only the methods grid and paper-grid have one",
         ));
     }
-    if options.budget.is_some() && options.method.is_grid() {
+    if options.budget.is_some() && is_grid {
         return Err(Failure::usage(
-            "--budget: the grids take all their points; give --grid",
+            "--budget: a grid uses all its points; give --grid",
         ));
     }
-    if options.method.is_grid() && !profile.shooter.errors.are_of_eq_25() {
+    if is_grid && !profile.shooter().dispersion.is_of_eq_25() {
         return Err(Failure::usage(format!(
-            "--method {}: Eq. 25 has independent errors of speed, pitch, polar angle and backspin alone; for the others take sobol or monte-carlo",
+            "--method {}: Eq. 25 has only independent errors of speed, pitch, polar angle and backspin; for others use sobol or monte-carlo",
             options.method.name()
         )));
     }
+    Ok(())
+}
+
+fn estimate(
+    options: &ProbabilityOptions,
+    profile: &Profile,
+    nominal: &Nominal,
+    precision: &Precision,
+    quiet: bool,
+) -> Result<Estimate, Failure> {
+    check_method(options, profile)?;
+    let bars = ProgressBars::new(quiet);
+    let &Precision {
+        target,
+        budget,
+        seed,
+    } = precision;
     Ok(match options.method {
-        Method::Sobol => Sampler::new(profile, simulator).estimate_within(
-            nominal,
-            target,
-            budget.max(LEAST_SHOTS),
-            seed,
-            &bars,
-        ),
+        Method::Sobol => {
+            let budget = budget.max(MIN_SHOTS);
+            Sampler::new(profile).estimate_within(nominal, target, budget, seed, &bars)
+        }
         Method::MonteCarlo => {
-            monte_carlo::estimate_within(profile, simulator, nominal, target, budget, seed, &bars)
+            monte_carlo::estimate_within(profile, nominal, target, budget, seed, &bars)
         }
         Method::Grid => {
-            let plan = Plan::new(profile)?;
-            let n = options.grid.unwrap_or(SHIFTED);
-            grid::shifted(profile, &plan, simulator, nominal, n, seed, &bars)
+            let plan = TablePlan::for_search(profile)?;
+            let n = options.grid.unwrap_or(SHIFTED_GRID_VALUES);
+            eq25_grids::shifted_grids(profile, &plan, nominal, n, seed, &bars)
         }
         Method::PaperGrid => {
-            let plan = Plan::new(profile)?;
-            let n = options.grid.unwrap_or(LETTER);
-            let sum = grid::to_the_letter(profile, &plan, simulator, nominal, n, &bars);
+            let plan = TablePlan::for_search(profile)?;
+            let n = options.grid.unwrap_or(PAPER_GRID_VALUES);
+            let sum = eq25_grids::common_grid(profile, &plan, nominal, n, &bars);
             Estimate {
                 probability: sum.probability,
-                // It has no error of its own to state.
+                // The method gives no error.
                 standard_error: 0.0,
                 shots: sum.shots,
                 ..Estimate::default()
@@ -116,22 +132,22 @@ fn integrate(
     })
 }
 
+/// The release of one sample.
 fn replayed(
     method: Method,
     profile: &Profile,
-    simulator: &Simulator,
     nominal: &Nominal,
     seed: u64,
     index: u64,
 ) -> Result<Release, Failure> {
     match method {
-        Method::Sobol if index >= MOST_SHOTS => Err(Failure::usage(format!(
-            "--replay: the index must be below {MOST_SHOTS}"
+        Method::Sobol if index >= MAX_SHOTS => Err(Failure::usage(format!(
+            "--replay: the index must be below {MAX_SHOTS}"
         ))),
-        Method::Sobol => Ok(Sampler::new(profile, simulator).sample(nominal, seed, index)),
+        Method::Sobol => Ok(Sampler::new(profile).sample(nominal, seed, index)),
         Method::MonteCarlo => Ok(monte_carlo::sample(profile, nominal, seed, index)),
         Method::Grid | Method::PaperGrid => Err(Failure::usage(
-            "--replay: samples are drawn by sobol and monte-carlo only",
+            "--replay: only sobol and monte-carlo draw samples",
         )),
     }
 }

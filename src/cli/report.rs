@@ -1,226 +1,106 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
-use super::arguments::FolderOptions;
+use super::args::FolderOptions;
+use super::config_files::read_text;
 use super::failure::{Failure, code};
-use super::plan::{load, read_text};
-use super::progress::Bars;
-use super::terminal::{answer, tell};
-use bankshot::dynamics::Simulator;
-use bankshot::output::files;
-use bankshot::picture::report::{Page, Shot, Table, of_place, of_sweep};
-use bankshot::picture::{comparison, curves};
-use bankshot::probability::Progress;
-use bankshot::profile::{Nominal, Profile};
-use bankshot::sweep::folder::Folder;
+use super::progress_bars::ProgressBars;
+use super::sweep_summary;
+use super::terminal::{print_answer, print_remark};
+use bankshot::output::atomic_file;
+use bankshot::report::ReportError;
+use bankshot::report::best_shot_page::best_shot_page;
+use bankshot::report::best_shot_run::{
+    BEST_SHOTS_FILE, BestShotRun, CURVES_FILE, PROFILE_FILE, RunTexts, SENSITIVITY_FILE,
+};
+use bankshot::report::page::Page;
+use bankshot::report::sweep_page::sweep_page;
 use bankshot::sweep::jobs::Jobs;
-use bankshot::units::{DEGREE_RAD, REV_RAD, System};
-use serde_json::Value;
+use bankshot::sweep::sweep_folder::SweepFolder;
 use std::path::{Path, PathBuf};
+
+/// The file of a sweep's folder that `sweep` writes first.
+const SWEEP_MANIFEST: &str = "configuration.json";
+/// The file beside the plots of a sweep that names the sweep's folder; `compare` writes it.
+const SWEEP_LINK: &str = "of_sweep.json";
 
 pub(crate) fn run(options: &FolderOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = &options.folder;
-    let target = folder.join("report.html");
-    if let Some(sweep) = sweep_of(folder) {
-        let (sweep, configuration) = Folder::to_look_at(&sweep)?;
-        let (rows, remarks) = sweep.union()?;
-        for remark in remarks {
-            tell(&format!("remark: {remark}"));
-        }
-        let page = of_sweep(&configuration, &rows, (sweep.program(), sweep.hash()));
-        let template = &configuration.template;
-        let simulator = Simulator::with_integrator(&template.physics, template.integrator)
-            .map_err(Failure::usage)?;
-        write(&target, page, &simulator, quiet)?;
-        return Ok(super::sweep::exit_of(&Jobs::new(&configuration), &rows));
+    match sweep_of(folder) {
+        Some(sweep) => report_sweep(folder, &sweep, quiet),
+        None => report_best_shots(folder, quiet),
     }
-    let file = folder.join("profile.toml");
-    if !file.exists() {
+}
+
+/// The sweep in a folder, or the sweep whose plots are in it.
+fn sweep_of(folder: &Path) -> Option<PathBuf> {
+    if folder.join(SWEEP_MANIFEST).exists() {
+        return Some(folder.to_owned());
+    }
+    let text = std::fs::read_to_string(folder.join(SWEEP_LINK)).ok()?;
+    let link: serde_json::Value = serde_json::from_str(&text).ok()?;
+    Some(PathBuf::from(link.get("sweep")?.as_str()?))
+}
+
+fn report_sweep(folder: &Path, sweep: &Path, quiet: bool) -> Result<u8, Failure> {
+    let (sweep, config) = SweepFolder::open_read_only(sweep)?;
+    let (rows, remarks) = sweep.union()?;
+    for remark in remarks {
+        print_remark(&format!("remark: {remark}"));
+    }
+    let source = (sweep.program(), sweep.hash());
+    let page = sweep_page(&config, &rows, source).map_err(|error| failure(folder, &error))?;
+    write(folder, &page, quiet)?;
+    Ok(sweep_summary::exit_code(&Jobs::new(&config), &rows))
+}
+
+fn report_best_shots(folder: &Path, quiet: bool) -> Result<u8, Failure> {
+    let profile = folder.join(PROFILE_FILE);
+    if !profile.exists() {
         return Err(Failure::usage(format!(
-            "{}: is not the folder of a `best`, `compare` or `sweep` run (there is no profile.toml and no configuration.json)",
+            "{}: is not the folder of a `best`, `compare` or `sweep` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST})",
             folder.display()
         )));
     }
-    let mut profile = load(&file)?;
-    let text = read_text(&folder.join("best_shots.json"))?;
-    let best: Value = serde_json::from_str(&text).map_err(|error| {
-        Failure::usage(format!("{}: best_shots.json: {error}", folder.display()))
-    })?;
-    profile.output.units = if best.get("distance_m").is_some() {
-        System::Metric
-    } else {
-        System::Imperial
+    let read_if_exists = |name: &str| {
+        let path = folder.join(name);
+        path.exists().then(|| read_text(&path)).transpose()
     };
-    let simulator =
-        Simulator::with_integrator(&profile.physics, profile.integrator).map_err(Failure::usage)?;
-    let shots = shots(&profile, &best);
-    let bars = Bars::new(quiet);
-    bars.begin("drawing", 2);
-    let mut pictures: Vec<_> = comparison::in_release_space(&profile, &simulator, &shots)
-        .into_iter()
-        .collect();
-    pictures.extend(comparison::outcomes_about(&profile, &simulator, &shots));
-    bars.advance(1);
-    let curve_rows = csv_rows(&folder.join("curves.csv"))?;
-    pictures.extend(curves::picture(&profile, &curve_rows));
-    bars.end();
-    let lessons = csv_rows(&folder.join("lessons.csv"))?;
-    let tables = lessons_table(&lessons).into_iter().collect();
-    let aim = aim(&profile, &best, &shots);
-    let page = of_place(&profile, shots, &aim, tables, pictures);
-    write(&target, page, &simulator, quiet)
+    let texts = RunTexts {
+        profile: read_text(&profile)?,
+        best_shots: read_text(&folder.join(BEST_SHOTS_FILE))?,
+        curves: read_if_exists(CURVES_FILE)?,
+        sensitivity: read_if_exists(SENSITIVITY_FILE)?,
+    };
+    let page = BestShotRun::parse(&texts, &profile.display().to_string())
+        .and_then(|run| best_shot_page(&run, &ProgressBars::new(quiet)))
+        .map_err(|error| failure(folder, &error))?;
+    write(folder, &page, quiet)
 }
 
-/// The sweep that a folder is, or whose pictures it holds.
-fn sweep_of(folder: &Path) -> Option<PathBuf> {
-    if folder.join("configuration.json").exists() {
-        return Some(folder.to_owned());
-    }
-    let text = std::fs::read_to_string(folder.join("of_sweep.json")).ok()?;
-    let note: Value = serde_json::from_str(&text).ok()?;
-    Some(PathBuf::from(note.get("sweep")?.as_str()?))
-}
-
-fn write(
-    target: &Path,
-    page: Option<Page<'_>>,
-    simulator: &Simulator,
-    quiet: bool,
-) -> Result<u8, Failure> {
-    let Some(page) = page else {
-        return Err(Failure {
+fn failure(folder: &Path, error: &ReportError) -> Failure {
+    match error {
+        ReportError::NoShot => Failure {
             code: code::INCOMPLETE,
-            message: format!("{}: there is no shot to report yet", target.display()),
-        });
-    };
-    let html = page.html(simulator).map_err(Failure::usage)?;
-    files::write(target, html.as_bytes()).map_err(|error| Failure::io(target.display(), &error))?;
-    answer(&format!("{}\n", page.answer))?;
+            message: format!("{}: {error}", folder.display()),
+        },
+        ReportError::File { .. } => Failure::usage(format!("{}: {error}", folder.display())),
+        _ => Failure::usage(error),
+    }
+}
+
+/// Writes the page into the folder and prints its answer.
+fn write(folder: &Path, page: &Page, quiet: bool) -> Result<u8, Failure> {
+    let target = folder.join("report.html");
+    let html = page.html()?;
+    atomic_file::write(&target, html.as_bytes())
+        .map_err(|error| Failure::io(target.display(), &error))?;
+    print_answer(&format!("{}\n", page.answer))?;
     if !quiet {
-        tell(&format!(
+        print_remark(&format!(
             "written to {} ({:.2} MB)",
             target.display(),
             html.len() as f64 / 1e6
         ));
     }
-    Ok(code::WHOLE)
-}
-
-fn shots(profile: &Profile, best: &Value) -> Vec<Shot> {
-    let (long, foot) = profile.output.units.length();
-    ["direct", "bank"]
-        .into_iter()
-        .filter_map(|kind| {
-            let shot = best.get(kind)?;
-            let value = |name: &str| shot.get(name).and_then(Value::as_f64);
-            Some(Shot {
-                place: 0,
-                kind: kind.to_owned(),
-                from: profile.place,
-                nominal: Nominal {
-                    speed_m_s: value(&format!("speed_{long}_s"))? * foot,
-                    pitch_rad: value("pitch_deg")? * DEGREE_RAD,
-                    polar_rad: value("polar_deg")? * DEGREE_RAD,
-                    backspin_rad_s: value("backspin_rev_s")? * REV_RAD,
-                    side_spin_rad_s: value("side_spin_rev_s").unwrap_or(0.0) * REV_RAD,
-                    rifle_spin_rad_s: profile.held().rifle_spin_rad_s,
-                },
-                p: (value("probability")?, value("standard_error")?),
-                mirror_of: None,
-            })
-        })
-        .collect()
-}
-
-/// Where the better shot is aimed, in words that end a sentence.
-fn aim(profile: &Profile, best: &Value, shots: &[Shot]) -> String {
-    let (short, _) = profile.output.units.short_length();
-    let Some(better) = shots.iter().max_by(|a, b| a.p.0.total_cmp(&b.p.0)) else {
-        return String::new();
-    };
-    let value = |name: &str| best[better.kind.as_str()].get(name).and_then(Value::as_f64);
-    let above = value(&format!("board_aim_above_hoop_{short}"));
-    let across = value(&format!("board_aim_across_{short}"));
-    let past = value(&format!("aim_past_centre_{short}"));
-    match (better.kind.as_str(), above.zip(across), past) {
-        ("bank", Some((above, across)), _) => {
-            let side = if across > 0.0 { "right" } else { "left" };
-            format!(
-                "; the ball's centre meets the board {above:.0} {short} above the ring and {:.0} {short} to the {side} of its middle line, facing the board",
-                across.abs()
-            )
-        }
-        (_, _, Some(past)) => {
-            let side = if past < 0.0 { "short of" } else { "past" };
-            format!(
-                "; the path passes the ring's plane {:.1} {short} {side} its centre",
-                past.abs()
-            )
-        }
-        _ => String::new(),
-    }
-}
-
-/// The rows of a CSV file of the run, the header first; nothing where there is no such file.
-fn csv_rows(path: &Path) -> Result<Vec<Vec<String>>, Failure> {
-    if !path.exists() {
-        return Ok(Vec::new());
-    }
-    let text = read_text(path)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .from_reader(text.as_bytes());
-    reader
-        .records()
-        .map(|record| Ok(record?.iter().map(str::to_owned).collect()))
-        .collect::<Result<_, csv::Error>>()
-        .map_err(|error| Failure::usage(format!("{}: {error}", path.display())))
-}
-
-/// What the shooter learns, gains in points of P.
-fn lessons_table(rows: &[Vec<String>]) -> Option<Table> {
-    let names = |lesson: &str, of: &str| match lesson {
-        "window_low" => format!("window, lowest {of}"),
-        "window_high" => format!("window, highest {of}"),
-        "without" => format!("without the error in {}", of.replace('_', " ")),
-        "a_tenth_less" => format!("with a tenth less error in {}", of.replace('_', " ")),
-        "backspin" => "another backspin".to_owned(),
-        "release_height" => "another height of release".to_owned(),
-        other => other.to_owned(),
-    };
-    let points = |text: &str| {
-        text.parse::<f64>().map_or(String::new(), |value| {
-            let text = format!("{:.1}", 100.0 * value);
-            // Nothing is not negative.
-            if text == "-0.0" {
-                "0.0".to_owned()
-            } else {
-                text
-            }
-        })
-    };
-    let rows: Vec<_> = rows
-        .iter()
-        .skip(1)
-        .filter(|row| row.len() == 7)
-        .map(|row| {
-            let value = row[4]
-                .parse::<f64>()
-                .map_or(String::new(), |value| format!("{value:.2} {}", row[3]));
-            let cells = vec![
-                row[0].clone(),
-                names(&row[1], &row[2]),
-                value,
-                points(&row[5]),
-                points(&row[6]),
-            ];
-            (None, cells)
-        })
-        .collect();
-    (!rows.is_empty()).then(|| Table {
-        caption: "What the shooter learns".to_owned(),
-        columns: ["shot", "lesson", "value", "gain, points of P", "\u{b1}"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    })
+    Ok(code::DONE)
 }

@@ -1,46 +1,46 @@
-//! What happens when the program is told to stop: unfinished files go, what is safe is said.
+//! Signals that stop the program: it removes unfinished files and says what is saved.
 
 use super::failure::code;
-use super::terminal::tell;
-use bankshot::output::files;
+use super::terminal::print_remark;
+use bankshot::output::atomic_file;
 use std::sync::Mutex;
 
-/// What to say on leaving.
-static PARTING: Mutex<Option<Box<dyn Fn() -> String + Send>>> = Mutex::new(None);
+/// The remark to print on a signal.
+static EXIT_REMARK: Mutex<Option<Box<dyn Fn() -> String + Send>>> = Mutex::new(None);
 
-/// From now on, says this when the program is stopped.
-pub(crate) fn say_on_leaving(parting: impl Fn() -> String + Send + 'static) {
-    if let Ok(mut slot) = PARTING.lock() {
-        *slot = Some(Box::new(parting));
+/// Sets the remark that a signal prints.
+pub(crate) fn set_exit_remark(remark: impl Fn() -> String + Send + 'static) {
+    if let Ok(mut slot) = EXIT_REMARK.lock() {
+        *slot = Some(Box::new(remark));
     }
 }
 
-fn leave(exit_code: u8) -> ! {
-    files::discard_pending();
-    if let Ok(slot) = PARTING.try_lock()
-        && let Some(parting) = slot.as_ref()
+fn exit(exit_code: u8) -> ! {
+    atomic_file::discard_temporary_files();
+    if let Ok(slot) = EXIT_REMARK.try_lock()
+        && let Some(remark) = slot.as_ref()
     {
-        tell(&parting());
+        print_remark(&remark());
     }
     std::process::exit(i32::from(exit_code));
 }
 
-/// Ctrl-C, a polite end and a closed terminal remove the files that are not finished and end the program.
+/// Handles SIGINT (Ctrl-C), SIGTERM and SIGHUP (a closed terminal).
 #[cfg(unix)]
-pub(crate) fn watch() {
+pub(crate) fn handle() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    // Without a handler the default one ends the program too; only temporary files would stay.
-    // A hang-up that the shell has us ignore, as `nohup` does, stays ignored; who sends the others means them.
-    let heeded = [SIGINT, SIGTERM, SIGHUP]
+    // If the handler cannot be set, the default one ends the program too, but leaves temporary files.
+    // SIGHUP stays ignored if the parent process ignores it, as `nohup` does.
+    let handled = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
         .filter(|&signal| signal != SIGHUP || !is_ignored(signal));
-    let Ok(mut signals) = signal_hook::iterator::Signals::new(heeded) else {
+    let Ok(mut signals) = signal_hook::iterator::Signals::new(handled) else {
         return;
     };
-    // Where this thread cannot start, no other can, and the program ends by itself.
+    // If this thread cannot start, no other can, and the program ends with an error.
     let _ = std::thread::Builder::new().spawn(move || {
         if let Some(signal) = signals.forever().next() {
-            leave(if signal == SIGINT {
+            exit(if signal == SIGINT {
                 code::INTERRUPTED
             } else {
                 code::STOPPED
@@ -49,7 +49,7 @@ pub(crate) fn watch() {
     });
 }
 
-/// Is a signal ignored? The system tells on Linux; elsewhere none is taken to be.
+/// Whether a signal is ignored. Known on Linux only; elsewhere the answer is no.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -60,13 +60,13 @@ fn is_ignored(signal: i32) -> bool {
         .is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// As there, for Ctrl-C alone.
+/// Handles Ctrl-C.
 #[cfg(not(unix))]
-pub(crate) fn watch() {
-    let _ = ctrlc::set_handler(|| leave(code::INTERRUPTED));
+pub(crate) fn handle() {
+    let _ = ctrlc::set_handler(|| exit(code::INTERRUPTED));
 }
 
-/// Leaves a mark in a file if the program aborts.
+/// Writes a byte to a file if the program aborts.
 #[cfg(unix)]
 pub(crate) fn note_aborts(path: &std::path::Path) {
     let file = std::fs::File::options()
@@ -74,11 +74,11 @@ pub(crate) fn note_aborts(path: &std::path::Path) {
         .append(true)
         .open(path);
     if let Ok(file) = file {
-        // Where it cannot be noted, an abort counts as a kill.
+        // If this fails, an abort counts as a kill.
         let _ = signal_hook::low_level::pipe::register(signal_hook::consts::SIGABRT, file);
     }
 }
 
-/// Leaves a mark in a file if the program aborts.
+/// Does nothing on this system.
 #[cfg(not(unix))]
 pub(crate) fn note_aborts(_path: &std::path::Path) {}

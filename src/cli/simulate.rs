@@ -1,75 +1,74 @@
-//! `bankshot simulate`: releases in, outcomes out, as a stream.
+//! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
-use super::arguments::{IntegratorName, SimulateOptions};
+use super::args::{IntegratorName, SimulateOptions};
 use super::failure::{Failure, code};
-use super::plan::read_text;
-use super::progress::Bars;
-use super::terminal::tell;
+use super::config_files::read_text;
+use super::progress_bars::ProgressBars;
+use super::terminal::print_remark;
+use bankshot::config::parse_physics;
 use bankshot::dynamics::{Integrator, Simulator};
-use bankshot::output::files::Pending;
-use bankshot::output::releases::{self, Layout};
-use bankshot::physics::Physics;
+use bankshot::model::Physics;
+use bankshot::output::atomic_file::AtomicFile;
+use bankshot::output::release_csv::{OUTCOME_COLUMNS, ReleaseColumns, RowError, outcome_cells};
 use bankshot::probability::Progress;
-use bankshot::profile;
 use csv::{ByteRecord, Reader, Writer};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
-/// Rows that are held in memory at a time.
+/// Rows in memory at a time.
 const BATCH: usize = 16_384;
-/// Bad rows that are named one by one.
-const NAMED: u64 = 20;
+/// Bad rows that are reported one by one.
+const MAX_REPORTED: u64 = 20;
 
 pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure> {
-    let (physics, simulator) = simulator(options)?;
+    let simulator = simulator(options)?;
     let mut reader = open(&options.releases)?;
     let header = reader
         .byte_headers()
         .map_err(|error| input_failure(options, &error))?
         .clone();
-    let layout = Layout::new(&header)
+    let columns = ReleaseColumns::new(&header)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
-    let bars = Bars::new(quiet);
+    let bars = ProgressBars::new(quiet);
     let total = std::fs::metadata(&options.releases).map_or(0, |about| about.len());
     bars.begin("simulating", total);
     let mut stream = Stream {
         options,
-        physics,
         simulator,
-        layout,
+        columns,
         bars,
-        bad: 0,
+        bad_rows: 0,
         rows: 0,
     };
     if options.output == Path::new("-") {
         let out = BufWriter::new(io::stdout().lock());
         match stream.run(&mut reader, &header, out) {
-            Err(Stop::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {}
+            Err(StreamError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {}
             result => {
-                result.map_err(|stop| stop.failure(options))?;
+                result.map_err(|error| error.failure(options))?;
             }
         }
     } else {
         let refuse = |error: io::Error| Failure::io(options.output.display(), &error);
-        let pending = Pending::new(&options.output).map_err(refuse)?;
-        let out = BufWriter::new(pending);
+        let file = AtomicFile::new(&options.output).map_err(refuse)?;
+        let out = BufWriter::new(file);
         let out = stream
             .run(&mut reader, &header, out)
-            .map_err(|stop| stop.failure(options))?;
+            .map_err(|error| error.failure(options))?;
         out.into_inner()
             .map_err(|error| refuse(error.into_error()))?
             .finish()
             .map_err(refuse)?;
     }
     stream.bars.end();
-    stream.conclude(quiet)
+    stream.report(quiet)
 }
 
-fn simulator(options: &SimulateOptions) -> Result<(Physics, Simulator), Failure> {
+fn simulator(options: &SimulateOptions) -> Result<Simulator, Failure> {
     let (physics, from_file) = if options.physics == "paper" {
-        (Physics::paper(), Integrator::EXACT)
+        (Physics::paper(), Integrator::EVENT_DRIVEN)
     } else {
         let path = Path::new(&options.physics);
         if !path.exists() {
@@ -78,17 +77,16 @@ fn simulator(options: &SimulateOptions) -> Result<(Physics, Simulator), Failure>
                 options.physics
             )));
         }
-        profile::parse_physics(&read_text(path)?, &options.physics)?
+        parse_physics(&read_text(path)?, &options.physics)?
     };
     let integrator = match options.integrator {
         None => from_file,
-        Some(IntegratorName::Exact) if matches!(from_file, Integrator::Exact { .. }) => from_file,
-        Some(IntegratorName::Exact) => Integrator::EXACT,
-        Some(IntegratorName::Paper) if matches!(from_file, Integrator::Paper { .. }) => from_file,
-        Some(IntegratorName::Paper) => Integrator::PAPER,
+        Some(IntegratorName::Exact) if matches!(from_file, Integrator::EventDriven { .. }) => from_file,
+        Some(IntegratorName::Exact) => Integrator::EVENT_DRIVEN,
+        Some(IntegratorName::Paper) if matches!(from_file, Integrator::PaperRk4 { .. }) => from_file,
+        Some(IntegratorName::Paper) => Integrator::PAPER_RK4,
     };
-    let simulator = Simulator::with_integrator(&physics, integrator).map_err(Failure::usage)?;
-    Ok((physics, simulator))
+    Simulator::with_integrator(&physics, integrator).map_err(Failure::usage)
 }
 
 fn open(path: &Path) -> Result<Reader<Box<dyn Read>>, Failure> {
@@ -115,13 +113,13 @@ fn input_failure(options: &SimulateOptions, error: &csv::Error) -> Failure {
     }
 }
 
-/// Why a stream stopped before its end.
-enum Stop {
+/// Why a stream ended early.
+enum StreamError {
     Input(csv::Error),
     Output(io::Error),
 }
 
-impl Stop {
+impl StreamError {
     fn failure(self, options: &SimulateOptions) -> Failure {
         match self {
             Self::Input(error) => input_failure(options, &error),
@@ -130,20 +128,19 @@ impl Stop {
     }
 }
 
-fn output(error: csv::Error) -> Stop {
+fn output_error(error: csv::Error) -> StreamError {
     match error.into_kind() {
-        csv::ErrorKind::Io(error) => Stop::Output(error),
-        other => Stop::Output(io::Error::other(format!("{other:?}"))),
+        csv::ErrorKind::Io(error) => StreamError::Output(error),
+        other => StreamError::Output(io::Error::other(format!("{other:?}"))),
     }
 }
 
 struct Stream<'a> {
     options: &'a SimulateOptions,
-    physics: Physics,
     simulator: Simulator,
-    layout: Layout,
-    bars: Bars,
-    bad: u64,
+    columns: ReleaseColumns,
+    bars: ProgressBars,
+    bad_rows: u64,
     rows: u64,
 }
 
@@ -153,19 +150,19 @@ impl Stream<'_> {
         reader: &mut Reader<Box<dyn Read>>,
         header: &ByteRecord,
         out: W,
-    ) -> Result<W, Stop> {
+    ) -> Result<W, StreamError> {
         let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
-        let added = releases::ADDED.iter().map(|name| name.as_bytes());
+        let added = OUTCOME_COLUMNS.iter().map(|name| name.as_bytes());
         writer
             .write_record(header.iter().chain(added))
-            .map_err(output)?;
+            .map_err(output_error)?;
         let mut batch: Vec<ByteRecord> = Vec::with_capacity(BATCH);
         loop {
             batch.clear();
             let mut record = ByteRecord::new();
             let mut bytes = 0;
             while batch.len() < BATCH
-                && reader.read_byte_record(&mut record).map_err(Stop::Input)?
+                && reader.read_byte_record(&mut record).map_err(StreamError::Input)?
             {
                 bytes += record.as_slice().len() as u64 + record.len() as u64;
                 batch.push(std::mem::take(&mut record));
@@ -176,10 +173,10 @@ impl Stream<'_> {
             self.write(&batch, header.len(), &mut writer)?;
             self.bars.advance(bytes);
         }
-        writer.flush().map_err(Stop::Output)?;
+        writer.flush().map_err(StreamError::Output)?;
         writer
             .into_inner()
-            .map_err(|error| Stop::Output(io::Error::other(error.to_string())))
+            .map_err(|error| StreamError::Output(io::Error::other(error.to_string())))
     }
 
     fn write<W: Write>(
@@ -187,23 +184,28 @@ impl Stream<'_> {
         batch: &[ByteRecord],
         columns: usize,
         writer: &mut Writer<W>,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), StreamError> {
         let outcomes: Vec<_> = batch
             .par_iter()
             .map(|row| {
                 if row.len() > columns {
-                    return Err(releases::RowError::surplus(row.len(), columns));
+                    return Err(RowError::too_many_fields(row.len(), columns));
                 }
-                let release = self.layout.release(row, &self.physics)?;
-                Ok::<_, releases::RowError>(releases::cells(&self.simulator.shoot(&release)))
+                let release = self.columns.release(row, self.simulator.physics())?;
+                let outcome = self.simulator.simulate(&release);
+                // Its values are finite: they were checked one by one.
+                outcome.map(|outcome| outcome_cells(&outcome)).map_err(|error| RowError {
+                    column: "release".to_owned(),
+                    reason: error.to_string(),
+                })
             })
             .collect();
         for (row, outcome) in batch.iter().zip(outcomes) {
             self.rows += 1;
             let cells = outcome.unwrap_or_else(|error| {
-                self.bad += 1;
-                if self.bad <= NAMED {
-                    tell(&format!(
+                self.bad_rows += 1;
+                if self.bad_rows <= MAX_REPORTED {
+                    print_remark(&format!(
                         "{}: row {}: {error}",
                         self.options.releases.display(),
                         self.rows
@@ -211,24 +213,24 @@ impl Stream<'_> {
                 }
                 Default::default()
             });
-            // A short row keeps the added columns in their place.
+            // A short row is filled up, so that the added columns keep their positions.
             let fill = std::iter::repeat_n(&b""[..], columns.saturating_sub(row.len()));
             let added = cells.iter().map(String::as_bytes);
             writer
                 .write_record(row.iter().take(columns).chain(fill).chain(added))
-                .map_err(output)?;
+                .map_err(output_error)?;
         }
         Ok(())
     }
 
-    fn conclude(&self, quiet: bool) -> Result<u8, Failure> {
-        if self.bad > NAMED {
-            tell(&format!("... and {} more", self.bad - NAMED));
+    fn report(&self, quiet: bool) -> Result<u8, Failure> {
+        if self.bad_rows > MAX_REPORTED {
+            print_remark(&format!("... and {} more", self.bad_rows - MAX_REPORTED));
         }
-        if self.bad > 0 {
+        if self.bad_rows > 0 {
             let message = format!(
                 "{} of {} rows could not be simulated; the others are done",
-                self.bad, self.rows
+                self.bad_rows, self.rows
             );
             return Err(Failure {
                 code: code::INCOMPLETE,
@@ -236,12 +238,12 @@ impl Stream<'_> {
             });
         }
         if !quiet && self.options.output != Path::new("-") {
-            tell(&format!(
+            print_remark(&format!(
                 "{} shots written to {}",
                 self.rows,
                 self.options.output.display()
             ));
         }
-        Ok(code::WHOLE)
+        Ok(code::DONE)
     }
 }

@@ -1,34 +1,34 @@
-//! Standard output and standard error, without panics where they are closed.
+//! Standard output and standard error, without panics if they are closed.
 
 use super::failure::{Failure, code};
 use std::io::{self, Write};
 
-/// Prints an answer. A reader that has gone away (`| head -1`) is no failure.
-pub(crate) fn answer(text: &str) -> Result<u8, Failure> {
-    answer_bytes(text.as_bytes())
+/// Prints an answer. A closed reader (`| head -1`) is not a failure.
+pub(crate) fn print_answer(text: &str) -> Result<u8, Failure> {
+    print_bytes(text.as_bytes())
 }
 
-/// As [`answer`], for bytes.
-pub(crate) fn answer_bytes(bytes: &[u8]) -> Result<u8, Failure> {
+/// As [`print_answer`], for bytes.
+pub(crate) fn print_bytes(bytes: &[u8]) -> Result<u8, Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Ok(()) => Ok(code::WHOLE),
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(code::WHOLE),
+        Ok(()) => Ok(code::DONE),
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(code::DONE),
         Err(error) => Err(Failure::io("standard output", &error)),
     }
 }
 
-/// Tells something on standard error; nothing can be done where that fails.
-pub(crate) fn tell(text: &str) {
+/// Prints a remark on standard error. A failure to print it is ignored.
+pub(crate) fn print_remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Tells of an error on standard error.
-pub(crate) fn complain(text: &str) {
+/// Prints an error on standard error.
+pub(crate) fn print_error(text: &str) {
     let prefix = if text.starts_with("error: ") {
         ""
     } else {
         "error: "
     };
-    tell(&format!("{prefix}{text}"));
+    print_remark(&format!("{prefix}{text}"));
 }

@@ -1,31 +1,24 @@
 //! The ball in flight and in contact: from a release to made or missed.
 //!
-//! Two integrators stand behind one interface, [`Simulator`]: the default [`Integrator::Exact`] and
-//! the paper's own method, [`Integrator::Paper`]. Both use the same surfaces and the same contact
-//! forces (`surface`, Eqs. 2-14 of the paper).
+//! [`Simulator`] is the interface. Behind it are two integrators: the default
+//! [`Integrator::EventDriven`], and the paper's own method, [`Integrator::PaperRk4`]. Both use the same
+//! solids and contact forces (Eqs. 2-14 of the paper).
 
 mod batch;
 mod contact;
-mod exact;
+mod end_rules;
 mod flight;
-mod lanes;
+mod hoop_crossing;
+mod integrators;
+mod observer;
 mod outcome;
-mod paper;
-mod passage;
+mod outcome_classifier;
 mod release;
-mod room;
-mod seats;
 mod simulator;
-mod state;
-mod surface;
 mod trace;
-mod watch;
-mod wedge;
 
-pub use lanes::Lanes;
-pub use outcome::{Contacts, Ending, Entry, Kind, Outcome, Touched, Verdict};
-pub use release::{Aim, Release};
-pub use room::Room;
-pub use simulator::{Integrator, Simulator};
-pub use state::{State, Triple};
+pub use batch::{BatchWorkspace, InstructionSet};
+pub use outcome::{ContactSequence, Ending, Entry, Outcome, OutcomeKind, Verdict};
+pub use release::{Release, ReleaseDirection};
+pub use simulator::{Integrator, Simulator, SimulatorError, StateError};
 pub use trace::{Event, EventKind, Sample, Trace};

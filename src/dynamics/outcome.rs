@@ -1,96 +1,77 @@
 //! How a shot ended: made or missed, in what way, and what it touched.
 
+use crate::model::SolidId;
 use serde::Serialize;
 use std::fmt;
 
-/// What the ball can touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Touched {
-    /// The backboard.
-    Board,
-    /// The ring.
-    Ring,
-}
-
-/// The contacts of a shot in their order: the first 64 exactly, and how many there were.
+/// The contacts of a shot in order: the first [`ContactSequence::KEPT`] by name, and the number with each
+/// solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Contacts {
-    board_bits: u64,
-    boards: u32,
-    rings: u32,
+pub struct ContactSequence {
+    /// Two bits for each contact, from the lowest.
+    codes: [u64; Self::WORDS],
+    counts: [u32; SolidId::COUNT],
 }
 
-impl Contacts {
-    /// No contact yet.
-    pub(crate) const NONE: Self = Self {
-        board_bits: 0,
-        boards: 0,
-        rings: 0,
-    };
-    /// Contacts that are kept with their order; later ones are only counted.
+impl ContactSequence {
+    /// Contacts that are kept in order. Later ones are only counted.
     pub const KEPT: u32 = 64;
+    const BITS: u32 = 2;
+    const WORDS: usize = (Self::KEPT * Self::BITS / u64::BITS) as usize;
+    const PER_WORD: u32 = u64::BITS / Self::BITS;
 
-    pub(crate) fn push(&mut self, touched: Touched) {
-        let place = self.count();
-        match touched {
-            Touched::Board => {
-                if place < Self::KEPT {
-                    self.board_bits |= 1 << place;
-                }
-                self.boards += 1;
-            }
-            Touched::Ring => self.rings += 1,
+    /// No contact.
+    pub(crate) const EMPTY: Self = Self {
+        codes: [0; Self::WORDS],
+        counts: [0; SolidId::COUNT],
+    };
+
+    pub(crate) fn push(&mut self, solid: SolidId) {
+        let position = self.count();
+        if position < Self::KEPT {
+            let shift = position % Self::PER_WORD * Self::BITS;
+            self.codes[(position / Self::PER_WORD) as usize] |= (solid.index() as u64) << shift;
         }
+        self.counts[solid.index()] += 1;
     }
 
     /// Number of contacts.
     #[must_use]
     pub fn count(&self) -> u32 {
-        self.boards + self.rings
+        self.counts.iter().sum()
     }
 
-    /// Number of contacts with the board.
+    /// Number of contacts with one solid.
     #[must_use]
-    pub fn boards(&self) -> u32 {
-        self.boards
-    }
-
-    /// Number of contacts with the ring.
-    #[must_use]
-    pub fn rings(&self) -> u32 {
-        self.rings
+    pub fn count_of(&self, solid: SolidId) -> u32 {
+        self.counts[solid.index()]
     }
 
     /// The first contact.
     #[must_use]
-    pub fn first(&self) -> Option<Touched> {
+    pub fn first(&self) -> Option<SolidId> {
         self.iter().next()
     }
 
-    /// The contacts in order (the first [`Contacts::KEPT`]).
-    pub fn iter(&self) -> impl Iterator<Item = Touched> + use<> {
-        let bits = self.board_bits;
+    /// The contacts in order, the first [`ContactSequence::KEPT`] of them.
+    pub fn iter(&self) -> impl Iterator<Item = SolidId> + use<> {
+        let codes = self.codes;
         (0..self.count().min(Self::KEPT)).map(move |i| {
-            if bits >> i & 1 == 1 {
-                Touched::Board
-            } else {
-                Touched::Ring
-            }
+            let word = codes[(i / Self::PER_WORD) as usize];
+            let code = word >> (i % Self::PER_WORD * Self::BITS) & ((1 << Self::BITS) - 1);
+            SolidId::ALL[code as usize]
         })
     }
 }
 
-impl fmt::Display for Contacts {
+const _: () = assert!(SolidId::COUNT <= 1 << ContactSequence::BITS);
+
+impl fmt::Display for ContactSequence {
     /// `board ring ring`; empty for a shot that touches nothing.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, touched) in self.iter().enumerate() {
+        for (i, solid) in self.iter().enumerate() {
             let gap = if i == 0 { "" } else { " " };
-            let name = match touched {
-                Touched::Board => "board",
-                Touched::Ring => "ring",
-            };
-            write!(f, "{gap}{name}")?;
+            write!(f, "{gap}{}", solid.name())?;
         }
         if self.count() > Self::KEPT {
             write!(f, " ...")?;
@@ -99,7 +80,7 @@ impl fmt::Display for Contacts {
     }
 }
 
-/// How the simulation of a shot came to its end.
+/// Why the simulation of a shot ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
@@ -109,134 +90,143 @@ pub enum Ending {
     NeverRose,
     /// The centre is behind the face of the board.
     BehindBoard,
-    /// The ball rolled on board and ring at once for the physics' `lodged_after_s`.
-    Wedged,
+    /// The ball rolled on two solids at once for the physics' `lodged_after_s`.
+    Lodged,
     /// The time limit was reached.
     TimeLimit,
-    /// The numerics gave up: the search for a touch did not end. Counted apart, never as a miss.
+    /// The numerics gave up: an iteration limit was reached. The shot counts neither as made nor as missed.
     Unresolved,
 }
 
-/// The short answer of one shot: all that a probability needs.
+/// The result of one shot that a probability needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// The ball went in.
     pub made: bool,
     /// How the simulation ended.
     pub ending: Ending,
-    /// What was touched, in order.
-    pub contacts: Contacts,
+    /// What the ball touched, in order.
+    pub contacts: ContactSequence,
     /// Time from the release to the end, s.
     pub time_s: f64,
 }
 
-/// Made or missed, and in which way.
+/// How a shot was made or missed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum OutcomeKind {
     /// Made, nothing touched.
     Swish,
-    /// Made off the ring, the board not first.
+    /// Made after touching the ring first.
     RimIn,
-    /// Made off the board, the ring never touched.
+    /// Made after touching the board and never the ring.
     BankIn,
-    /// Made off the board and then the ring.
+    /// Made after touching the board first and the ring later.
     BankRimIn,
-    /// Missed: was below the plane of the hoop inside the ring, and came out.
+    /// Missed: the ball was below the plane of the hoop inside the ring and came out again.
     InAndOut,
-    /// Missed on the shooter's side of the hoop (of a bank shot: between hoop and board).
+    /// Missed on the shooter's side of the hoop (a bank shot: between hoop and board).
     Short,
-    /// Missed beyond the hoop (of a bank shot: came too far off the board).
+    /// Missed beyond the hoop (a bank shot: it came too far off the board).
     Long,
-    /// Missed to one side by more than short or long.
+    /// Missed to the left or right by more than short or long.
     Wide,
-    /// Missed behind the board.
+    /// Missed: the ball went behind the board.
     OverBoard,
-    /// Came to rest on ring and board, or had not ended at the time limit.
+    /// Missed: the ball came to rest on ring and board, or was still in play at the time limit.
     Lodged,
-    /// Missed and touched nothing.
+    /// Missed without touching anything.
     Airball,
     /// The numerics gave up.
     Unresolved,
 }
 
-impl Kind {
-    /// Every kind, made ones first.
-    pub const ALL: [Kind; 12] = [
-        Kind::Swish,
-        Kind::RimIn,
-        Kind::BankIn,
-        Kind::BankRimIn,
-        Kind::InAndOut,
-        Kind::Short,
-        Kind::Long,
-        Kind::Wide,
-        Kind::OverBoard,
-        Kind::Lodged,
-        Kind::Airball,
-        Kind::Unresolved,
+impl OutcomeKind {
+    /// Every kind; the ways to make a shot come first.
+    pub const ALL: [Self; 12] = [
+        Self::Swish,
+        Self::RimIn,
+        Self::BankIn,
+        Self::BankRimIn,
+        Self::InAndOut,
+        Self::Short,
+        Self::Long,
+        Self::Wide,
+        Self::OverBoard,
+        Self::Lodged,
+        Self::Airball,
+        Self::Unresolved,
     ];
+
+    /// Whether the shot went in.
+    #[must_use]
+    pub fn is_made(self) -> bool {
+        matches!(
+            self,
+            Self::Swish | Self::RimIn | Self::BankIn | Self::BankRimIn
+        )
+    }
 
     /// The name in tables and files, such as `bank-rim-in`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
-            Kind::Swish => "swish",
-            Kind::RimIn => "rim-in",
-            Kind::BankIn => "bank-in",
-            Kind::BankRimIn => "bank-rim-in",
-            Kind::InAndOut => "in-and-out",
-            Kind::Short => "short",
-            Kind::Long => "long",
-            Kind::Wide => "wide",
-            Kind::OverBoard => "over-board",
-            Kind::Lodged => "lodged",
-            Kind::Airball => "airball",
-            Kind::Unresolved => "unresolved",
+            Self::Swish => "swish",
+            Self::RimIn => "rim-in",
+            Self::BankIn => "bank-in",
+            Self::BankRimIn => "bank-rim-in",
+            Self::InAndOut => "in-and-out",
+            Self::Short => "short",
+            Self::Long => "long",
+            Self::Wide => "wide",
+            Self::OverBoard => "over-board",
+            Self::Lodged => "lodged",
+            Self::Airball => "airball",
+            Self::Unresolved => "unresolved",
         }
     }
 
-    /// The kind of a made shot with these contacts.
+    /// The kind of a made shot from its contacts.
     #[must_use]
-    pub fn of_made(contacts: &Contacts) -> Self {
-        match (contacts.first(), contacts.rings()) {
-            (None, _) => Kind::Swish,
-            (Some(Touched::Ring), _) => Kind::RimIn,
-            (Some(Touched::Board), 0) => Kind::BankIn,
-            (Some(Touched::Board), _) => Kind::BankRimIn,
+    pub fn of_made(contacts: &ContactSequence) -> Self {
+        match (contacts.first(), contacts.count_of(SolidId::Ring)) {
+            (None, _) => Self::Swish,
+            (Some(SolidId::Ring), _) => Self::RimIn,
+            (Some(SolidId::Board), 0) => Self::BankIn,
+            (Some(SolidId::Board), _) => Self::BankRimIn,
         }
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for OutcomeKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
 }
 
-/// Where and how the ball last came down through the plane of the hoop.
+/// The last fall of the ball through the plane of the hoop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Entry {
-    /// Angle of the centre's path below the horizontal, rad (0 to pi/2).
+    /// Angle of the path below the horizontal, rad (0 to pi/2).
     pub angle_rad: f64,
-    /// Place of the centre relative to the hoop's centre, x (away from the board) and y, m.
+    /// Position of the centre relative to the hoop's centre: x (away from the board) and y, m.
     pub offset_m: (f64, f64),
 }
 
-/// The whole answer of one shot.
+/// The full result of one shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Made, the ending, the contacts and the time.
+    /// Made or missed, the ending, the contacts and the time.
     pub verdict: Verdict,
-    /// Made or missed, and in which way.
-    pub kind: Kind,
-    /// The last fall through the plane of the hoop, if there was one.
+    /// How the shot was made or missed.
+    pub kind: OutcomeKind,
+    /// The last fall through the plane of the hoop, if any.
     pub entry: Option<Entry>,
     /// Greatest height of the centre above the plane of the hoop, m.
     pub apex_m: f64,
-    /// Place of the centre at the first touch of the board (x, y, z), m.
+    /// Position of the centre at the first touch of the board (x, y, z), m.
     pub board_point_m: Option<(f64, f64, f64)>,
-    /// How far to the right of the hoop's centre, facing the hoop (of a bank shot: the board), the
-    /// undisturbed path (of a bank shot: the path off the board) meets the plane of the hoop, m.
-    pub aside_m: f64,
+    /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop:
+    /// distance to the right of the centre, facing the hoop (a bank shot: the board), m.
+    pub right_of_centre_m: f64,
 }

@@ -1,9 +1,10 @@
 //! From a release to the state that starts the flight (Eq. 18 of the paper).
 
-use super::state::{State, Triple};
+use crate::math::vector::Vec3;
+use crate::model::BallState;
 use serde::Serialize;
 
-/// How and where the ball leaves the hand: the nine parameters of Eq. 18, in SI units.
+/// How and where the ball leaves the hand: the nine parameters of Eq. 18, in SI units. All must be finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Release {
     /// Horizontal distance r0 of the ball's centre from the hoop's axis, m.
@@ -16,10 +17,10 @@ pub struct Release {
     pub speed_m_s: f64,
     /// Pitch angle alpha0 above the horizontal, rad.
     pub pitch_rad: f64,
-    /// Polar angle beta0 of the flight's plane: equal to the court angle when aimed at the hoop's
-    /// axis, rad.
+    /// Polar angle beta0 of the vertical plane of flight, rad. It equals the court angle when the shot is
+    /// aimed at the hoop's axis.
     pub polar_rad: f64,
-    /// Backspin omega_beta0, about the horizontal axis across the flight; positive is back, rad/s.
+    /// Backspin omega_beta0, about the horizontal axis across the flight, rad/s; positive is backwards.
     pub backspin_rad_s: f64,
     /// Rifle spin omega_r0, about the horizontal flight direction, rad/s.
     pub rifle_spin_rad_s: f64,
@@ -30,8 +31,8 @@ pub struct Release {
 impl Release {
     /// The nine state variables at the release (Eq. 18).
     #[must_use]
-    pub fn state(&self) -> State {
-        Aim::new(self).state(self.speed_m_s, self.backspin_rad_s)
+    pub fn state(&self) -> BallState {
+        ReleaseDirection::new(self).state(self.speed_m_s, self.backspin_rad_s)
     }
 
     /// The same release mirrored in the plane of symmetry (y -> -y).
@@ -47,11 +48,11 @@ impl Release {
     }
 }
 
-/// A release but for its speed and backspin: place and directions, with their sines and cosines
-/// computed once for many shots.
+/// The location, directions and other spins of a release, without speed and backspin. Their sines and
+/// cosines are computed once for many shots.
 #[derive(Clone, Copy, Debug)]
-pub struct Aim {
-    position_m: Triple<f64>,
+pub struct ReleaseDirection {
+    position_m: Vec3<f64>,
     sin_pitch: f64,
     cos_pitch: f64,
     sin_polar: f64,
@@ -60,15 +61,15 @@ pub struct Aim {
     side_spin_rad_s: f64,
 }
 
-impl Aim {
-    /// The place, directions and other spins of `release`.
+impl ReleaseDirection {
+    /// The location, directions and other spins of `release`.
     #[must_use]
     pub fn new(release: &Release) -> Self {
         let (sin_pitch, cos_pitch) = libm::sincos(release.pitch_rad);
         let (sin_polar, cos_polar) = libm::sincos(release.polar_rad);
         let (sin_court, cos_court) = libm::sincos(release.court_angle_rad);
         Self {
-            position_m: Triple(
+            position_m: Vec3::new(
                 release.distance_m * cos_court,
                 release.distance_m * sin_court,
                 release.height_above_hoop_m,
@@ -84,13 +85,13 @@ impl Aim {
 
     /// The nine state variables at the release with this speed and backspin (Eq. 18).
     #[must_use]
-    pub fn state(&self, speed_m_s: f64, backspin_rad_s: f64) -> State {
+    pub fn state(&self, speed_m_s: f64, backspin_rad_s: f64) -> BallState {
         let level = speed_m_s * self.cos_pitch;
         let (sin, cos) = (self.sin_polar, self.cos_polar);
-        State {
+        BallState {
             position_m: self.position_m,
-            velocity_m_s: Triple(-level * cos, -level * sin, speed_m_s * self.sin_pitch),
-            spin_rad_s: Triple(
+            velocity_m_s: Vec3::new(-level * cos, -level * sin, speed_m_s * self.sin_pitch),
+            spin_rad_s: Vec3::new(
                 self.rifle_spin_rad_s * cos - backspin_rad_s * sin,
                 self.rifle_spin_rad_s * sin + backspin_rad_s * cos,
                 self.side_spin_rad_s,

@@ -1,30 +1,31 @@
-//! The interface to the dynamics: physics and integrator in, outcomes out.
+//! The interface to the dynamics: physics, integrator and releases in, outcomes out.
 
-use super::batch;
-use super::exact::{self, Rules};
-use super::flight::Arc;
-use super::lanes::Lanes;
-use super::outcome::{Outcome, Touched, Verdict};
-use super::paper::{self, Steps};
+use super::batch::{self, BatchWorkspace, InstructionSet};
+use super::end_rules::RunLimits;
+use super::flight::FlightArc;
+use super::integrators::event_driven;
+use super::integrators::paper_rk4::{self, StepRange};
+use super::observer::Observer;
+use super::outcome::{Outcome, Verdict};
+use super::outcome_classifier::OutcomeClassifier;
 use super::release::Release;
-use super::room::Room;
-use super::state::{Law, State};
 use super::trace::{Recorder, Trace};
-use super::watch::{Summary, Watch};
-use crate::physics::{Physics, PhysicsError};
+use crate::model::params::ModelParams;
+use crate::model::{BallState, Physics, PhysicsError, SolidId};
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// How the equations of motion are integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
-    /// Closed-form flight, contacts in RK4 steps that end on the events of friction.
-    Exact {
-        /// RK4 steps per head-on contact time; more is finer. The default is 8.
+    /// Closed-form flight, and contacts in RK4 steps that end on the events of friction.
+    EventDriven {
+        /// RK4 steps per head-on contact time, 1 or more. More is finer; the default is 8.
         steps_per_contact: u32,
     },
     /// The paper's variable-step RK4 with friction by the sliding law alone.
-    Paper {
+    PaperRk4 {
         /// Longest step, s (the paper's is 0.015).
         dt_max_s: f64,
         /// Shortest step, used in contact, s (the paper's is 0.0005).
@@ -33,28 +34,92 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// The default integrator at its default step.
-    pub const EXACT: Self = Self::Exact {
+    /// The default integrator with its default step.
+    pub const EVENT_DRIVEN: Self = Self::EventDriven {
         steps_per_contact: 8,
     };
-    /// The paper's method at the paper's steps.
-    pub const PAPER: Self = Self::Paper {
+    /// The paper's method with the paper's steps.
+    pub const PAPER_RK4: Self = Self::PaperRk4 {
         dt_max_s: 0.015,
         dt_min_s: 0.0005,
     };
+
+    /// # Errors
+    /// A step that is not positive and finite would never end a shot.
+    pub(crate) fn check(self) -> Result<(), SimulatorError> {
+        let refuse = |key, value, allowed| {
+            Err(SimulatorError::Integrator {
+                key,
+                value,
+                allowed,
+            })
+        };
+        match self {
+            Self::EventDriven {
+                steps_per_contact: 0,
+            } => refuse("steps_per_contact", 0.0, "1 or more"),
+            Self::EventDriven { .. } => Ok(()),
+            Self::PaperRk4 { dt_max_s, dt_min_s } => {
+                if !(dt_min_s >= 1e-9 && dt_min_s.is_finite()) {
+                    refuse("dt_min", dt_min_s, "1e-9 s or more, and finite")
+                } else if !(dt_max_s >= dt_min_s && dt_max_s.is_finite()) {
+                    refuse("dt_max", dt_max_s, "finite, and not less than dt_min")
+                } else {
+                    Ok(())
+                }
+            }
+        }
+    }
 }
 
 impl Default for Integrator {
     fn default() -> Self {
-        Self::EXACT
+        Self::EVENT_DRIVEN
+    }
+}
+
+/// Why a simulator cannot be built.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SimulatorError {
+    /// A physical constant cannot be simulated.
+    #[error(transparent)]
+    Physics(#[from] PhysicsError),
+    /// A setting of the integrator is out of range.
+    #[error("physics.{key} is {value}; it must be {allowed}")]
+    Integrator {
+        /// The key of the setting in the `[physics]` table.
+        key: &'static str,
+        /// Its value.
+        value: f64,
+        /// The allowed values.
+        allowed: &'static str,
+    },
+}
+
+/// A release whose state is not finite: it has a NaN or infinite value.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("release {index} has a value that is not finite: {state:?}")]
+pub struct StateError {
+    /// Position in the batch; 0 for a single shot.
+    pub index: usize,
+    /// The state at the release.
+    pub state: BallState,
+}
+
+fn check_finite(index: usize, state: BallState) -> Result<BallState, StateError> {
+    if state.is_finite() {
+        Ok(state)
+    } else {
+        Err(StateError { index, state })
     }
 }
 
 /// Simulates shots under one physics with one integrator.
 ///
 /// ```
-/// use bankshot::dynamics::{Kind, Release, Simulator};
-/// use bankshot::physics::{FOOT_M, Physics};
+/// use bankshot::dynamics::{OutcomeKind, Release, Simulator};
+/// use bankshot::model::Physics;
+/// use bankshot::units::FOOT_M;
 ///
 /// let simulator = Simulator::new(&Physics::paper())?;
 /// let release = Release {
@@ -68,144 +133,204 @@ impl Default for Integrator {
 ///     rifle_spin_rad_s: 0.0,
 ///     side_spin_rad_s: 0.0,
 /// };
-/// let outcome = simulator.shoot(&release);
+/// let outcome = simulator.simulate(&release)?;
 /// assert!(outcome.verdict.made);
-/// assert_eq!(outcome.kind, Kind::Swish);
-/// # Ok::<(), bankshot::physics::PhysicsError>(())
+/// assert_eq!(outcome.kind, OutcomeKind::Swish);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Simulator {
-    law: Law,
-    rules: Rules,
+    physics: Physics,
     integrator: Integrator,
-    ball_mass_kg: f64,
-    lanes: Lanes,
+    params: ModelParams,
+    limits: RunLimits,
+    instructions: InstructionSet,
 }
 
 impl Simulator {
-    /// The same simulator with its batches on other vector instructions (by default the best the
-    /// machine has); no result depends on it.
-    #[must_use]
-    pub fn with_lanes(mut self, lanes: Lanes) -> Self {
-        self.lanes = lanes;
-        self
-    }
-
-    /// The verdicts of many shots, from their states at the release: the fast form of
-    /// [`Simulator::verdict_from`], equal to it bit for bit. The more shots a call, the better
-    /// the lanes are filled to its end: twenty thousand lose a tenth of the speed of two hundred thousand. The
-    /// room takes a third of a megabyte, and 32 bytes for each verdict.
-    pub fn verdicts<'r>(&self, starts: &[State], room: &'r mut Room) -> &'r [Verdict] {
-        match (self.integrator, self.lanes.0) {
-            (Integrator::Exact { .. }, Some(level)) => {
-                fearless_simd::dispatch!(level, simd => {
-                    batch::run(simd, &self.law, &self.rules, starts, room)
-                });
-            }
-            _ => {
-                room.verdicts.clear();
-                room.verdicts
-                    .extend(starts.iter().map(|start| self.verdict_from(*start)));
-            }
-        }
-        &room.verdicts
-    }
-
     /// A simulator with the default integrator.
     ///
     /// # Errors
-    /// The first fault of `physics`.
-    pub fn new(physics: &Physics) -> Result<Self, PhysicsError> {
-        Self::with_integrator(physics, Integrator::EXACT)
+    /// The first constant of `physics` that cannot be simulated.
+    pub fn new(physics: &Physics) -> Result<Self, SimulatorError> {
+        Self::with_integrator(physics, Integrator::EVENT_DRIVEN)
     }
 
     /// A simulator with the given integrator.
     ///
     /// # Errors
-    /// The first fault of `physics`.
+    /// The first constant of `physics` that cannot be simulated, or a step of the integrator that is not
+    /// positive and finite.
     pub fn with_integrator(
         physics: &Physics,
         integrator: Integrator,
-    ) -> Result<Self, PhysicsError> {
-        if let Some(fault) = physics.faults().into_iter().next() {
-            return Err(fault);
+    ) -> Result<Self, SimulatorError> {
+        if let Some(error) = physics.errors().into_iter().next() {
+            return Err(error.into());
         }
+        integrator.check()?;
         let steps = match integrator {
-            Integrator::Exact { steps_per_contact } => f64::from(steps_per_contact.max(1)),
-            Integrator::Paper { .. } => 1.0,
+            Integrator::EventDriven { steps_per_contact } => f64::from(steps_per_contact),
+            Integrator::PaperRk4 { .. } => 1.0,
         };
         Ok(Self {
-            law: Law::new(physics),
-            rules: Rules {
+            physics: physics.clone(),
+            integrator,
+            params: ModelParams::new(physics),
+            limits: RunLimits {
                 longest_step_s: physics.contact_time_s() / steps,
                 time_limit_s: physics.time_limit_s,
                 lodged_after_s: physics.lodged_after_s,
             },
-            integrator,
-            ball_mass_kg: physics.ball_mass_kg,
-            lanes: Lanes::best(),
+            instructions: InstructionSet::best(),
         })
     }
 
-    /// Made or missed, how it ended and what was touched: the fast answer.
+    /// The same simulator with its batches on other vector instructions (by default, the best of the
+    /// machine). No result depends on them.
     #[must_use]
-    pub fn verdict(&self, release: &Release) -> Verdict {
-        self.run(release.state(), &mut ())
+    pub fn with_instructions(mut self, instructions: InstructionSet) -> Self {
+        self.instructions = instructions;
+        self
     }
 
-    /// As [`Simulator::verdict`], from the nine state variables.
+    /// The physics.
     #[must_use]
-    pub fn verdict_from(&self, start: State) -> Verdict {
+    pub fn physics(&self) -> &Physics {
+        &self.physics
+    }
+
+    /// The integrator.
+    #[must_use]
+    pub fn integrator(&self) -> Integrator {
+        self.integrator
+    }
+
+    /// The outcome of one shot.
+    ///
+    /// # Errors
+    /// The release has a NaN or infinite value.
+    pub fn simulate(&self, release: &Release) -> Result<Outcome, StateError> {
+        self.simulate_state(release.state())
+    }
+
+    /// The outcome of one shot from its nine state variables.
+    ///
+    /// # Errors
+    /// The state has a NaN or infinite value.
+    pub fn simulate_state(&self, start: BallState) -> Result<Outcome, StateError> {
+        Ok(self.outcome(check_finite(0, start)?))
+    }
+
+    /// The outcomes of many shots, in parallel on the current rayon pool. They are in the order of the
+    /// releases, and do not depend on the number of threads.
+    ///
+    /// # Errors
+    /// The first release with a NaN or infinite value.
+    pub fn simulate_batch(&self, releases: &[Release]) -> Result<Vec<Outcome>, StateError> {
+        releases
+            .par_iter()
+            .enumerate()
+            .map(|(index, release)| {
+                let start = check_finite(index, release.state())?;
+                Ok(self.outcome(start))
+            })
+            .collect::<Vec<Result<_, _>>>()
+            .into_iter()
+            .collect()
+    }
+
+    /// The verdicts of many shots from their nine state variables, on the current thread. This is the fast
+    /// form, in SIMD lanes; each verdict equals that of [`Simulator::simulate_state`] bit for bit. Give it
+    /// many shots at once: twenty thousand run a tenth slower than two hundred thousand, because the last
+    /// shots of a call leave lanes empty. The workspace takes a third of a megabyte, and 48 bytes for each
+    /// verdict.
+    ///
+    /// # Errors
+    /// The first state with a NaN or infinite value.
+    pub fn verdicts<'w>(
+        &self,
+        starts: &[BallState],
+        workspace: &'w mut BatchWorkspace,
+    ) -> Result<&'w [Verdict], StateError> {
+        for (index, start) in starts.iter().enumerate() {
+            check_finite(index, *start)?;
+        }
+        Ok(self.finite_verdicts(starts, workspace))
+    }
+
+    /// One shot with its events and its trajectory: a sample every `interval_s` in flight, and at every
+    /// step in contact.
+    ///
+    /// # Errors
+    /// The release has a NaN or infinite value.
+    pub fn trace(&self, release: &Release, interval_s: f64) -> Result<Trace, StateError> {
+        self.trace_state(release.state(), interval_s)
+    }
+
+    /// The same from the nine state variables.
+    ///
+    /// # Errors
+    /// The state has a NaN or infinite value.
+    pub fn trace_state(&self, start: BallState, interval_s: f64) -> Result<Trace, StateError> {
+        check_finite(0, start)?;
+        let mut observer = (
+            OutcomeClassifier::new(self.params.ring.radius, &start),
+            Recorder::new(self.physics.ball_mass_kg, interval_s, start),
+        );
+        let verdict = self.run(start, &mut observer);
+        let (classifier, recorder) = observer;
+        Ok(recorder.into_trace(&self.params, classifier.outcome(verdict)))
+    }
+
+    /// What the ball touches first in flight, if anything.
+    #[must_use]
+    pub fn first_touch(&self, release: &Release) -> Option<SolidId> {
+        FlightArc::new(&self.params, &release.state()).first_touch()
+    }
+
+    /// As [`Simulator::simulate_state`], for a state that is known to be finite.
+    pub(crate) fn outcome(&self, start: BallState) -> Outcome {
+        let mut classifier = OutcomeClassifier::new(self.params.ring.radius, &start);
+        let verdict = self.run(start, &mut classifier);
+        classifier.outcome(verdict)
+    }
+
+    /// The verdict of one shot whose state is known to be finite.
+    pub(crate) fn verdict(&self, start: BallState) -> Verdict {
         self.run(start, &mut ())
     }
 
-    /// The whole outcome: with the kind, the entry and the apex.
-    #[must_use]
-    pub fn shoot(&self, release: &Release) -> Outcome {
-        let start = release.state();
-        let mut summary = Summary::new(self.law.ring_radius, &start);
-        let verdict = self.run(start, &mut summary);
-        summary.outcome(verdict)
-    }
-
-    /// The whole outcome with its events and the trajectory, `interval_s` apart in flight and every
-    /// step in contact.
-    #[must_use]
-    pub fn trace(&self, release: &Release, interval_s: f64) -> Trace {
-        self.trace_from(release.state(), interval_s)
-    }
-
-    /// As [`Simulator::trace`], from the nine state variables.
-    #[must_use]
-    pub fn trace_from(&self, start: State, interval_s: f64) -> Trace {
-        let mut watch = (
-            Summary::new(self.law.ring_radius, &start),
-            Recorder::new(self.ball_mass_kg, interval_s, start),
-        );
-        let verdict = self.run(start, &mut watch);
-        watch.1.trace(&self.law, watch.0.outcome(verdict))
-    }
-
-    /// What an error-free flight touches first, if anything.
-    #[must_use]
-    pub fn first_touch(&self, release: &Release) -> Option<Touched> {
-        let arc = Arc::from(&self.law, &release.state());
-        let until = arc.end.min(arc.beside_board);
-        if arc.ring <= until && arc.ring < arc.board {
-            Some(Touched::Ring)
-        } else if arc.board < until {
-            Some(Touched::Board)
-        } else {
-            None
+    /// As [`Simulator::verdicts`], for states that are known to be finite.
+    pub(crate) fn finite_verdicts<'w>(
+        &self,
+        starts: &[BallState],
+        workspace: &'w mut BatchWorkspace,
+    ) -> &'w [Verdict] {
+        match (self.integrator, self.instructions.level()) {
+            (Integrator::EventDriven { .. }, Some(level)) => {
+                fearless_simd::dispatch!(level, simd => {
+                    batch::run(simd, &self.params, &self.limits, starts, workspace)
+                });
+            }
+            _ => {
+                workspace.verdicts.clear();
+                workspace
+                    .verdicts
+                    .extend(starts.iter().map(|start| self.verdict(*start)));
+            }
         }
+        &workspace.verdicts
     }
 
-    fn run<W: Watch>(&self, start: State, watch: &mut W) -> Verdict {
+    fn run<O: Observer>(&self, start: BallState, observer: &mut O) -> Verdict {
         match self.integrator {
-            Integrator::Exact { .. } => exact::run(&self.law, &self.rules, start, watch),
-            Integrator::Paper { dt_max_s, dt_min_s } => {
-                let steps = Steps { dt_max_s, dt_min_s };
-                paper::run(&self.law, &self.rules, steps, start, watch)
+            Integrator::EventDriven { .. } => {
+                event_driven::run(&self.params, &self.limits, start, observer)
+            }
+            Integrator::PaperRk4 { dt_max_s, dt_min_s } => {
+                let steps = StepRange { dt_max_s, dt_min_s };
+                paper_rk4::run(&self.params, &self.limits, steps, start, observer)
             }
         }
     }

@@ -1,8 +1,10 @@
 //! One shot in full: its events and its trajectory.
 
-use super::outcome::{Outcome, Touched};
-use super::state::{Law, State, Triple};
-use super::watch::Watch;
+use super::observer::{Impulses, Observer};
+use super::outcome::Outcome;
+use crate::math::vector::Vec3;
+use crate::model::params::ModelParams;
+use crate::model::{BallState, SolidId};
 
 /// A point of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,74 +12,83 @@ pub struct Sample {
     /// Time from the release, s.
     pub time_s: f64,
     /// The nine state variables.
-    pub state: State,
-    /// In contact with the board.
-    pub on_board: bool,
-    /// In contact with the ring.
-    pub on_ring: bool,
+    pub state: BallState,
+    /// Whether the ball is in contact with each solid, in the order of [`SolidId::ALL`].
+    pub in_contact: [bool; SolidId::COUNT],
 }
 
-/// What happened at an [`Event`].
+impl Sample {
+    /// Whether the ball is in contact with a solid.
+    #[must_use]
+    pub fn touches(&self, solid: SolidId) -> bool {
+        self.in_contact[solid.index()]
+    }
+}
+
+/// The kind of an [`Event`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
     /// The release.
     Release,
     /// A contact begins.
-    Touch(Touched),
-    /// A contact is over; its whole impulse on the ball (x, y, z) in N s and how long it lasted.
+    Touch(SolidId),
+    /// A contact ends.
     Part {
-        /// The surface.
-        surface: Touched,
-        /// Impulse on the ball, N s (zero where the paper's integrator ran).
-        impulse_n_s: Triple<f64>,
+        /// What the ball touched.
+        solid: SolidId,
+        /// Total impulse on the ball, N s (zero under the paper's integrator).
+        impulse_n_s: Vec3<f64>,
         /// Duration of the contact, s.
-        lasted_s: f64,
+        duration_s: f64,
     },
     /// The end of the shot.
     End,
 }
 
-/// Something that happened, when, and the state it happened in.
+/// An event of a shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
     /// Time from the release, s.
     pub time_s: f64,
-    /// What happened.
+    /// Its kind.
     pub kind: EventKind,
     /// The nine state variables.
-    pub state: State,
+    pub state: BallState,
 }
 
-/// One shot with its events and its trajectory.
+/// The events and the trajectory of one shot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The outcome.
     pub outcome: Outcome,
-    /// Release, touches, partings and the end, in order.
+    /// Release, touches, ends of contacts, and the end, in order.
     pub events: Vec<Event>,
-    /// The trajectory in order of time: evenly spaced in flight, every step in contact.
+    /// The trajectory in order of time: evenly spaced in flight, and every step in contact.
     pub samples: Vec<Sample>,
 }
 
+/// Records the events and the trajectory of a shot.
 pub(crate) struct Recorder {
     mass_kg: f64,
     interval_s: f64,
     events: Vec<Event>,
     samples: Vec<Sample>,
-    /// Of the contact under way with board and ring: when it began and its impulse over the mass.
-    open: [Option<(f64, Triple<f64>)>; 2],
-    last: (f64, State, f64),
+    /// For each solid, the contact in progress.
+    open: [Option<OpenContact>; SolidId::COUNT],
+    /// Where the last segment began: time, state, and time of flight since.
+    last: (f64, BallState, f64),
 }
 
-fn index(surface: Touched) -> usize {
-    match surface {
-        Touched::Board => 0,
-        Touched::Ring => 1,
-    }
+/// A contact in progress.
+#[derive(Clone, Copy)]
+struct OpenContact {
+    began_s: f64,
+    /// Impulse per unit of mass so far, m/s.
+    impulse: Vec3<f64>,
 }
 
 impl Recorder {
-    pub(crate) fn new(mass_kg: f64, interval_s: f64, start: State) -> Self {
+    pub(crate) fn new(mass_kg: f64, interval_s: f64, start: BallState) -> Self {
         let release = Event {
             time_s: 0.0,
             kind: EventKind::Release,
@@ -88,35 +99,37 @@ impl Recorder {
             interval_s: interval_s.max(1e-5),
             events: vec![release],
             samples: Vec::new(),
-            open: [None; 2],
+            open: [None; SolidId::COUNT],
             last: (0.0, start, 0.0),
         }
     }
 
-    fn sample(&mut self, time_s: f64, state: State) {
-        let [board, ring] = self.open.map(|contact| contact.is_some());
+    fn sample(&mut self, time_s: f64, state: BallState) {
         self.samples.push(Sample {
             time_s,
             state,
-            on_board: board,
-            on_ring: ring,
+            in_contact: self.open.map(|contact| contact.is_some()),
         });
     }
 
-    pub(crate) fn trace(mut self, law: &Law, outcome: Outcome) -> Trace {
-        let (time_s, state, flown) = self.last;
-        let state = if flown > 0.0 {
-            state.flown(law, flown)
+    fn event(&mut self, time_s: f64, kind: EventKind, state: BallState) {
+        self.events.push(Event {
+            time_s,
+            kind,
+            state,
+        });
+    }
+
+    pub(crate) fn into_trace(mut self, params: &ModelParams, outcome: Outcome) -> Trace {
+        let (time_s, state, flight_s) = self.last;
+        let state = if flight_s > 0.0 {
+            state.after_flight(params, flight_s)
         } else {
             state
         };
-        let time_s = time_s + flown;
+        let time_s = time_s + flight_s;
         self.sample(time_s, state);
-        self.events.push(Event {
-            time_s,
-            kind: EventKind::End,
-            state,
-        });
+        self.event(time_s, EventKind::End, state);
         Trace {
             outcome,
             events: self.events,
@@ -125,50 +138,45 @@ impl Recorder {
     }
 }
 
-impl Watch for Recorder {
-    fn flight(&mut self, law: &Law, t: f64, dt: f64, start: &State) {
+impl Observer for Recorder {
+    fn flight(&mut self, params: &ModelParams, t: f64, dt: f64, start: &BallState) {
         let mut done = 0.0;
         while done < dt {
-            self.sample(t + done, start.flown(law, done));
+            self.sample(t + done, start.after_flight(params, done));
             done += self.interval_s;
         }
         self.last = (t, *start, dt);
     }
 
-    fn touch(&mut self, t: f64, surface: Touched, state: &State) {
-        self.open[index(surface)] = Some((t, Triple(0.0, 0.0, 0.0)));
-        self.events.push(Event {
-            time_s: t,
-            kind: EventKind::Touch(surface),
-            state: *state,
+    fn touch(&mut self, t: f64, solid: SolidId, state: &BallState) {
+        self.open[solid.index()] = Some(OpenContact {
+            began_s: t,
+            impulse: Vec3::zeros(),
         });
+        self.event(t, EventKind::Touch(solid), *state);
     }
 
-    fn step(&mut self, t: f64, dt: f64, states: (&State, &State), impulses: [Triple<f64>; 2]) {
+    fn step(&mut self, t: f64, dt: f64, states: (&BallState, &BallState), impulses: Impulses) {
         self.sample(t, *states.0);
-        for (open, impulse) in self.open.iter_mut().zip(impulses) {
-            if let Some((_, sum)) = open {
-                *sum = sum.plus(impulse, 1.0);
+        for (contact, impulse) in self.open.iter_mut().zip(impulses) {
+            if let Some(contact) = contact {
+                contact.impulse = contact.impulse + impulse;
             }
         }
         self.last = (t + dt, *states.1, 0.0);
     }
 
-    fn part(&mut self, t: f64, surface: Touched, state: &State) {
-        let (began, sum) = self.open[index(surface)]
-            .take()
-            .unwrap_or((t, Triple(0.0, 0.0, 0.0)));
-        let Triple(x, y, z) = sum;
-        let impulse_n_s = Triple(x * self.mass_kg, y * self.mass_kg, z * self.mass_kg);
-        let kind = EventKind::Part {
-            surface,
-            impulse_n_s,
-            lasted_s: t - began,
+    fn part(&mut self, t: f64, solid: SolidId, state: &BallState) {
+        let unopened = OpenContact {
+            began_s: t,
+            impulse: Vec3::zeros(),
         };
-        self.events.push(Event {
-            time_s: t,
-            kind,
-            state: *state,
-        });
+        let contact = self.open[solid.index()].take().unwrap_or(unopened);
+        let kind = EventKind::Part {
+            solid,
+            impulse_n_s: contact.impulse * self.mass_kg,
+            duration_s: t - contact.began_s,
+        };
+        self.event(t, kind, *state);
     }
 }

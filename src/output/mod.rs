@@ -1,35 +1,10 @@
-//! Results as people and programs read them: records with units in their names, and files that are
-//! either whole or not there.
+//! Results for people and programs: tables and records with units in their names, and files that are complete or
+//! absent.
 
-pub mod best;
-pub mod files;
-pub mod probability;
-pub mod releases;
-
-use serde_json::Value;
-
-/// Named values in the order in which they are written.
-pub type Record = Vec<(String, Value)>;
-
-/// A number as JSON; null where it is not finite.
-#[must_use]
-pub fn number(value: f64) -> Value {
-    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
-}
-
-/// The version, the commit and the hash that every result carries.
-#[must_use]
-pub fn provenance(hash: &str) -> Record {
-    vec![
-        ("program".to_owned(), "bankshot".into()),
-        ("version".to_owned(), env!("CARGO_PKG_VERSION").into()),
-        ("commit".to_owned(), env!("BANKSHOT_COMMIT").into()),
-        ("configuration_blake3".to_owned(), hash.into()),
-    ]
-}
-
-/// A record as a JSON object.
-#[must_use]
-pub fn object(record: Record) -> Value {
-    Value::Object(record.into_iter().collect())
-}
+pub mod atomic_file;
+pub mod best_shot_csv;
+pub mod best_shot_json;
+pub mod best_shot_text;
+pub mod json_record;
+pub mod probability_answer;
+pub mod release_csv;

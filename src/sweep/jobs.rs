@@ -1,28 +1,28 @@
-//! The jobs of a sweep: what is computed, and which result stands for which place.
+//! The jobs of a sweep: what is computed, and which result belongs to which spot.
 //!
-//! A place right of the middle is the mirror image of one left of it, so only one of the two is computed.
+//! A spot on the right is the mirror image of one on the left, so only one of the two is computed.
 
-use super::configuration::Configuration;
-use super::region::Spot;
-use crate::probability::best::ShotKind;
+use super::region::CourtSpot;
+use super::sweep_file::SweepConfig;
+use crate::best_shot::ShotKind;
 
-/// One shard of several: every `count`-th place from the `index`-th, from 0.
+/// One shard of several: every `count`-th spot, starting at the `index`-th.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which, from 0.
+    /// Number of the shard, from 0.
     pub index: usize,
-    /// Of how many.
+    /// Number of shards.
     pub count: usize,
 }
 
 impl Shard {
-    /// Everything.
+    /// The only shard.
     pub const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// Does it compute this place?
+    /// Whether the shard computes a spot.
     #[must_use]
-    pub fn has(self, place: usize) -> bool {
-        place % self.count == self.index
+    pub fn contains(self, spot: usize) -> bool {
+        spot % self.count == self.index
     }
 }
 
@@ -32,80 +32,80 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// Where a place of the results comes from.
+/// Where the result of a spot comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Source {
-    /// The place of the results.
-    pub spot: Spot,
-    /// The computed place, an index of [`Jobs::places`].
-    pub place: usize,
-    /// As its mirror image?
+pub struct JobSource {
+    /// The spot.
+    pub spot: CourtSpot,
+    /// The computed spot, an index of [`Jobs::spots`].
+    pub computed: usize,
+    /// Whether the result is the mirror image of the computed one.
     pub mirrored: bool,
 }
 
-/// All jobs of a sweep.
+/// All jobs of a sweep. A job is one kind of shot at one computed spot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jobs {
-    /// The places that are computed.
-    pub places: Vec<Spot>,
-    /// The kinds that are computed at each.
+    /// The computed spots.
+    pub spots: Vec<CourtSpot>,
+    /// The kinds of shots that are computed at each.
     pub kinds: Vec<ShotKind>,
-    /// The places of the results, in their order.
-    pub sources: Vec<Source>,
+    /// For each spot of the region, in order, where its result comes from.
+    pub sources: Vec<JobSource>,
 }
 
 impl Jobs {
     /// Lists the jobs.
     #[must_use]
-    pub fn new(configuration: &Configuration) -> Self {
-        let mirrors = configuration.is_symmetric();
-        let mut places: Vec<Spot> = Vec::new();
+    pub fn new(config: &SweepConfig) -> Self {
+        let uses_mirror = config.is_mirror_symmetric();
+        let mut spots: Vec<CourtSpot> = Vec::new();
         let mut known = std::collections::HashMap::new();
-        let sources = configuration
+        let sources = config
             .spots
             .iter()
             .map(|&spot| {
-                let mirrored = mirrors && spot.y_m < 0.0;
-                // Adding 0 leaves no negative zero.
+                let mirrored = uses_mirror && spot.y_m < 0.0;
+                // Adding 0 turns a negative zero into zero.
                 let (x_m, y_m) = (
                     spot.x_m + 0.0,
                     if mirrored { -spot.y_m } else { spot.y_m } + 0.0,
                 );
-                let place = *known
+                let computed = *known
                     .entry((x_m.to_bits(), y_m.to_bits()))
                     .or_insert_with(|| {
-                        places.push(Spot { x_m, y_m });
-                        places.len() - 1
+                        spots.push(CourtSpot { x_m, y_m });
+                        spots.len() - 1
                     });
-                Source {
+                JobSource {
                     spot,
-                    place,
+                    computed,
                     mirrored,
                 }
             })
             .collect();
         Self {
-            places,
-            kinds: configuration.compute.kinds(),
+            spots,
+            kinds: config.compute.kinds(),
             sources,
         }
     }
 
-    /// How many there are.
+    /// Number of jobs.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.places.len() * self.kinds.len()
+        self.spots.len() * self.kinds.len()
     }
 
-    /// The number of a job.
+    /// The number of the job of a computed spot and a kind.
     #[must_use]
-    pub fn number(&self, place: usize, kind: usize) -> u64 {
-        (place * self.kinds.len() + kind) as u64
+    pub fn number(&self, spot: usize, kind: usize) -> u64 {
+        (spot * self.kinds.len() + kind) as u64
     }
 
-    /// The place and the kind of a job; none where there is no such job.
+    /// The computed spot and the kind of a job; `None` if there is no such job.
     #[must_use]
-    pub fn of(&self, job: u64) -> Option<(usize, usize)> {
+    pub fn spot_and_kind(&self, job: u64) -> Option<(usize, usize)> {
         let job = usize::try_from(job).ok()?;
         (job < self.count()).then(|| (job / self.kinds.len(), job % self.kinds.len()))
     }

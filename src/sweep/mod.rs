@@ -1,18 +1,26 @@
-//! Best shots at every place of a region, written to disk as they come.
+//! Best shots at every spot of a region, saved to disk as they are computed.
 //!
-//! A *job* is one kind of shot at one place. [`Configuration`] says what is asked for, [`jobs`] lists it,
-//! [`run`] computes what is not yet there, [`store`] keeps each result in SQLite with a checksum,
-//! [`folder`] joins the stores of all processes, and [`tables`] writes the final tables. The files are the
-//! truth: whatever is killed, the same command goes on.
+//! A *job* is one kind of shot at one spot. [`SweepConfig`] says what is wanted, [`jobs`] lists it, [`run`] computes
+//! what is missing, [`result_store`] saves each result in SQLite with a checksum, [`sweep_folder`] joins the stores
+//! of all processes, and [`result_tables`] writes the final tables. The results on disk are the only state: whatever
+//! is killed, the same command continues.
 
-pub mod configuration;
-pub mod folder;
+pub mod columns;
+mod folder_error;
+pub mod inventory;
 pub mod jobs;
+mod manifest;
 mod region;
-pub mod row;
+mod region_table;
+pub mod result_row;
+pub mod result_store;
+pub mod result_tables;
 pub mod run;
-pub mod store;
-pub mod tables;
+mod shard_lock;
+pub mod sweep_file;
+pub mod sweep_folder;
 
-pub use configuration::{Compute, Configuration, Texts};
-pub use region::{MOST_PLACES, Region, Spot};
+pub use folder_error::SweepFolderError;
+pub use region::{CourtSpot, MAX_SPOTS, Region};
+pub use shard_lock::{ShardLock, is_locked};
+pub use sweep_file::{Compute, SourceTexts, SweepConfig};

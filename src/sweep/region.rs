@@ -1,27 +1,27 @@
-//! The places of a sweep.
+//! The region of a sweep: its spots on the court.
 
-use crate::court::League;
-use crate::physics::Physics;
-use crate::profile::{Place, PlaceError};
+use crate::model::Physics;
+use crate::model::court::League;
+use crate::shooter::{Location, LocationError};
 use serde::Serialize;
 
-/// Most places of a sweep.
-pub const MOST_PLACES: usize = 100_000;
+/// Greatest number of spots.
+pub const MAX_SPOTS: usize = 100_000;
 
-/// Which places are asked for.
+/// The region of the court that a sweep covers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Region {
     /// A grid about the hoop's centre over half the court.
     HalfCourt {
-        /// Distance of neighbours, m.
+        /// Spacing, m.
         step_m: f64,
-        /// Only on and inside the three-point line.
+        /// Only spots on and inside the three-point line.
         inside_three: bool,
     },
     /// A grid about the hoop's centre within a rectangle.
     Rectangle {
-        /// Distance of neighbours, m.
+        /// Spacing, m.
         step_m: f64,
         /// Least and greatest x, m.
         x_m: (f64, f64),
@@ -34,49 +34,48 @@ pub enum Region {
         distances_m: Vec<f64>,
         /// Least and greatest court angle, rad.
         angles_rad: (f64, f64),
-        /// Angle between neighbours, rad.
+        /// Spacing, rad.
         step_rad: f64,
     },
     /// Along the three-point line.
     ThreePointLine {
-        /// Distance of neighbours along the line, m.
+        /// Spacing along the line, m.
         step_m: f64,
     },
-    /// Places of a file.
-    Places(Vec<(f64, f64)>),
+    /// The spots of a file: (x, y), m.
+    Locations(Vec<(f64, f64)>),
 }
 
-/// A place of the sweep.
+/// A spot on the court.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spot {
-    /// x, m.
+pub struct CourtSpot {
+    /// x, from the board towards midcourt, m.
     pub x_m: f64,
-    /// y, m.
+    /// y, across, m.
     pub y_m: f64,
 }
 
-impl Spot {
-    /// As a shooter's place.
+impl CourtSpot {
+    /// The spot as the location of a shooter.
     #[must_use]
-    pub fn place(&self) -> Place {
-        Place::from_xy(self.x_m, self.y_m)
+    pub fn location(&self) -> Location {
+        Location::from_xy(self.x_m, self.y_m)
     }
 }
 
 impl Region {
-    /// Its places in their order, those from which nobody can shoot left out of a grid; of a file's, each must
-    /// be one that somebody can shoot from.
+    /// Its spots in order. A grid omits those from which nobody can shoot.
     ///
     /// # Errors
-    /// The number of a place of a file, from 0, and why nobody can shoot from it.
+    /// Nobody can shoot from a spot of a file: its row, from 0, and the reason.
     pub fn spots(
         &self,
         league: League,
         physics: &Physics,
-    ) -> Result<Vec<Spot>, (usize, PlaceError)> {
+    ) -> Result<Vec<CourtSpot>, (usize, LocationError)> {
         let court = league.court();
-        let spot = |(x_m, y_m): (f64, f64)| Spot { x_m, y_m };
-        let can = |spot: &Spot| spot.place().check(physics).is_ok();
+        let spot = |(x_m, y_m): (f64, f64)| CourtSpot { x_m, y_m };
+        let is_possible = |spot: &CourtSpot| spot.location().check(physics).is_ok();
         Ok(match self {
             Self::HalfCourt {
                 step_m,
@@ -86,11 +85,11 @@ impl Region {
                 grid(*step_m, (court.baseline_x_m, court.half_line_x_m), y)
                     .filter(|&(x, y)| !inside_three || court.is_inside_three(x, y))
                     .map(spot)
-                    .filter(can)
+                    .filter(is_possible)
                     .collect()
             }
             Self::Rectangle { step_m, x_m, y_m } => {
-                grid(*step_m, *x_m, *y_m).map(spot).filter(can).collect()
+                grid(*step_m, *x_m, *y_m).map(spot).filter(is_possible).collect()
             }
             Self::Arcs {
                 distances_m,
@@ -107,24 +106,24 @@ impl Region {
                         })
                     })
                     .map(spot)
-                    .filter(can)
+                    .filter(is_possible)
                     .collect()
             }
             Self::ThreePointLine { step_m } => {
                 let along = court.along_three(*step_m);
-                along.into_iter().map(spot).filter(can).collect()
+                along.into_iter().map(spot).filter(is_possible).collect()
             }
-            Self::Places(places) => {
-                let spots: Vec<Spot> = places.iter().copied().map(spot).collect();
+            Self::Locations(locations) => {
+                let spots: Vec<CourtSpot> = locations.iter().copied().map(spot).collect();
                 for (row, spot) in spots.iter().enumerate() {
-                    spot.place().check(physics).map_err(|error| (row, error))?;
+                    spot.location().check(physics).map_err(|error| (row, error))?;
                 }
                 spots
             }
         })
     }
 
-    /// About how many places there are, before any is made.
+    /// About the number of spots, before any is computed.
     #[must_use]
     pub fn size(&self, league: League) -> f64 {
         let court = league.court();
@@ -141,16 +140,16 @@ impl Region {
                 step_rad,
             } => distances_m.len() as f64 * span(*angles_rad, *step_rad),
             Self::ThreePointLine { step_m } => 4.0 * court.three_radius_m / step_m,
-            Self::Places(places) => places.len() as f64,
+            Self::Locations(locations) => locations.len() as f64,
         }
     }
 }
 
-/// The multiples of a step within a range, ends included.
+/// The multiples of `step` within a range, ends included.
 fn multiples(step: f64, (low, high): (f64, f64)) -> impl Iterator<Item = f64> + Clone {
-    let slack = 1e-9;
-    let first = (low / step - slack).ceil() as i64;
-    let last = (high / step + slack).floor() as i64;
+    let tolerance = 1e-9;
+    let first = (low / step - tolerance).ceil() as i64;
+    let last = (high / step + tolerance).floor() as i64;
     (first..=last).map(move |i| i as f64 * step)
 }
 

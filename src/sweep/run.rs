@@ -1,54 +1,58 @@
-//! Computes the jobs of a sweep that are not yet there.
+//! Computes the missing jobs of a sweep.
 //!
-//! Each thread takes place after place, in the order of the list, and works on it alone: so memory is that of one
-//! place for each thread, and a result cannot depend on how many there are. A panic is the failure of its
-//! job. A place that was being computed when the program aborted is computed alone at the next start, and
-//! given up when the program aborts there again.
+//! Each thread takes spot after spot, in the order of the list, and works on it alone. So the memory is that of one spot
+//! for each thread, and no result depends on the number of threads. A panic is the failure of its job. A spot
+//! that was being computed when the program aborted is computed alone at the next start, and given up if the
+//! program aborts there again.
 
-use super::configuration::Configuration;
-use super::folder::{Claim, Folder, FolderError, There};
+use super::folder_error::SweepFolderError;
+use super::inventory::Inventory;
 use super::jobs::{Jobs, Shard};
-use super::row::{Row, Status};
-use super::store::{Store, StoreError};
-use crate::probability::best;
+use super::result_row::{JobStatus, ResultRow};
+use super::result_store::{ResultStore, StoreError};
+use super::shard_lock::ShardLock;
+use super::sweep_file::SweepConfig;
+use super::sweep_folder::SweepFolder;
+use crate::best_shot::{self, BestShotError, NoShot};
 use crate::probability::{Progress, Silent};
+use crate::search_space::PlanError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-/// Aborts of the program after which a place is given up.
-const MOST_ABORTS: u32 = 2;
+/// Aborts of the program after which a spot is given up.
+const MAX_ABORTS: u32 = 2;
 
-/// What to do to certain places, for tests of what is promised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fault {
-    /// Panic at this place.
+/// A fault to inject at a spot, for tests.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FaultInjection {
+    /// Panic at this spot.
     Panic(usize),
-    /// Abort the program at this place.
+    /// Abort the program at this spot.
     Abort(usize),
+    /// Wait at this spot while the file exists. (The program writes its process number to it when it waits.)
+    Wait(usize, PathBuf),
 }
 
-/// A run of a sweep's jobs.
-#[derive(Debug)]
-pub struct Run<'a> {
-    configuration: &'a Configuration,
-    jobs: &'a Jobs,
-    shard: Shard,
-    threads: usize,
-    fault: Option<Fault>,
-    retry: bool,
-    store: Mutex<Store>,
-    there: There,
-    alone: Vec<usize>,
-    given_up: Vec<usize>,
-    done: &'a AtomicUsize,
+/// The options of a run.
+#[derive(Clone, Debug)]
+pub struct RunOptions {
+    /// The shard.
+    pub shard: Shard,
+    /// Number of threads, at least one.
+    pub threads: usize,
+    /// Whether to compute failed jobs again.
+    pub retry_failed: bool,
+    /// A fault to inject, for tests.
+    pub fault: Option<FaultInjection>,
 }
 
-/// How a run went on.
+/// The result of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Went {
-    /// Jobs that were already there.
+pub struct RunSummary {
+    /// Jobs that were done before.
     pub resumed: usize,
     /// Jobs that were computed.
     pub computed: usize,
@@ -56,271 +60,292 @@ pub struct Went {
     pub failed: usize,
 }
 
-/// How a run is done.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Which part.
-    pub shard: Shard,
-    /// Threads, at least one.
-    pub threads: usize,
-    /// Compute the failed jobs again?
-    pub retry: bool,
-    /// A fault, for tests.
-    pub fault: Option<Fault>,
+/// A run of a sweep's jobs.
+#[derive(Debug)]
+pub struct SweepRun<'a> {
+    config: &'a SweepConfig,
+    jobs: &'a Jobs,
+    options: RunOptions,
+    store: Mutex<ResultStore>,
+    inventory: Inventory,
+    /// Spots to compute alone, because the program aborted there.
+    alone: Vec<usize>,
+    given_up: Vec<usize>,
+    /// Counts the jobs that are saved on disk.
+    saved: &'a AtomicUsize,
 }
 
-impl<'a> Run<'a> {
-    /// Finds out what is there, and what the last run died of. `done` counts the jobs that are safe on disk.
+impl<'a> SweepRun<'a> {
+    /// Takes the inventory of the folder, and finds the spots at which the last run aborted. `saved` counts the jobs
+    /// that are saved on disk.
     ///
     /// # Errors
-    /// When the folder cannot be read or written.
+    /// The folder cannot be read or written.
     pub fn new(
-        folder: &Folder,
-        claim: &Claim,
-        configuration: &'a Configuration,
+        folder: &SweepFolder,
+        lock: &ShardLock,
+        config: &'a SweepConfig,
         jobs: &'a Jobs,
-        options: Options,
-        done: &'a AtomicUsize,
-    ) -> Result<Self, FolderError> {
-        let (there, mut store) = folder.take_stock(claim)?;
-        let aborted = std::fs::metadata(&claim.aborted).is_ok_and(|about| about.len() > 0);
-        let suspects = store.suspects(aborted)?;
-        if aborted {
-            // Counted; the next abort is another one.
-            let _ = std::fs::write(&claim.aborted, []);
+        options: RunOptions,
+        saved: &'a AtomicUsize,
+    ) -> Result<Self, SweepFolderError> {
+        let (inventory, mut store) = Inventory::take(folder, lock)?;
+        let has_aborted = std::fs::metadata(&lock.aborted).is_ok_and(|file| file.len() > 0);
+        let aborts = store.count_aborts(has_aborted)?;
+        if has_aborted {
+            // It is counted; the next abort is another one.
+            let _ = std::fs::write(&lock.aborted, []);
         }
-        let (given_up, alone): (Vec<_>, Vec<_>) = suspects
+        let (given_up, alone): (Vec<_>, Vec<_>) = aborts
             .into_iter()
-            .partition(|&(_, aborts)| aborts >= MOST_ABORTS && !options.retry);
-        let places = |suspects: Vec<(usize, u32)>| suspects.into_iter().map(|(place, _)| place);
+            .partition(|&(_, aborts)| aborts >= MAX_ABORTS && !options.retry_failed);
+        let spots = |aborts: Vec<(usize, u32)>| aborts.into_iter().map(|(spot, _)| spot).collect();
         let run = Self {
-            configuration,
+            config,
             jobs,
-            shard: options.shard,
-            threads: options.threads.max(1),
-            fault: options.fault,
-            retry: options.retry,
+            options,
             store: Mutex::new(store),
-            there,
-            alone: places(alone).collect(),
-            given_up: places(given_up).collect(),
-            done,
+            inventory,
+            alone: spots(alone),
+            given_up: spots(given_up),
+            saved,
         };
-        done.store(run.of_shard(|kinds| kinds.is_empty()).1, Ordering::Relaxed);
+        saved.store(run.progress().1, Ordering::Relaxed);
         Ok(run)
     }
 
-    /// Damaged files that were found.
+    /// The damaged files, and what was done with them.
     #[must_use]
     pub fn damaged(&self) -> &[String] {
-        &self.there.damaged
+        &self.inventory.damaged
     }
 
-    /// The kinds that are missing at a place.
-    fn missing(&self, place: usize) -> Vec<usize> {
+    /// The kinds that are missing at a spot.
+    fn missing_kinds(&self, spot: usize) -> Vec<usize> {
         (0..self.jobs.kinds.len())
             .filter(|&kind| {
-                let status = self.there.jobs.get(&self.jobs.number(place, kind));
-                status.is_none() || (self.retry && status == Some(&Status::Failed))
+                let status = self.inventory.jobs.get(&self.jobs.number(spot, kind));
+                let is_retried = self.options.retry_failed && status == Some(&JobStatus::Failed);
+                status.is_none() || is_retried
             })
             .collect()
     }
 
-    /// The shard's places whose missing kinds are so, and how many of their jobs are there.
-    fn of_shard(&self, holds: impl Fn(&[usize]) -> bool) -> (Vec<usize>, usize) {
-        let mut places = Vec::new();
-        let mut there = 0;
-        for place in (0..self.jobs.places.len()).filter(|&place| self.shard.has(place)) {
-            let missing = self.missing(place);
-            there += self.jobs.kinds.len() - missing.len();
-            if holds(&missing) {
-                places.push(place);
-            }
-        }
-        (places, there)
+    /// The spots of the shard.
+    fn shard_spots(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.jobs.spots.len()).filter(|&spot| self.options.shard.contains(spot))
     }
 
-    /// Jobs of the shard that were there and had failed.
+    /// Jobs of the shard that had failed before.
     fn failed_before(&self) -> usize {
-        let failed = self.there.jobs.iter().filter(|(job, status)| {
-            let place = self.jobs.of(**job).map(|(place, _)| place);
-            **status == Status::Failed && place.is_some_and(|place| self.shard.has(place))
+        let failed = self.inventory.jobs.iter().filter(|(job, status)| {
+            let spot = self.jobs.spot_and_kind(**job).map(|(spot, _)| spot);
+            let is_in_shard = spot.is_some_and(|spot| self.options.shard.contains(spot));
+            **status == JobStatus::Failed && is_in_shard
         });
         failed.count()
     }
 
-    /// Jobs of the shard in all, and those that are there.
+    /// The number of jobs of the shard, and of those that are done.
     #[must_use]
-    pub fn extent(&self) -> (usize, usize) {
-        let (places, there) = self.of_shard(|_| true);
-        (places.len() * self.jobs.kinds.len(), there)
+    pub fn progress(&self) -> (usize, usize) {
+        let kinds = self.jobs.kinds.len();
+        self.shard_spots().fold((0, 0), |(total, done), spot| {
+            let missing = self.missing_kinds(spot).len();
+            (total + kinds, done + kinds - missing)
+        })
     }
 
     /// Computes what is missing.
     ///
     /// # Errors
-    /// When a result cannot be kept; what was kept before is safe.
-    pub fn go(&self, progress: &dyn Progress) -> Result<Went, StoreError> {
-        let (total, resumed) = self.extent();
-        let (places, _) = self.of_shard(|missing| !missing.is_empty());
+    /// A result cannot be saved; what was saved before is safe.
+    pub fn run(&self, progress: &dyn Progress) -> Result<RunSummary, StoreError> {
+        let (total, resumed) = self.progress();
+        let spots = self
+            .shard_spots()
+            .filter(|&spot| !self.missing_kinds(spot).is_empty());
         progress.begin("sweeping", (total - resumed) as u64);
         let computed = AtomicUsize::new(0);
         let failed = AtomicUsize::new(0);
-        let keep = |place: usize, rows: &[Row], seconds: f64| {
-            let kept = self.lock().finish(place, rows, seconds);
-            if kept.is_ok() {
-                let bad = rows
-                    .iter()
-                    .filter(|row| row.status() == Some(Status::Failed));
-                failed.fetch_add(bad.count(), Ordering::Relaxed);
-                computed.fetch_add(rows.len(), Ordering::Relaxed);
-                self.done.fetch_add(rows.len(), Ordering::Relaxed);
-                progress.advance(rows.len() as u64);
-            }
-            kept
+        let save = |spot: usize, rows: &[ResultRow], seconds: f64| {
+            self.lock_store().finish_spot(spot, rows, seconds)?;
+            let failures = rows
+                .iter()
+                .filter(|row| row.status() == Some(JobStatus::Failed));
+            failed.fetch_add(failures.count(), Ordering::Relaxed);
+            computed.fetch_add(rows.len(), Ordering::Relaxed);
+            self.saved.fetch_add(rows.len(), Ordering::Relaxed);
+            progress.advance(rows.len() as u64);
+            Ok(())
         };
-        let (given_up, rest): (Vec<usize>, Vec<usize>) = places
-            .into_iter()
-            .partition(|place| self.given_up.contains(place));
-        for place in given_up {
-            let rows = self.failures(place, "the program aborted twice while it was computed");
-            keep(place, &rows, 0.0)?;
+        let (given_up, others): (Vec<usize>, Vec<usize>) =
+            spots.partition(|spot| self.given_up.contains(spot));
+        for spot in given_up {
+            let rows = self.failures(spot, "the program aborted twice while it was computed");
+            save(spot, &rows, 0.0)?;
         }
-        let (alone, rest): (Vec<usize>, Vec<usize>) = rest
+        let (alone, others): (Vec<usize>, Vec<usize>) = others
             .into_iter()
-            .partition(|place| self.alone.contains(place));
-        self.work(&alone, 1, &keep)?;
-        self.work(&rest, self.threads, &keep)?;
+            .partition(|spot| self.alone.contains(spot));
+        self.compute_spots(&alone, 1, &save)?;
+        self.compute_spots(&others, self.options.threads.max(1), &save)?;
         progress.end();
-        let before = self.failed_before();
-        Ok(Went {
+        let failed_before = if self.options.retry_failed {
+            0
+        } else {
+            self.failed_before()
+        };
+        Ok(RunSummary {
             resumed,
             computed: computed.into_inner(),
-            failed: failed.into_inner() + if self.retry { 0 } else { before },
+            failed: failed.into_inner() + failed_before,
         })
     }
 
-    fn lock(&self) -> std::sync::MutexGuard<'_, Store> {
+    fn lock_store(&self) -> std::sync::MutexGuard<'_, ResultStore> {
         self.store
             .lock()
             .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    fn work(
+    /// Computes spots on several threads and saves each as it is finished.
+    fn compute_spots(
         &self,
-        places: &[usize],
+        spots: &[usize],
         threads: usize,
-        keep: &(dyn Fn(usize, &[Row], f64) -> Result<(), StoreError> + Sync),
+        save: &(dyn Fn(usize, &[ResultRow], f64) -> Result<(), StoreError> + Sync),
     ) -> Result<(), StoreError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
-        let error = Mutex::new(None);
-        let fail = |problem: StoreError| {
+        let first_error = Mutex::new(None);
+        let fail = |error: StoreError| {
             stopped.store(true, Ordering::Relaxed);
-            if let Ok(mut error) = error.lock() {
-                error.get_or_insert(problem);
+            if let Ok(mut first_error) = first_error.lock() {
+                first_error.get_or_insert(error);
             }
         };
-        let no_threads = |problem: &dyn std::fmt::Display| StoreError::Io {
-            path: "threads".into(),
-            reason: format!("cannot be started: {problem}"),
+        let work = || {
+            let pool = match single_thread_pool() {
+                Ok(pool) => pool,
+                Err(error) => return fail(error),
+            };
+            while !stopped.load(Ordering::Relaxed) {
+                let Some(&spot) = spots.get(next.fetch_add(1, Ordering::Relaxed)) else {
+                    break;
+                };
+                let began = Instant::now();
+                let begun = self.lock_store().begin_spot(spot);
+                let saved = begun.and_then(|()| {
+                    let rows = pool.install(|| self.compute_spot(spot));
+                    save(spot, &rows, began.elapsed().as_secs_f64())
+                });
+                if let Err(error) = saved {
+                    fail(error);
+                }
+            }
         };
         std::thread::scope(|scope| {
-            for _ in 0..threads.min(places.len()) {
-                let work = || {
-                    // The place is computed on this thread alone.
-                    let pool = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
-                        Ok(pool) => pool,
-                        Err(problem) => return fail(no_threads(&problem)),
-                    };
-                    while !stopped.load(Ordering::Relaxed) {
-                        let Some(&place) = places.get(next.fetch_add(1, Ordering::Relaxed)) else {
-                            break;
-                        };
-                        let began = Instant::now();
-                        let started = self.lock().start(place);
-                        let kept = started.and_then(|()| {
-                            let rows = pool.install(|| self.compute(place));
-                            keep(place, &rows, began.elapsed().as_secs_f64())
-                        });
-                        if let Err(problem) = kept {
-                            fail(problem);
-                        }
-                    }
-                };
-                if let Err(problem) = std::thread::Builder::new().spawn_scoped(scope, work) {
-                    fail(no_threads(&problem));
+            for _ in 0..threads.min(spots.len()) {
+                if let Err(error) = std::thread::Builder::new().spawn_scoped(scope, work) {
+                    fail(no_threads(&error));
                 }
             }
         });
-        let error = error.into_inner().unwrap_or_default();
-        error.map_or(Ok(()), Err)
+        let first_error = first_error.into_inner().unwrap_or_default();
+        first_error.map_or(Ok(()), Err)
     }
 
-    /// The rows of a place's missing kinds.
-    fn compute(&self, place: usize) -> Vec<Row> {
-        let kinds = self.missing(place);
+    /// The rows of a spot's missing kinds.
+    fn compute_spot(&self, spot: usize) -> Vec<ResultRow> {
+        let kinds = self.missing_kinds(spot);
         let result = catch_unwind(AssertUnwindSafe(|| {
-            match self.fault {
-                Some(Fault::Panic(at)) if at == place => panic!("as asked for, at place {at}"),
-                Some(Fault::Abort(at)) if at == place => std::process::abort(),
-                _ => {}
-            }
-            evaluate(self.configuration, self.jobs, place, &kinds)
+            self.inject_fault(spot);
+            compute_jobs(self.config, self.jobs, spot, &kinds)
         }));
         match result {
             Ok(Ok(rows)) => rows,
-            Ok(Err(reason)) => self.failures(place, &reason),
+            Ok(Err(reason)) => self.failures(spot, &reason),
             Err(panic) => {
                 let text = panic
                     .downcast_ref::<String>()
                     .map(String::as_str)
                     .or_else(|| panic.downcast_ref::<&str>().copied())
                     .unwrap_or("without a message");
-                self.failures(place, &format!("panicked: {text}"))
+                self.failures(spot, &format!("panicked: {text}"))
             }
         }
     }
 
-    fn failures(&self, place: usize, reason: &str) -> Vec<Row> {
-        let spot = &self.jobs.places[place];
-        self.missing(place)
+    fn inject_fault(&self, spot: usize) {
+        match &self.options.fault {
+            Some(FaultInjection::Panic(at)) if *at == spot => {
+                panic!("fault injected at spot {at}")
+            }
+            Some(FaultInjection::Abort(at)) if *at == spot => std::process::abort(),
+            Some(FaultInjection::Wait(at, file)) if *at == spot => {
+                let _ = std::fs::write(file, std::process::id().to_string());
+                while file.exists() {
+                    std::thread::sleep(Duration::from_millis(5));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn failures(&self, spot: usize, reason: &str) -> Vec<ResultRow> {
+        self.missing_kinds(spot)
             .into_iter()
             .map(|kind| {
-                let job = self.jobs.number(place, kind);
-                Row::failed(job, self.jobs.kinds[kind], spot, reason)
+                let job = self.jobs.number(spot, kind);
+                ResultRow::failed(job, self.jobs.kinds[kind], &self.jobs.spots[spot], reason)
             })
             .collect()
     }
 }
 
-/// Computes all kinds at some places, as a run would, and gives the mean time of a place on its thread, s;
-/// none where nothing could be computed.
+/// A pool with one thread: a spot is computed on its thread alone.
+fn single_thread_pool() -> Result<rayon::ThreadPool, StoreError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .map_err(|error| no_threads(&error))
+}
+
+fn no_threads(error: &dyn std::fmt::Display) -> StoreError {
+    StoreError::Io {
+        path: "threads".into(),
+        reason: format!("cannot be started: {error}"),
+    }
+}
+
+/// Computes all kinds at some spots, as a run would; returns the mean time of a spot on its thread, s. `None` if
+/// nothing could be computed.
 #[must_use]
-pub fn calibrate(
-    configuration: &Configuration,
+pub fn mean_spot_time_s(
+    config: &SweepConfig,
     jobs: &Jobs,
-    places: &[usize],
+    spots: &[usize],
     threads: usize,
     progress: &dyn Progress,
 ) -> Option<f64> {
     let kinds: Vec<usize> = (0..jobs.kinds.len()).collect();
     let next = AtomicUsize::new(0);
-    let seconds = Mutex::new(Vec::new());
-    progress.begin("calibrating", places.len() as u64);
+    let times_s = Mutex::new(Vec::new());
+    progress.begin("calibrating", spots.len() as u64);
     std::thread::scope(|scope| {
-        for _ in 0..threads.min(places.len()) {
+        for _ in 0..threads.min(spots.len()) {
             scope.spawn(|| {
-                let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(1).build() else {
+                let Ok(pool) = single_thread_pool() else {
                     return;
                 };
-                while let Some(&place) = places.get(next.fetch_add(1, Ordering::Relaxed)) {
+                while let Some(&spot) = spots.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let began = Instant::now();
-                    let rows = pool.install(|| evaluate(configuration, jobs, place, &kinds));
+                    let rows = pool.install(|| compute_jobs(config, jobs, spot, &kinds));
                     if rows.is_ok()
-                        && let Ok(mut seconds) = seconds.lock()
+                        && let Ok(mut times_s) = times_s.lock()
                     {
-                        seconds.push(began.elapsed().as_secs_f64());
+                        times_s.push(began.elapsed().as_secs_f64());
                     }
                     progress.advance(1);
                 }
@@ -328,43 +353,42 @@ pub fn calibrate(
         }
     });
     progress.end();
-    let seconds = seconds.into_inner().unwrap_or_default();
-    let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
-    (!seconds.is_empty()).then_some(mean)
+    let times_s = times_s.into_inner().unwrap_or_default();
+    let mean = times_s.iter().sum::<f64>() / times_s.len() as f64;
+    (!times_s.is_empty()).then_some(mean)
 }
 
-/// Computes some of the kinds (by their places in the list of jobs) at a place.
+/// Computes some of the kinds at a spot, given by their indices in [`Jobs::kinds`].
 ///
 /// # Errors
-/// Why the place cannot be computed.
-pub fn evaluate(
-    configuration: &Configuration,
+/// Why the spot cannot be computed.
+pub fn compute_jobs(
+    config: &SweepConfig,
     jobs: &Jobs,
-    place: usize,
+    spot: usize,
     kinds: &[usize],
-) -> Result<Vec<Row>, String> {
-    let spot = &jobs.places[place];
-    let profile = configuration
-        .template
-        .at(spot.place())
+) -> Result<Vec<ResultRow>, String> {
+    let court_spot = &jobs.spots[spot];
+    let profile = config
+        .settings
+        .at(court_spot.location())
         .map_err(|error| error.to_string())?;
     let wanted: Vec<_> = kinds.iter().map(|&kind| jobs.kinds[kind]).collect();
-    let topics = configuration.compute.topics();
-    let found = match best::find_kinds(&profile, &wanted, topics, &Silent) {
-        Ok((_, found)) => found,
-        // From there nothing goes in, which is an answer.
-        Err(best::BestError::Plan(crate::plan::PlanError::OutOfReach)) => wanted
-            .iter()
-            .map(|&kind| Err(best::NoShot { kind }))
-            .collect(),
+    let topics = config.compute.topics();
+    let shots = match best_shot::find_kinds(&profile, &wanted, topics, &Silent) {
+        Ok((_, shots)) => shots,
+        // Nothing can go in from there, which is a result.
+        Err(BestShotError::Plan(PlanError::OutOfReach)) => {
+            wanted.iter().map(|&kind| Err(NoShot { kind })).collect()
+        }
         Err(error) => return Err(error.to_string()),
     };
     Ok(kinds
         .iter()
-        .zip(&found)
+        .zip(&shots)
         .map(|(&kind, shot)| {
-            let job = jobs.number(place, kind);
-            Row::found(job, jobs.kinds[kind], spot, &profile, shot)
+            let job = jobs.number(spot, kind);
+            ResultRow::of_result(job, jobs.kinds[kind], court_spot, &profile, shot)
         })
         .collect())
 }

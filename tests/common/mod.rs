@@ -1,23 +1,44 @@
-//! What the integration tests share.
+//! Helpers that the library tests share.
 #![allow(dead_code, unreachable_pub)]
 
-use bankshot::dynamics::{Integrator, Release, Simulator};
-use bankshot::physics::{FOOT_M, Physics};
-use bankshot::profile::{self, Nominal, Profile};
-use bankshot::units::{DEGREE_RAD, REV_RAD};
+use bankshot::config;
+use bankshot::dynamics::{BatchWorkspace, Integrator, Release, Simulator, Verdict};
+use bankshot::model::{BallState, Physics};
+use bankshot::shooter::{Location, Nominal, Profile, TableGrid};
+use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 
-/// A profile of `configs/`.
+/// The profile `configs/NAME.toml`.
 pub fn load(name: &str) -> Profile {
     let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    profile::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
+    config::parse_profile(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
+}
+
+/// The same profile at another location.
+pub fn at(profile: &Profile, distance_m: f64, angle_deg: f64) -> Profile {
+    profile
+        .moved_to(Location {
+            distance_m,
+            angle_rad: angle_deg * DEGREE_RAD,
+        })
+        .unwrap()
+}
+
+/// The same profile with another table and another standard error.
+pub fn with_search(profile: &Profile, grid: TableGrid, standard_error: f64) -> Profile {
+    profile
+        .with(|settings| {
+            settings.grid = grid;
+            settings.search.standard_error = Some(standard_error);
+        })
+        .unwrap()
 }
 
 /// A nominal shot without rifle and side spin, in the units of the paper.
 pub fn nominal(speed_ft_s: f64, pitch_deg: f64, polar_deg: f64, backspin_rev_s: f64) -> Nominal {
     Nominal {
-        speed_m_s: speed_ft_s * 0.3048,
+        speed_m_s: speed_ft_s * FOOT_M,
         pitch_rad: pitch_deg * DEGREE_RAD,
         polar_rad: polar_deg * DEGREE_RAD,
         backspin_rad_s: backspin_rev_s * REV_RAD,
@@ -46,14 +67,14 @@ pub fn release(
     }
 }
 
-/// The sample *foul*: straight on, uniform in speed 22..27 ft/s, pitch 40..65 deg, polar -3..3 deg and
-/// backspin 0..5 rev/s.
-pub fn foul(count: usize, seed: u64) -> Vec<Release> {
+/// Free throws, straight on: speed 22..27 ft/s, pitch 40..65 deg, polar angle -3..3 deg and backspin
+/// 0..5 rev/s, all uniform.
+pub fn free_throw_uniform(count: usize, seed: u64) -> Vec<Release> {
     uniform(count, seed, 0.0, 0.0)
 }
 
 /// The same spread about the bank angle from 67.5 deg.
-pub fn side(count: usize, seed: u64) -> Vec<Release> {
+pub fn side_uniform(count: usize, seed: u64) -> Vec<Release> {
     uniform(count, seed, 67.5, 62.107)
 }
 
@@ -70,20 +91,72 @@ fn uniform(count: usize, seed: u64, court_deg: f64, polar_deg: f64) -> Vec<Relea
         .collect()
 }
 
-pub fn exact(physics: &Physics, steps_per_contact: u32) -> Simulator {
-    Simulator::with_integrator(physics, Integrator::Exact { steps_per_contact }).unwrap()
+/// Shots from everywhere: over the board, past its edges, from below, at the rim, with fast spin, already in
+/// contact.
+pub fn wild(count: usize, seed: u64) -> Vec<Release> {
+    let mut random = ChaCha12Rng::seed_from_u64(seed);
+    let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
+    (0..count)
+        .map(|_| Release {
+            distance_m: between(0.2, 8.0),
+            court_angle_rad: between(-1.5, 1.5),
+            height_above_hoop_m: between(-2.0, 1.5),
+            speed_m_s: between(0.0, 16.0),
+            pitch_rad: between(-1.5, 1.57),
+            polar_rad: between(-2.0, 2.0),
+            backspin_rad_s: between(-60.0, 60.0),
+            rifle_spin_rad_s: between(-60.0, 60.0),
+            side_spin_rad_s: between(-60.0, 60.0),
+        })
+        .collect()
 }
 
-pub fn paper(physics: &Physics, dt_max_s: f64, dt_min_s: f64) -> Simulator {
-    Simulator::with_integrator(physics, Integrator::Paper { dt_max_s, dt_min_s }).unwrap()
+pub fn states(releases: &[Release]) -> Vec<BallState> {
+    releases.iter().map(Release::state).collect()
 }
 
-/// Part of the releases on which two simulators agree about made or missed.
-pub fn agreement(a: &Simulator, b: &Simulator, releases: &[Release]) -> f64 {
+pub fn event_driven(physics: &Physics, steps_per_contact: u32) -> Simulator {
+    Simulator::with_integrator(physics, Integrator::EventDriven { steps_per_contact }).unwrap()
+}
+
+pub fn paper_rk4(physics: &Physics, dt_max_s: f64, dt_min_s: f64) -> Simulator {
+    Simulator::with_integrator(physics, Integrator::PaperRk4 { dt_max_s, dt_min_s }).unwrap()
+}
+
+/// The verdicts of all releases, in order, on all threads.
+pub fn verdicts(simulator: &Simulator, releases: &[Release]) -> Vec<Verdict> {
     use rayon::prelude::*;
-    let same = releases
-        .par_iter()
-        .filter(|r| a.verdict(r).made == b.verdict(r).made)
-        .count();
-    same as f64 / releases.len() as f64
+    let starts = states(releases);
+    starts
+        .par_chunks(1000)
+        .flat_map_iter(|chunk| {
+            let mut workspace = BatchWorkspace::default();
+            simulator.verdicts(chunk, &mut workspace).unwrap().to_vec()
+        })
+        .collect()
+}
+
+/// The number of releases on which two simulators disagree about made or missed.
+pub fn disagreements(a: &Simulator, b: &Simulator, releases: &[Release]) -> usize {
+    let (a, b) = (verdicts(a, releases), verdicts(b, releases));
+    a.iter().zip(&b).filter(|(a, b)| a.made != b.made).count()
+}
+
+/// Runs `work` on a pool of its own.
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap()
+        .install(work)
+}
+
+/// A `TableGrid` from its four numbers of points.
+pub fn grid(speed: usize, pitch: usize, polar: usize, backspin: usize) -> TableGrid {
+    TableGrid {
+        speed,
+        pitch,
+        polar,
+        backspin,
+    }
 }

@@ -1,0 +1,108 @@
+//! The pattern search that climbs from a start to a local optimum.
+
+use super::shot_kind::ShotKind;
+use crate::analysis::aim::centre_speed_m_s;
+use crate::probability::Progress;
+use crate::search_space::Bracket;
+use crate::shooter::{Nominal, NominalVariable, Profile};
+
+/// Greatest number of moves from one start.
+const MAX_MOVES: u32 = 200;
+/// Times that the steps are halved.
+const HALVINGS: u32 = 2;
+
+/// First step along a variable, SI units. That of the speed is relative to the parabola through the hoop's
+/// centre.
+fn first_step(variable: NominalVariable) -> f64 {
+    match variable {
+        NominalVariable::Speed => 0.06,
+        NominalVariable::Pitch => 0.03,
+        NominalVariable::Polar => 0.01,
+        NominalVariable::Backspin | NominalVariable::SideSpin | NominalVariable::RifleSpin => 3.0,
+    }
+}
+
+/// The limits of a climb.
+pub(super) struct Climb<'a> {
+    pub(super) profile: &'a Profile,
+    pub(super) bracket: &'a Bracket,
+    pub(super) progress: &'a dyn Progress,
+}
+
+impl Climb<'_> {
+    /// Climbs from a start on `value`, the number of made shots; returns the local optimum of the same kind.
+    pub(super) fn run(
+        &self,
+        kind: ShotKind,
+        start: Nominal,
+        value: impl Fn(&Nominal) -> u64,
+    ) -> Nominal {
+        let choice = self.profile.search().choice;
+        let mut best = (value(&start), start);
+        let mut moves = 0;
+        let mut scale = 1.0;
+        self.progress.begin("climbing", u64::from(HALVINGS + 1));
+        for _ in 0..=HALVINGS {
+            let mut moved = true;
+            while moved && moves < MAX_MOVES {
+                moved = false;
+                for variable in choice.iter() {
+                    let step = scale * first_step(variable);
+                    for by in [step, -step] {
+                        let next = self.moved(&best.1, variable, by);
+                        if next == best.1 || ShotKind::of(self.profile, &next) != kind {
+                            continue;
+                        }
+                        moves += 1;
+                        let made = value(&next);
+                        if made > best.0 {
+                            best = (made, next);
+                            moved = true;
+                            break;
+                        }
+                    }
+                }
+            }
+            scale *= 0.5;
+            self.progress.advance(1);
+        }
+        self.progress.end();
+        best.1
+    }
+
+    /// The nominal shot moved along one variable and kept within the limits. A move in pitch changes the
+    /// speed too, so that the path still passes the hoop at the same point.
+    fn moved(&self, from: &Nominal, variable: NominalVariable, by: f64) -> Nominal {
+        let search = self.profile.search();
+        let searches_speed = search.choice.includes(NominalVariable::Speed);
+        let (low, high) = self.limits(variable);
+        let mut to = from.with(variable, (from.get(variable) + by).clamp(low, high));
+        if variable == NominalVariable::Pitch && searches_speed {
+            let before = centre_speed_m_s(self.profile, from.pitch_rad);
+            let after = centre_speed_m_s(self.profile, to.pitch_rad);
+            if let Some((before, after)) = before.zip(after) {
+                to.speed_m_s += after - before;
+            }
+        }
+        if searches_speed {
+            to.speed_m_s = to.speed_m_s.clamp(0.1, self.bracket.speed_max_m_s);
+        }
+        to
+    }
+
+    /// The allowed values of a variable.
+    fn limits(&self, variable: NominalVariable) -> (f64, f64) {
+        let search = self.profile.search();
+        let shooter = self.profile.shooter();
+        match variable {
+            // Applied after a change of the pitch angle.
+            NominalVariable::Speed => (f64::NEG_INFINITY, f64::INFINITY),
+            NominalVariable::Pitch => (search.pitch_min_rad, search.pitch_max_rad),
+            NominalVariable::Polar => self.bracket.polar_rad,
+            NominalVariable::Backspin => (0.0, shooter.max_backspin_rad_s),
+            NominalVariable::SideSpin | NominalVariable::RifleSpin => {
+                (-shooter.max_side_spin_rad_s, shooter.max_side_spin_rad_s)
+            }
+        }
+    }
+}

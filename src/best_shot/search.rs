@@ -1,0 +1,445 @@
+//! The search for the best shots, refined off the grid.
+//!
+//! For each kind, a coarse table of everything the shooter can intend gives a few starts, far apart. From each
+//! start a pattern search climbs on P itself, integrated with the same Sobol points everywhere (common random
+//! numbers). About the highest optimum a finer table, a window, gives P of all nominal shots to about 0.001.
+//! While its best shot lies at the window's edge, the window moves on. A parabola along each axis finds the
+//! optimum between the points of the table. P of the winner is computed again with independent scrambles, so it is
+//! not the largest of many noisy values.
+
+use super::climb::Climb;
+use super::shot_kind::ShotKind;
+use crate::analysis::aim::aim_past_centre_m;
+use crate::analysis::probability_curves::{self, ProbabilityCurve};
+use crate::analysis::sensitivity::{self, Sensitivity, SensitivityTopics};
+use crate::dynamics::Outcome;
+use crate::math::sobol::{Scramble, ScrambleKey};
+use crate::probability::{Estimate, NominalProbabilities, NominalTable, Progress, Sampler};
+use crate::search_space::{PlanError, TablePlan};
+use crate::shooter::{Nominal, NominalVariable, Profile};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Starts of the climb for each kind.
+const STARTS: usize = 3;
+/// Distance in pitch between starts, in nominal pitch angles of the table.
+const START_GAP: usize = 3;
+/// The optima of the climbs are compared with this many times the Sobol points of the climbs.
+const COMPARISON_FACTOR: u32 = 8;
+/// Greatest number of windows in a row.
+const MAX_WINDOWS: u32 = 4;
+/// Fraction of a window's half width over which the parabola about its best shot is taken.
+const PARABOLA_REACH: f64 = 0.3;
+
+/// A limit of the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// The smallest pitch angle.
+    PitchMin,
+    /// The largest pitch angle.
+    PitchMax,
+    /// No backspin.
+    NoBackspin,
+    /// The largest backspin.
+    MaxBackspin,
+    /// The largest side spin.
+    MaxSideSpin,
+    /// The largest speed.
+    SpeedMax,
+}
+
+impl Limit {
+    /// The name in tables and files, such as `max_backspin`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PitchMin => "pitch_min",
+            Self::PitchMax => "pitch_max",
+            Self::NoBackspin => "no_backspin",
+            Self::MaxBackspin => "max_backspin",
+            Self::MaxSideSpin => "max_side_spin",
+            Self::SpeedMax => "speed_max",
+        }
+    }
+}
+
+/// The best shot of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BestShot {
+    /// The nominal shot.
+    pub nominal: Nominal,
+    /// Its probability.
+    pub estimate: Estimate,
+    /// The largest P of this kind in the table of the window.
+    pub table_probability: f64,
+    /// The plan of the window's table.
+    pub window: TablePlan,
+    /// The outcome of the error-free shot.
+    pub outcome: Outcome,
+    /// P along each variable of the shot.
+    pub curves: Vec<ProbabilityCurve>,
+    /// How P depends on errors, spin and height.
+    pub sensitivity: Sensitivity,
+    /// Where the undisturbed path passes the plane of the hoop: past the centre along its own direction, m
+    /// (positive is long).
+    pub aim_past_centre_m: Option<f64>,
+    /// Upper bound of the probability that errors lead outside the table's pitch angles and backspins.
+    pub mass_outside: f64,
+    /// Limits of the search that the shot lies at.
+    pub at_limits: Vec<Limit>,
+}
+
+/// The best shots from a location.
+#[derive(Clone, Debug)]
+pub struct BestShots {
+    /// The plan of the search's table.
+    pub plan: TablePlan,
+    /// The best direct shot, or why there is none.
+    pub direct: Result<BestShot, NoShot>,
+    /// The best bank shot, or why there is none.
+    pub bank: Result<BestShot, NoShot>,
+}
+
+impl BestShots {
+    /// The best shot of each kind.
+    #[must_use]
+    pub fn by_kind(&self) -> [(ShotKind, &Result<BestShot, NoShot>); 2] {
+        [
+            (ShotKind::Direct, &self.direct),
+            (ShotKind::Bank, &self.bank),
+        ]
+    }
+}
+
+/// Why there is no best shot of a kind.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no {} shot within the limits can go in from this place", .kind.name())]
+pub struct NoShot {
+    /// The kind.
+    pub kind: ShotKind,
+}
+
+/// Why the search could not start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BestShotError {
+    /// There is no plan.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+/// Finds the best direct and the best bank shot of a profile, on the current rayon pool.
+///
+/// # Errors
+/// The table would be too large, or no release reaches the hoop.
+pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<BestShots, BestShotError> {
+    let topics = SensitivityTopics::ALL;
+    let (plan, mut shots) = find_kinds(profile, &ShotKind::ALL, topics, progress)?;
+    let none = |kind| Err(NoShot { kind });
+    let bank = shots.pop().unwrap_or_else(|| none(ShotKind::Bank));
+    let direct = shots.pop().unwrap_or_else(|| none(ShotKind::Direct));
+    Ok(BestShots { plan, direct, bank })
+}
+
+/// Finds the best shots of some kinds, in their order, with some topics of their sensitivity. The result of a
+/// kind does not depend on the others.
+///
+/// # Errors
+/// As [`find`].
+pub fn find_kinds(
+    profile: &Profile,
+    kinds: &[ShotKind],
+    topics: SensitivityTopics,
+    progress: &dyn Progress,
+) -> Result<(TablePlan, Vec<Result<BestShot, NoShot>>), BestShotError> {
+    let plan = TablePlan::for_search(profile)?;
+    let search = BestShotSearch {
+        profile,
+        plan: &plan,
+        topics,
+        progress,
+    };
+    let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
+    for side_spin_rad_s in start_side_spins(profile, &plan) {
+        let plan = TablePlan::for_search_with_side_spin(profile, side_spin_rad_s)?;
+        let maxima = search.maxima_by_pitch(&search.table(&plan));
+        for (starts, maxima) in starts.iter_mut().zip(maxima) {
+            let separated = separated(&maxima);
+            starts.extend(separated.into_iter().map(|(_, nominal)| nominal));
+        }
+    }
+    let shots = kinds
+        .iter()
+        .map(|&kind| search.best(kind, &starts[kind.index()]))
+        .collect::<Result<_, _>>()?;
+    Ok((plan, shots))
+}
+
+/// The side spins from which the search starts: the fixed one; or none and the limits. One limit is enough if
+/// the other is its mirror image.
+fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
+    let most = profile.shooter().max_side_spin_rad_s;
+    let is_searched = profile
+        .search()
+        .choice
+        .includes(NominalVariable::SideSpin);
+    match (is_searched, plan.mirrored) {
+        (false, _) => vec![plan.nominal.side_spin_rad_s],
+        (true, true) => vec![0.0, most],
+        (true, false) => vec![0.0, most, -most],
+    }
+}
+
+/// A nominal shot of a table with its P.
+type Candidate = (f64, Nominal);
+
+/// The window about the optimum of a kind.
+struct Window {
+    plan: TablePlan,
+    nominal: Nominal,
+    table_probability: f64,
+    curves: Vec<ProbabilityCurve>,
+}
+
+struct BestShotSearch<'a> {
+    profile: &'a Profile,
+    plan: &'a TablePlan,
+    topics: SensitivityTopics,
+    progress: &'a dyn Progress,
+}
+
+impl BestShotSearch<'_> {
+    /// For each kind: the best nominal shot at each nominal pitch angle.
+    fn maxima_by_pitch(&self, table: &NominalProbabilities) -> [Vec<Option<Candidate>>; 2] {
+        let rows: Vec<[Option<Candidate>; 2]> = (0..table.pitch_rad.len())
+            .into_par_iter()
+            .map(|pitch| self.maxima_at_pitch(table, pitch))
+            .collect();
+        ShotKind::ALL.map(|kind| rows.iter().map(|row| row[kind.index()]).collect())
+    }
+
+    fn maxima_at_pitch(
+        &self,
+        table: &NominalProbabilities,
+        pitch: usize,
+    ) -> [Option<Candidate>; 2] {
+        let mut maxima: [Option<Candidate>; 2] = [None, None];
+        for polar in 0..table.polar_rad.len() {
+            for speed in 0..table.speed_m_s.len() {
+                // The kind does not depend on spin: it is decided in flight.
+                let best = (0..table.backspin_rad_s.len())
+                    .map(|spin| table.at([pitch, polar, spin, speed]))
+                    .fold((0.0, None), |best: (f64, Option<Nominal>), (p, nominal)| {
+                        if p > best.0 { (p, Some(nominal)) } else { best }
+                    });
+                let (p, Some(nominal)) = best else { continue };
+                let beats = |maximum: &Option<Candidate>| maximum.is_none_or(|(most, _)| p > most);
+                if !maxima.iter().any(beats) {
+                    continue;
+                }
+                let maximum = &mut maxima[ShotKind::of(self.profile, &nominal).index()];
+                if beats(maximum) {
+                    *maximum = Some((p, nominal));
+                }
+            }
+        }
+        maxima
+    }
+
+    fn table(&self, plan: &TablePlan) -> NominalProbabilities {
+        NominalTable::simulate(self.profile, plan, self.progress).probabilities(self.profile)
+    }
+
+    fn best(
+        &self,
+        kind: ShotKind,
+        starts: &[Nominal],
+    ) -> Result<Result<BestShot, NoShot>, PlanError> {
+        let sampler = Sampler::new(self.profile);
+        let search = self.profile.search();
+        let scramble = sampler.scramble(ScrambleKey {
+            seed: search.seed,
+            // A replicate of its own, so that the final estimate is independent of the climb.
+            replicate: u64::MAX,
+        });
+        let Some(start) = self.climb_from(kind, starts, &sampler, &scramble) else {
+            return Ok(Err(NoShot { kind }));
+        };
+        let mut window = self.move_window(kind, start)?;
+        let searches_side_spin = search.choice.includes(NominalVariable::SideSpin);
+        if !self.profile.shooter().dispersion.is_of_eq_25() || searches_side_spin {
+            // The table has four independent errors and one side spin. The samples have all of them.
+            let points = COMPARISON_FACTOR * search.climb_samples;
+            window.nominal = self.climb(kind, window.nominal, &sampler, &scramble, points);
+            window.plan = self.plan.window(self.profile, &window.nominal)?;
+            let (plan, nominal) = (&window.plan, &window.nominal);
+            window.curves =
+                probability_curves::from_samples(self.profile, &sampler, &scramble, plan, nominal);
+        }
+        let nominal = window.nominal;
+        let estimate =
+            sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
+        let start = self.profile.release(&nominal).state();
+        Ok(Ok(BestShot {
+            nominal,
+            estimate,
+            table_probability: window.table_probability,
+            window: window.plan,
+            outcome: self.profile.simulator().outcome(start),
+            curves: window.curves,
+            sensitivity: sensitivity::analyse(self.profile, &nominal, self.topics, self.progress),
+            aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
+            mass_outside: self.plan.mass_outside(self.profile, &nominal),
+            at_limits: self.limits_at(&nominal),
+        }))
+    }
+
+    /// Climbs from every start; returns the highest optimum, if any shot of it is made.
+    fn climb_from(
+        &self,
+        kind: ShotKind,
+        starts: &[Nominal],
+        sampler: &Sampler<'_>,
+        scramble: &Scramble,
+    ) -> Option<Nominal> {
+        let points = self.profile.search().climb_samples;
+        let compared = (0, COMPARISON_FACTOR * points);
+        starts
+            .iter()
+            .map(|&start| {
+                let optimum = self.climb(kind, start, sampler, scramble, points);
+                (sampler.count(&optimum, scramble, compared).made(), optimum)
+            })
+            .reduce(|best, next| if next.0 > best.0 { next } else { best })
+            .filter(|(made, _)| *made > 0)
+            .map(|(_, optimum)| optimum)
+    }
+
+    fn climb(
+        &self,
+        kind: ShotKind,
+        start: Nominal,
+        sampler: &Sampler<'_>,
+        scramble: &Scramble,
+        points: u32,
+    ) -> Nominal {
+        let climb = Climb {
+            profile: self.profile,
+            bracket: &self.plan.bracket,
+            progress: self.progress,
+        };
+        climb.run(kind, start, |nominal| {
+            sampler.count(nominal, scramble, (0, points)).made()
+        })
+    }
+
+    /// Computes windows about a nominal shot until the best shot does not lie at the edge.
+    fn move_window(&self, kind: ShotKind, start: Nominal) -> Result<Window, PlanError> {
+        let mut window = Window {
+            plan: self.plan.window(self.profile, &start)?,
+            nominal: start,
+            table_probability: 0.0,
+            curves: Vec::new(),
+        };
+        for _ in 0..MAX_WINDOWS {
+            let table = self.table(&window.plan);
+            let maxima = self.maxima_by_pitch(&table);
+            let Some(&(p, maximum)) = separated(&maxima[kind.index()]).first() else {
+                break;
+            };
+            window.table_probability = p;
+            window.nominal = self.between_points(kind, &table, &maximum);
+            window.curves = probability_curves::from_table(&table, &window.nominal);
+            let next = self.plan.window(self.profile, &window.nominal)?;
+            if !window.plan.nominal.is_at_edge(&maximum, &next.nominal) {
+                break;
+            }
+            window.plan = next;
+        }
+        Ok(window)
+    }
+
+    /// The top of the parabola through a table's best shot and two others, along each axis. If the parabola has
+    /// no top between them, or leads to the other kind, the table's best shot itself.
+    fn between_points(
+        &self,
+        kind: ShotKind,
+        table: &NominalProbabilities,
+        best: &Nominal,
+    ) -> Nominal {
+        let mut nominal = *best;
+        let index = table.index_of(best);
+        let counts = table.counts();
+        for (axis, variable) in NominalVariable::TABLE_AXES.into_iter().enumerate() {
+            let reach = ((PARABOLA_REACH * 0.5 * counts[axis] as f64) as usize).max(1);
+            if index[axis] < reach || index[axis] + reach >= counts[axis] {
+                continue;
+            }
+            let at = |i: usize| {
+                let mut index = index;
+                index[axis] = i;
+                table.at(index)
+            };
+            let [low, middle, high] =
+                [index[axis] - reach, index[axis], index[axis] + reach].map(at);
+            let curvature = low.0 - 2.0 * middle.0 + high.0;
+            if curvature < 0.0 {
+                let part = (0.5 * (low.0 - high.0) / curvature).clamp(-1.0, 1.0);
+                let half_width = 0.5 * (high.1.get(variable) - low.1.get(variable));
+                *nominal.get_mut(variable) += part * half_width;
+            }
+        }
+        if ShotKind::of(self.profile, &nominal) == kind {
+            nominal
+        } else {
+            *best
+        }
+    }
+
+    /// The limits that a nominal shot lies at.
+    fn limits_at(&self, nominal: &Nominal) -> Vec<Limit> {
+        let search = self.profile.search();
+        let searches = |variable| search.choice.includes(variable);
+        let (min_spin, max_spin) = self.profile.backspin_range_rad_s();
+        let max_side_spin = self.profile.shooter().max_side_spin_rad_s;
+        let pitch = searches(NominalVariable::Pitch);
+        let backspin = max_spin > min_spin;
+        [
+            (Limit::PitchMin, pitch && nominal.pitch_rad <= search.pitch_min_rad),
+            (Limit::PitchMax, pitch && nominal.pitch_rad >= search.pitch_max_rad),
+            (Limit::NoBackspin, backspin && nominal.backspin_rad_s <= min_spin),
+            (Limit::MaxBackspin, backspin && nominal.backspin_rad_s >= max_spin),
+            (
+                Limit::MaxSideSpin,
+                searches(NominalVariable::SideSpin)
+                    && nominal.side_spin_rad_s.abs() >= max_side_spin,
+            ),
+            (
+                Limit::SpeedMax,
+                searches(NominalVariable::Speed)
+                    && nominal.speed_m_s >= self.plan.bracket.speed_max_m_s,
+            ),
+        ]
+        .into_iter()
+        .filter_map(|(limit, is_reached)| is_reached.then_some(limit))
+        .collect()
+    }
+}
+
+/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles away from those
+/// before.
+fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
+    let mut order: Vec<(usize, Candidate)> = maxima
+        .iter()
+        .enumerate()
+        .filter_map(|(i, maximum)| maximum.map(|maximum| (i, maximum)))
+        .collect();
+    order.sort_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)));
+    let mut chosen: Vec<(usize, Candidate)> = Vec::new();
+    for (i, candidate) in order {
+        if chosen.len() < STARTS && chosen.iter().all(|(j, _)| i.abs_diff(*j) >= START_GAP) {
+            chosen.push((i, candidate));
+        }
+    }
+    chosen.into_iter().map(|(_, candidate)| candidate).collect()
+}

@@ -1,0 +1,44 @@
+//! Direct and bank shots.
+
+use crate::model::SolidId;
+use crate::shooter::{Nominal, Profile};
+use serde::Serialize;
+
+/// The two kinds of nominal shots. The kind depends on the first touch of the error-free flight, not on the
+/// outcome.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShotKind {
+    /// Touches the ring first, or nothing.
+    Direct,
+    /// Touches the board first.
+    Bank,
+}
+
+impl ShotKind {
+    /// Both kinds.
+    pub const ALL: [Self; 2] = [Self::Direct, Self::Bank];
+
+    /// `direct` or `bank`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Bank => "bank",
+        }
+    }
+
+    /// The kind of a nominal shot.
+    #[must_use]
+    pub fn of(profile: &Profile, nominal: &Nominal) -> Self {
+        match profile.simulator().first_touch(&profile.release(nominal)) {
+            Some(SolidId::Board) => Self::Bank,
+            _ => Self::Direct,
+        }
+    }
+
+    /// Position in [`ShotKind::ALL`].
+    pub(super) fn index(self) -> usize {
+        self as usize
+    }
+}

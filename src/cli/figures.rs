@@ -1,0 +1,12 @@
+//! `bankshot figures`: the paper's Figs. 7 to 15.
+
+use super::failure::Failure;
+use super::plot_files;
+use bankshot::plots::paper_figures;
+use std::path::Path;
+
+pub(crate) fn run(out: &Path, quiet: bool) -> Result<u8, Failure> {
+    let plots = paper_figures::draw_all().map_err(Failure::bug)?;
+    plot_files::write(out, &plots)?;
+    plot_files::print_captions(out, &plots, quiet)
+}

@@ -1,0 +1,104 @@
+//! The nominal shot of a command: from the flags, then from the profile's `[nominal]` table.
+
+use super::failure::Failure;
+use bankshot::shooter::{Nominal, NominalVariable, Profile};
+use bankshot::units;
+use clap::Args;
+
+/// Greatest speed of a release, m/s.
+const MAX_SPEED_M_S: f64 = 1000.0;
+/// Greatest spin of a release, rad/s.
+const MAX_SPIN_RAD_S: f64 = 10_000.0;
+
+/// The flags of a nominal shot. Each overrides the profile's `[nominal]` table.
+#[derive(Args, Debug)]
+pub(crate) struct NominalOptions {
+    /// Speed of the release, such as '23.5 ft/s'.
+    #[arg(long, allow_hyphen_values = true)]
+    speed: Option<String>,
+    /// Pitch angle of the release, such as '52 deg'.
+    #[arg(long, allow_hyphen_values = true)]
+    pitch: Option<String>,
+    /// Polar angle of the release [default: the profile's, else that towards the hoop's centre].
+    #[arg(long, allow_hyphen_values = true)]
+    polar: Option<String>,
+    /// Backspin [default: the profile's, else none].
+    #[arg(long, allow_hyphen_values = true)]
+    backspin: Option<String>,
+    /// Spin about the horizontal direction of the shot [default: the profile's, else none].
+    #[arg(long, allow_hyphen_values = true)]
+    rifle_spin: Option<String>,
+    /// Spin about the vertical [default: the profile's, else none].
+    #[arg(long, allow_hyphen_values = true)]
+    side_spin: Option<String>,
+}
+
+impl NominalOptions {
+    fn flag(&self, variable: NominalVariable) -> (&'static str, Option<&str>) {
+        let (name, text) = match variable {
+            NominalVariable::Speed => ("speed", &self.speed),
+            NominalVariable::Pitch => ("pitch", &self.pitch),
+            NominalVariable::Polar => ("polar", &self.polar),
+            NominalVariable::Backspin => ("backspin", &self.backspin),
+            NominalVariable::RifleSpin => ("rifle-spin", &self.rifle_spin),
+            NominalVariable::SideSpin => ("side-spin", &self.side_spin),
+        };
+        (name, text.as_deref())
+    }
+
+    /// The nominal shot.
+    pub(crate) fn resolve(&self, profile: &Profile) -> Result<Nominal, Failure> {
+        let mut nominal = Nominal::default();
+        let mut errors = Vec::new();
+        for variable in NominalVariable::ALL {
+            match self.value(variable, profile) {
+                Ok(value) => *nominal.get_mut(variable) = value,
+                Err(error) => errors.push(error),
+            }
+        }
+        if errors.is_empty() {
+            Ok(nominal)
+        } else {
+            Err(Failure::usage(errors.join("\n")))
+        }
+    }
+
+    fn value(&self, variable: NominalVariable, profile: &Profile) -> Result<f64, String> {
+        let (flag, text) = self.flag(variable);
+        if let Some(text) = text {
+            let value = units::parse(text, variable.dimension())
+                .map_err(|error| format!("--{flag}: {error}"))?;
+            return match allowed(variable, value) {
+                None => Ok(value),
+                Some(allowed) => Err(format!("--{flag}: must be {allowed}")),
+            };
+        }
+        let default = match variable {
+            NominalVariable::Speed | NominalVariable::Pitch => None,
+            NominalVariable::Polar => Some(profile.location().angle_rad),
+            NominalVariable::Backspin
+            | NominalVariable::RifleSpin
+            | NominalVariable::SideSpin => Some(0.0),
+        };
+        profile
+            .nominal_overrides()
+            .get(variable)
+            .or(default)
+            .ok_or_else(|| {
+                format!("--{flag} is missing; give it, or {flag} in the profile's [nominal] table")
+            })
+    }
+}
+
+/// The allowed values, if `value` is not one of them.
+fn allowed(variable: NominalVariable, value: f64) -> Option<&'static str> {
+    match variable {
+        NominalVariable::Speed => {
+            (!(0.0..=MAX_SPEED_M_S).contains(&value)).then_some("from 0 to 1000 m/s")
+        }
+        NominalVariable::Pitch | NominalVariable::Polar => None,
+        NominalVariable::Backspin | NominalVariable::RifleSpin | NominalVariable::SideSpin => {
+            (!(value.abs() <= MAX_SPIN_RAD_S)).then_some("within 10000 rad/s")
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Writes plots as SVG and PNG.
+
+use super::failure::{Failure, code};
+use super::terminal::{print_answer, print_remark};
+use bankshot::output::atomic_file;
+use bankshot::plots::plot::Plot;
+use bankshot::plots::rasterise::to_png;
+use std::path::Path;
+
+/// Pixels of a PNG for each unit of its drawing.
+pub(crate) const PNG_SCALE: f32 = 1.5;
+
+/// Writes each plot as SVG and as PNG.
+pub(crate) fn write(folder: &Path, plots: &[Plot]) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), &error))?;
+    for plot in plots {
+        let png = to_png(&plot.svg, PNG_SCALE).map_err(Failure::bug)?;
+        for (extension, bytes) in [("svg", plot.svg.as_bytes()), ("png", &png[..])] {
+            let path = folder.join(format!("{}.{extension}", plot.name));
+            atomic_file::write(&path, bytes)
+                .map_err(|error| Failure::io(path.display(), &error))?;
+        }
+    }
+    Ok(())
+}
+
+/// Prints the captions of the written plots.
+pub(crate) fn print_captions(folder: &Path, plots: &[Plot], quiet: bool) -> Result<u8, Failure> {
+    for plot in plots {
+        print_answer(&format!("{}: {}\n", plot.name, plot.caption))?;
+    }
+    if !quiet {
+        print_remark(&format!(
+            "plots written to {} (svg and png)",
+            folder.display()
+        ));
+    }
+    Ok(code::DONE)
+}

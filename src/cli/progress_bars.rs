@@ -1,0 +1,62 @@
+//! Progress bars on standard error, if it is a terminal.
+
+use bankshot::probability::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::Mutex;
+
+/// Shows each stage as a progress bar.
+pub(crate) struct ProgressBars {
+    quiet: bool,
+    bar: Mutex<Option<ProgressBar>>,
+}
+
+impl ProgressBars {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self {
+            quiet,
+            bar: Mutex::new(None),
+        }
+    }
+
+    fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
+        if let Ok(mut bar) = self.bar.lock() {
+            act(&mut bar);
+        }
+    }
+}
+
+impl Progress for ProgressBars {
+    fn begin(&self, stage: &str, total: u64) {
+        let target = if self.quiet {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr_with_hz(8)
+        };
+        let style =
+            "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
+        let bar = ProgressBar::with_draw_target(Some(total), target)
+            .with_style(
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar())
+                    .progress_chars("=> "),
+            )
+            .with_message(stage.to_owned());
+        self.with(|slot| *slot = Some(bar));
+    }
+
+    fn advance(&self, units: u64) {
+        self.with(|bar| {
+            if let Some(bar) = bar {
+                bar.inc(units);
+            }
+        });
+    }
+
+    fn end(&self) {
+        self.with(|bar| {
+            if let Some(bar) = bar.take() {
+                bar.finish_and_clear();
+            }
+        });
+    }
+}

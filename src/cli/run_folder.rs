@@ -1,0 +1,100 @@
+//! The folder of a run of `best`: its name and its files.
+
+use super::config_files::read_text;
+use super::failure::{Failure, code};
+use bankshot::best_shot::BestShots;
+use bankshot::output::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
+use bankshot::output::best_shot_json::best_shots_json;
+use bankshot::output::{atomic_file, json_record};
+use bankshot::shooter::Profile;
+use bankshot::sweep::SweepConfig;
+use std::path::{Path, PathBuf};
+
+/// `<name>-<hash>`. The name is reduced to letters, digits and dashes, so it never becomes a path.
+fn folder_name(name: &str, hash: &str) -> String {
+    let mut name: String = name
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '-'
+            }
+        })
+        .take(40)
+        .collect();
+    while name.contains("--") {
+        name = name.replace("--", "-");
+    }
+    let name = name.trim_matches('-');
+    let name = if name.is_empty() { "shooter" } else { name };
+    format!("{name}-{}", &hash[..12])
+}
+
+/// The folder of a profile's run in `parent`, or else in the profile's output folder.
+pub(crate) fn of_profile(profile: &Profile, parent: Option<&Path>) -> PathBuf {
+    let parent = parent.unwrap_or(Path::new(&profile.output().folder));
+    parent.join(folder_name(&profile.shooter().name, profile.hash()))
+}
+
+/// The default folder of a sweep.
+pub(crate) fn of_sweep(config: &SweepConfig) -> Result<PathBuf, Failure> {
+    let parent = PathBuf::from(&config.settings.output.folder);
+    Ok(parent.join(folder_name(&config.name, &config.hash()?)))
+}
+
+/// Creates a folder and checks that it can be written to, before anything is computed.
+pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
+    let refuse = |error: std::io::Error| Failure::io(folder.display(), &error);
+    std::fs::create_dir_all(folder).map_err(refuse)?;
+    tempfile::tempfile_in(folder).map_err(refuse)?;
+    Ok(())
+}
+
+/// Writes the files of a run, with a copy of the profile from `source`.
+pub(crate) fn write_best_shots(
+    folder: &Path,
+    source: &Path,
+    profile: &Profile,
+    best: &BestShots,
+) -> Result<(), Failure> {
+    let units = profile.output().units;
+    let json = |value: &serde_json::Value| format!("{value:#}\n").into_bytes();
+    let plan = serde_json::to_value(&best.plan).map_err(Failure::bug)?;
+    let configuration = serde_json::to_value(profile).map_err(Failure::bug)?;
+    let mut provenance = json_record::provenance(profile.hash());
+    provenance.push(("seed".to_owned(), profile.search().seed.into()));
+    provenance.push(("table_shots".to_owned(), best.plan.shots.into()));
+    provenance.push(("configuration_si".to_owned(), configuration));
+    let files = [
+        ("best_shots.csv", best_shots_csv(profile, best, units)),
+        (
+            "best_shots.json",
+            json(&best_shots_json(profile, best, units)),
+        ),
+        ("curves.csv", curves_csv(best, units)),
+        ("sensitivity.csv", sensitivity_csv(best, units)),
+        ("profile.toml", read_text(source)?.into_bytes()),
+        ("plan.json", json(&plan)),
+        ("provenance.json", json(&json_record::object(provenance))),
+    ];
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+    }
+    Ok(())
+}
+
+/// The exit code of a run of `best`.
+pub(crate) fn exit_code(profile: &Profile, best: &BestShots) -> u8 {
+    let target = profile.search().standard_error;
+    let is_imprecise = [&best.direct, &best.bank]
+        .into_iter()
+        .flatten()
+        .any(|shot| shot.estimate.standard_error > target);
+    if is_imprecise {
+        code::IMPRECISE
+    } else {
+        code::DONE
+    }
+}

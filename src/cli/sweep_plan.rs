@@ -1,0 +1,88 @@
+//! `bankshot plan` of a sweep: jobs, time, memory and disk.
+
+use super::config_files::load_sweep;
+use super::failure::Failure;
+use super::progress_bars::ProgressBars;
+use super::terminal::print_answer;
+use bankshot::output::json_record::{number, object, provenance};
+use bankshot::probability::MAX_BATCH_BYTES;
+use bankshot::search_space::{PlanError, TablePlan};
+use bankshot::sweep::SweepConfig;
+use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::run::mean_spot_time_s;
+use serde_json::Value;
+use std::path::Path;
+
+/// Greatest number of spots that the forecast is based on; of a small sweep, a quarter.
+const MAX_CALIBRATION_SPOTS: usize = 8;
+/// About the size of a job in the store, and of a row in the tables, bytes.
+const STORE_BYTES_PER_JOB: f64 = 600.0;
+/// See [`STORE_BYTES_PER_JOB`].
+const TABLE_BYTES_PER_ROW: f64 = 1100.0;
+/// About the memory of a job, and of the program itself, bytes.
+const MEMORY_BYTES_PER_JOB: f64 = 4000.0;
+/// See [`MEMORY_BYTES_PER_JOB`].
+const PROGRAM_BYTES: f64 = 10e6;
+
+pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure> {
+    let (config, _) = load_sweep(path)?;
+    let jobs = Jobs::new(&config);
+    let threads = rayon::current_num_threads();
+    let spots = jobs.spots.len();
+    let calibrated = MAX_CALIBRATION_SPOTS
+        .min(spots.div_ceil(4))
+        .max(threads.min(spots));
+    let chosen: Vec<usize> = (0..calibrated)
+        .map(|i| (2 * i + 1) * spots / (2 * calibrated))
+        .collect();
+    let table_bytes = table_bytes(&config, &jobs, &chosen)?;
+    let bars = ProgressBars::new(quiet);
+    let seconds = mean_spot_time_s(&config, &jobs, &chosen, threads, &bars)
+        .map(|mean| mean * spots.div_ceil(threads) as f64);
+    let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
+    let disk = STORE_BYTES_PER_JOB * jobs.count() as f64 + TABLE_BYTES_PER_ROW * rows;
+    // Each thread has a table of the search or a window, and a batch of shots.
+    let memory = threads as f64 * (2.0 * table_bytes + MAX_BATCH_BYTES as f64)
+        + MEMORY_BYTES_PER_JOB * jobs.count() as f64
+        + PROGRAM_BYTES;
+    if as_json {
+        let mut record = provenance(&config.hash()?);
+        record.extend([
+            ("places".to_owned(), jobs.sources.len().into()),
+            ("computed_places".to_owned(), spots.into()),
+            ("jobs".to_owned(), jobs.count().into()),
+            ("forecast_s".to_owned(), seconds.map_or(Value::Null, number)),
+            ("threads".to_owned(), threads.into()),
+            ("memory_bytes".to_owned(), number(memory.round())),
+            ("disk_bytes".to_owned(), number(disk.round())),
+        ]);
+        return print_answer(&format!("{:#}\n", object(record)));
+    }
+    let time = seconds.map_or("unknown".to_owned(), |seconds| {
+        format!(
+            "about {seconds:.0} s ({:.2} h) on {threads} threads, from {calibrated} places",
+            seconds / 3600.0
+        )
+    });
+    let mib = |bytes: f64| bytes / f64::from(1 << 20);
+    print_answer(&format!(
+        "places  {}; {spots} are computed, the others are their mirror images\njobs    {}\ntime    {time}\nmemory  about {:.0} MiB\ndisk    about {:.1} MiB\n",
+        jobs.sources.len(),
+        jobs.count(),
+        mib(memory),
+        mib(disk)
+    ))
+}
+
+/// Memory of the table of a spot, bytes. From some spots nothing can go in; they have no table.
+fn table_bytes(config: &SweepConfig, jobs: &Jobs, chosen: &[usize]) -> Result<f64, Failure> {
+    let plan = chosen
+        .iter()
+        .filter_map(|&spot| config.settings.at(jobs.spots[spot].location()).ok())
+        .find_map(|profile| match TablePlan::for_search(&profile) {
+            Err(PlanError::OutOfReach) => None,
+            plan => Some(plan),
+        })
+        .transpose()?;
+    Ok(plan.map_or(0.0, |plan| plan.memory_bytes as f64))
+}

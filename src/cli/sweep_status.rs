@@ -1,0 +1,102 @@
+//! `bankshot status`, `missing` and `verify`: the state of a sweep's folder.
+
+use super::args::{FolderOptions, MissingOptions, VerifyOptions};
+use super::failure::{Failure, code};
+use super::progress_bars::ProgressBars;
+use super::sweep_summary::{exit_code, job_summary, missing_shards};
+use super::terminal::print_answer;
+use bankshot::probability::Progress;
+use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::result_row::{JobStatus, ResultRow};
+use bankshot::sweep::run::compute_jobs;
+use bankshot::sweep::sweep_folder::SweepFolder;
+use bankshot::sweep::{SweepConfig, is_locked, result_store};
+
+pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
+    let (folder, config) = SweepFolder::open_read_only(&options.folder)?;
+    let jobs = Jobs::new(&config);
+    let (rows, remarks) = folder.union()?;
+    let mut text = format!("{}\n", config.name) + &job_summary(&jobs, &rows);
+    for store in folder.stores()? {
+        let (computed, seconds) = result_store::job_times(&store);
+        let running = if is_locked(&store.with_extension("lock")) {
+            ", running"
+        } else {
+            ""
+        };
+        text.push_str(&format!(
+            "{}: {computed} jobs, {:.2} s each{running}\n",
+            store.file_name().unwrap_or_default().display(),
+            seconds / computed.max(1) as f64
+        ));
+    }
+    for remark in remarks {
+        text.push_str(&format!("remark: {remark}\n"));
+    }
+    print_answer(&text)?;
+    Ok(exit_code(&jobs, &rows))
+}
+
+pub(crate) fn missing(options: &MissingOptions) -> Result<u8, Failure> {
+    let (folder, config) = SweepFolder::open_read_only(&options.folder)?;
+    let jobs = Jobs::new(&config);
+    let (rows, _) = folder.union()?;
+    let array = missing_shards(&jobs, &rows, options.shards);
+    if array.is_empty() {
+        return Ok(code::DONE);
+    }
+    print_answer(&format!("{array}\n"))?;
+    Ok(code::INCOMPLETE)
+}
+
+pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure> {
+    let (folder, config) = SweepFolder::existing(&options.folder)?;
+    let jobs = Jobs::new(&config);
+    let (rows, remarks) = folder.union()?;
+    let mut text = job_summary(&jobs, &rows);
+    for remark in &remarks {
+        text.push_str(&format!("damaged: {remark}\n"));
+    }
+    let mut differing = Vec::new();
+    if let Some(fraction) = options.recompute {
+        let every = (1.0 / fraction).round().max(1.0) as usize;
+        let chosen: Vec<&ResultRow> = rows
+            .values()
+            .filter(|row| row.status() != Some(JobStatus::Failed))
+            .step_by(every)
+            .collect();
+        differing = recompute(&config, &jobs, &chosen, quiet);
+        text.push_str(&format!(
+            "recomputed {} jobs: {} differ\n",
+            chosen.len(),
+            differing.len()
+        ));
+        for job in &differing {
+            text.push_str(&format!("differs: job {job}\n"));
+        }
+    }
+    print_answer(&text)?;
+    Ok(if !remarks.is_empty() || !differing.is_empty() {
+        code::DAMAGED
+    } else {
+        exit_code(&jobs, &rows)
+    })
+}
+
+/// Computes some jobs again; returns those whose result differs.
+fn recompute(config: &SweepConfig, jobs: &Jobs, rows: &[&ResultRow], quiet: bool) -> Vec<u64> {
+    let bars = ProgressBars::new(quiet);
+    bars.begin("recomputing", rows.len() as u64);
+    let mut differing = Vec::new();
+    for row in rows {
+        if let Some((spot, kind)) = jobs.spot_and_kind(row.job) {
+            let again = compute_jobs(config, jobs, spot, &[kind]);
+            if again.ok().as_deref() != Some(std::slice::from_ref(*row)) {
+                differing.push(row.job);
+            }
+        }
+        bars.advance(1);
+    }
+    bars.end();
+    differing
+}

@@ -1,0 +1,135 @@
+//! Summaries of a sweep's results as text.
+
+use super::failure::code;
+use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::result_row::{JobStatus, ResultRow};
+use bankshot::sweep::{SweepConfig, columns};
+use bankshot::units::DEGREE_RAD;
+use std::collections::BTreeMap;
+
+/// Greatest number of listed failures.
+const MAX_FAILURES: usize = 10;
+
+/// How many jobs ended how, and which failed.
+pub(crate) fn job_summary(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> String {
+    let with_status = |status| rows.values().filter(move |row| row.status() == Some(status));
+    let mut text = format!(
+        "{} of {} jobs done: {} found, {} without a shot that can go in, {} failed\n",
+        rows.len(),
+        jobs.count(),
+        with_status(JobStatus::Found).count(),
+        with_status(JobStatus::NoShot).count(),
+        with_status(JobStatus::Failed).count()
+    );
+    for row in with_status(JobStatus::Failed).take(MAX_FAILURES) {
+        if let (Some(kind), Some(x), Some(y), Some(reason)) = (
+            row.text(columns::KIND),
+            row.real(columns::X),
+            row.real(columns::Y),
+            row.text(columns::REASON),
+        ) {
+            text.push_str(&format!(
+                "failed: job {}, {kind} from x {x:.3} m, y {y:.3} m: {reason}\n",
+                row.job
+            ));
+        }
+    }
+    text
+}
+
+/// The best and the worst place, and at how many places the bank shot is better.
+pub(crate) fn highlights(
+    config: &SweepConfig,
+    jobs: &Jobs,
+    rows: &BTreeMap<u64, ResultRow>,
+) -> String {
+    let mut best_by_spot: Vec<(f64, &ResultRow)> = Vec::new();
+    let (mut bank_wins, mut compared) = (0, 0);
+    for source in &jobs.sources {
+        let found: Vec<(f64, &ResultRow)> = (0..jobs.kinds.len())
+            .filter_map(|kind| rows.get(&jobs.number(source.computed, kind)))
+            .filter_map(|row| Some((row.real(columns::PROBABILITY)?, row)))
+            .collect();
+        if let [(direct, _), (bank, _)] = found[..] {
+            compared += 1;
+            bank_wins += usize::from(bank > direct);
+        }
+        best_by_spot.extend(found.into_iter().reduce(larger));
+    }
+    let best = best_by_spot.iter().copied().reduce(larger);
+    let worst = best_by_spot.iter().copied().reduce(smaller);
+    let mut text = String::new();
+    for (label, place) in [("best", best), ("worst", worst)] {
+        text.extend(place.and_then(|(p, row)| place_text(config, label, p, row)));
+    }
+    if compared > 0 {
+        text.push_str(&format!(
+            "the bank shot is better at {bank_wins} of {compared} places\n"
+        ));
+    }
+    text
+}
+
+/// The one with the larger P; the first if they are equal.
+fn larger<'a>(a: (f64, &'a ResultRow), b: (f64, &'a ResultRow)) -> (f64, &'a ResultRow) {
+    if b.0 > a.0 { b } else { a }
+}
+
+/// The one with the smaller P; the first if they are equal.
+fn smaller<'a>(a: (f64, &'a ResultRow), b: (f64, &'a ResultRow)) -> (f64, &'a ResultRow) {
+    if b.0 < a.0 { b } else { a }
+}
+
+fn place_text(config: &SweepConfig, label: &str, p: f64, row: &ResultRow) -> Option<String> {
+    let (long, metre) = config.settings.output.units.length();
+    let kind = row.text(columns::KIND)?;
+    let distance = row.real(columns::DISTANCE)? / metre;
+    let angle_deg = row.real(columns::COURT_ANGLE)? / DEGREE_RAD;
+    Some(format!(
+        "{label:5} P {p:.3}, {kind}, {distance:.1} {long} from the hoop at {angle_deg:.0} deg\n"
+    ))
+}
+
+/// The shards with missing jobs, in the form of `sbatch --array`, such as `2,4-5`.
+pub(crate) fn missing_shards(
+    jobs: &Jobs,
+    rows: &BTreeMap<u64, ResultRow>,
+    shards: usize,
+) -> String {
+    let mut is_missing = vec![false; shards];
+    for job in 0..jobs.count() as u64 {
+        if !rows.contains_key(&job)
+            && let Some((spot, _)) = jobs.spot_and_kind(job)
+        {
+            is_missing[spot % shards] = true;
+        }
+    }
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
+    for shard in (1..=shards).filter(|shard| is_missing[shard - 1]) {
+        match ranges.last_mut() {
+            Some((_, last)) if *last + 1 == shard => *last = shard,
+            _ => ranges.push((shard, shard)),
+        }
+    }
+    let ranges: Vec<String> = ranges
+        .into_iter()
+        .map(|(first, last)| {
+            if first == last {
+                first.to_string()
+            } else {
+                format!("{first}-{last}")
+            }
+        })
+        .collect();
+    ranges.join(",")
+}
+
+/// The exit code of a sweep's results: done or incomplete.
+pub(crate) fn exit_code(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> u8 {
+    let has_failed = |row: &ResultRow| row.status() == Some(JobStatus::Failed);
+    if rows.len() < jobs.count() || rows.values().any(has_failed) {
+        code::INCOMPLETE
+    } else {
+        code::DONE
+    }
+}

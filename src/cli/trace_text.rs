@@ -1,0 +1,175 @@
+//! The trace of a shot as text, JSON and CSV.
+
+use bankshot::dynamics::{Ending, EventKind, Outcome, OutcomeKind, Trace};
+use bankshot::math::vector::Vec3;
+use bankshot::model::SolidId;
+use bankshot::output::json_record::{number, object};
+use bankshot::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use std::fmt::Write;
+
+/// The outcome of a shot as text.
+pub(crate) fn outcome_text(outcome: &Outcome) -> &'static str {
+    if outcome.verdict.ending == Ending::TimeLimit {
+        return "missed: still in play at the time limit";
+    }
+    match outcome.kind {
+        OutcomeKind::Swish => "made: a swish",
+        OutcomeKind::RimIn => "made off the ring",
+        OutcomeKind::BankIn => "made off the board",
+        OutcomeKind::BankRimIn => "made off board and ring",
+        OutcomeKind::InAndOut => "missed: in and out",
+        OutcomeKind::Short => "missed: short",
+        OutcomeKind::Long => "missed: long",
+        OutcomeKind::Wide => "missed: wide",
+        OutcomeKind::OverBoard => "missed: behind the board",
+        OutcomeKind::Lodged => "missed: lodged between ring and board",
+        OutcomeKind::Airball => "missed: touched nothing",
+        OutcomeKind::Unresolved => "the numerics gave up",
+    }
+}
+
+/// The outcome and the events of a shot as text.
+pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let outcome = &trace.outcome;
+    let mut text = String::new();
+    // Writing to a String does not fail.
+    let _ = writeln!(
+        text,
+        "The shot is {}, after {:.3} s; the ball's centre rose to {:.2} {long} above the ring.",
+        outcome_text(outcome),
+        outcome.verdict.time_s,
+        outcome.apex_m / metre
+    );
+    if let Some(entry) = outcome.entry {
+        let (x, y) = entry.offset_m;
+        let (short, inch) = units.short_length();
+        let _ = writeln!(
+            text,
+            "It last came down through the ring's plane at {:.1} deg, {:.1} {short} from the centre (x {:+.1}, y {:+.1}).",
+            entry.angle_rad / DEGREE_RAD,
+            (x * x + y * y).sqrt() / inch,
+            x / inch,
+            y / inch
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\n   time s  event                    x, y, z {long}               speed {long}/s"
+    );
+    for event in &trace.events {
+        let [x, y, z] = event.state.position_m.into();
+        let [vx, vy, vz]: [f64; 3] = event.state.velocity_m_s.into();
+        let name = match event.kind {
+            EventKind::Release => "release".to_owned(),
+            EventKind::Touch(solid) => format!("touches the {}", solid.name()),
+            EventKind::Part {
+                solid, duration_s, ..
+            } => format!("leaves the {} ({:.1} ms)", solid.name(), 1000.0 * duration_s),
+            EventKind::End => ending_text(outcome.verdict.ending).to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "{:9.4}  {name:24} {:7.3} {:7.3} {:7.3}   {:7.2}",
+            event.time_s,
+            x / metre,
+            y / metre,
+            z / metre,
+            (vx * vx + vy * vy + vz * vz).sqrt() / metre
+        );
+    }
+    text
+}
+
+fn ending_text(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Fell => "below the ring",
+        Ending::NeverRose => "never reached the ring",
+        Ending::BehindBoard => "behind the board",
+        Ending::Lodged => "at rest on both",
+        Ending::TimeLimit => "time limit",
+        Ending::Unresolved => "gave up",
+    }
+}
+
+/// The outcome and the events of a shot as JSON.
+pub(crate) fn trace_json(trace: &Trace, units: UnitSystem) -> serde_json::Value {
+    let (long, metre) = units.length();
+    let outcome = &trace.outcome;
+    let vector = |v: Vec3<f64>| {
+        let components: [f64; 3] = v.into();
+        serde_json::Value::Array(components.map(|x| number(x / metre)).to_vec())
+    };
+    let events = trace.events.iter().map(|event| {
+        let mut record = vec![
+            ("time_s".to_owned(), number(event.time_s)),
+            (format!("position_{long}"), vector(event.state.position_m)),
+            (
+                format!("velocity_{long}_s"),
+                vector(event.state.velocity_m_s),
+            ),
+        ];
+        let name = match event.kind {
+            EventKind::Release => "release".to_owned(),
+            EventKind::Touch(solid) => format!("touch {}", solid.name()),
+            EventKind::Part {
+                solid,
+                impulse_n_s,
+                duration_s,
+            } => {
+                record.push(("duration_s".to_owned(), number(duration_s)));
+                let impulse: [f64; 3] = impulse_n_s.into();
+                record.push(("impulse_n_s".to_owned(), impulse.map(number).to_vec().into()));
+                format!("leave {}", solid.name())
+            }
+            EventKind::End => "end".to_owned(),
+        };
+        record.insert(0, ("event".to_owned(), name.into()));
+        object(record)
+    });
+    object(vec![
+        ("made".to_owned(), outcome.verdict.made.into()),
+        ("kind".to_owned(), outcome.kind.name().into()),
+        (
+            "contacts".to_owned(),
+            outcome.verdict.contacts.to_string().into(),
+        ),
+        ("flight_time_s".to_owned(), number(outcome.verdict.time_s)),
+        (
+            format!("apex_above_ring_{long}"),
+            number(outcome.apex_m / metre),
+        ),
+        (
+            "entry_angle_deg".to_owned(),
+            outcome.entry.map_or(serde_json::Value::Null, |e| {
+                number(e.angle_rad / DEGREE_RAD)
+            }),
+        ),
+        ("events".to_owned(), events.collect::<Vec<_>>().into()),
+    ])
+}
+
+/// The trajectory of a shot as CSV.
+pub(crate) fn trace_csv(trace: &Trace, units: UnitSystem) -> Vec<u8> {
+    let (long, metre) = units.length();
+    let mut text = format!(
+        "time_s,x_{long},y_{long},z_above_ring_{long},vx_{long}_s,vy_{long}_s,vz_{long}_s,spin_x_rev_s,spin_y_rev_s,spin_z_rev_s,on_board,on_ring\n"
+    );
+    for sample in &trace.samples {
+        let _ = write!(text, "{}", sample.time_s);
+        let [x, y, z, vx, vy, vz, wx, wy, wz] = sample.state.to_array();
+        for value in [x, y, z, vx, vy, vz] {
+            let _ = write!(text, ",{}", value / metre);
+        }
+        for value in [wx, wy, wz] {
+            let _ = write!(text, ",{}", value / REV_RAD);
+        }
+        let _ = writeln!(
+            text,
+            ",{},{}",
+            u8::from(sample.touches(SolidId::Board)),
+            u8::from(sample.touches(SolidId::Ring))
+        );
+    }
+    text.into_bytes()
+}

@@ -1,0 +1,62 @@
+//! A CSV file of locations on the court.
+
+use crate::units::{DEGREE_RAD, FOOT_M};
+
+/// A column with its name and the size of its unit in SI units.
+type Column = (&'static str, f64);
+
+const DISTANCE: [Column; 2] = [("distance_ft", FOOT_M), ("distance_m", 1.0)];
+const COURT_ANGLE: [Column; 2] = [("court_angle_deg", DEGREE_RAD), ("court_angle_rad", 1.0)];
+const X: [Column; 2] = [("x_ft", FOOT_M), ("x_m", 1.0)];
+const Y: [Column; 2] = [("y_ft", FOOT_M), ("y_m", 1.0)];
+
+/// Parses the locations of a CSV text with the columns x and y, or distance and court_angle, with their
+/// units: (x, y), m. Other columns are ignored.
+///
+/// # Errors
+/// The columns are missing, or a row is wrong; its number is in the message.
+pub fn parse_locations(text: &str) -> Result<Vec<(f64, f64)>, String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    let find = |columns: [Column; 2]| {
+        columns.into_iter().find_map(|(name, unit)| {
+            let index = header.iter().position(|column| column == name)?;
+            Some((index, name, unit))
+        })
+    };
+    let [distance, angle, x, y] = [DISTANCE, COURT_ANGLE, X, Y].map(find);
+    let (first, second, is_polar) = match (x.zip(y), distance.zip(angle)) {
+        (Some((x, y)), None) => (x, y, false),
+        (None, Some((distance, angle))) => (distance, angle, true),
+        _ => {
+            return Err(
+                "needs the columns x_ft and y_ft, or distance_ft and court_angle_deg (or x_m, y_m, distance_m, court_angle_rad)"
+                    .to_owned(),
+            );
+        }
+    };
+    let mut locations = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| error.to_string())?;
+        let number = |(index, name, unit): (usize, &str, f64)| {
+            let text = record.get(index).unwrap_or_default();
+            match text.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value * unit),
+                _ => Err(format!(
+                    "row {}: {name} must be a number, not \"{text}\"",
+                    row + 1
+                )),
+            }
+        };
+        let (first, second) = (number(first)?, number(second)?);
+        locations.push(if is_polar {
+            let (sin, cos) = libm::sincos(second);
+            (first * cos, first * sin)
+        } else {
+            (first, second)
+        });
+    }
+    Ok(locations)
+}

@@ -1,0 +1,17 @@
+//! Configuration files: from TOML to checked settings, with every error at its line.
+
+mod diagnostics;
+mod location_list;
+mod location_table;
+mod physics_table;
+mod profile_file;
+mod search_tables;
+mod shooter_tables;
+pub(crate) mod toml_reader;
+
+pub use diagnostics::{ConfigError, Diagnostic};
+pub use location_list::parse_locations;
+pub use physics_table::parse_physics;
+pub use profile_file::{MAX_FILE_BYTES, parse_profile};
+pub(crate) use profile_file::{ReadSettings, read_settings, read_settings_of};
+pub(crate) use toml_reader::parse_toml;

@@ -1,0 +1,132 @@
+//! The tables `[shooter]`, `[shooter.errors]`, `[shooter.correlation]` and `[nominal]`.
+
+use super::diagnostics::Diagnostic;
+use super::toml_reader::TableReader;
+use crate::shooter::{
+    Correlation, NominalOverrides, NominalVariable, ReleaseDispersion, ReleaseVariable, Shooter,
+};
+use crate::units::Dimension;
+use std::sync::LazyLock;
+
+/// Release height if it is missing or wrong, m.
+const PLACEHOLDER_HEIGHT_M: f64 = 2.0;
+
+pub(super) fn read_shooter(
+    root: &mut TableReader<'_, '_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Shooter {
+    let mut table = root.table("shooter", diagnostics);
+    let name = table.text("name", diagnostics);
+    let height = table.required("release_height", Dimension::Length, diagnostics);
+    let backspin = table.required("max_backspin", Dimension::Spin, diagnostics);
+    let side_spin = table.quantity("max_side_spin", Dimension::Spin, diagnostics);
+    let mut errors = table.table("errors", diagnostics);
+    let mut dispersion = read_dispersion(&mut errors, diagnostics);
+    errors.report_unknown_keys(diagnostics);
+    dispersion.correlation = read_correlation(&mut table, diagnostics);
+    table.report_unknown_keys(diagnostics);
+    Shooter {
+        name: name.unwrap_or_else(|| "shooter".to_owned()),
+        release_height_m: height.unwrap_or(PLACEHOLDER_HEIGHT_M),
+        max_backspin_rad_s: backspin.unwrap_or(0.0),
+        max_side_spin_rad_s: side_spin.unwrap_or(0.0),
+        dispersion,
+    }
+}
+
+fn read_dispersion(
+    table: &mut TableReader<'_, '_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> ReleaseDispersion {
+    let mut required = |key, dimension| {
+        table
+            .required(key, dimension, diagnostics)
+            .unwrap_or(0.0)
+    };
+    let c10_m_s = required("c10", Dimension::Speed);
+    let c20_rad = required("c20", Dimension::Angle);
+    let c30_rad = required("c30", Dimension::Angle);
+    let c40_rad_s = required("c40", Dimension::Spin);
+    let mut optional = |key, dimension| {
+        table
+            .quantity(key, dimension, diagnostics)
+            .unwrap_or(0.0)
+    };
+    ReleaseDispersion {
+        c10_m_s,
+        c11: optional("c11", Dimension::Number),
+        c12_s_m: optional("c12", Dimension::PerSpeed),
+        c20_rad,
+        c30_rad,
+        c40_rad_s,
+        c41: optional("c41", Dimension::Number),
+        c42_s_rad: optional("c42", Dimension::PerSpin),
+        rifle_spin_rad_s: optional("rifle_spin", Dimension::Spin),
+        side_spin_rad_s: optional("side_spin", Dimension::Spin),
+        distance_m: optional("distance", Dimension::Length),
+        court_angle_rad: optional("court_angle", Dimension::Angle),
+        height_m: optional("height", Dimension::Length),
+        correlation: Correlation::NONE,
+    }
+}
+
+/// `[shooter.correlation]`: keys such as `speed_pitch`, each a number from -1 to 1.
+fn read_correlation(
+    shooter: &mut TableReader<'_, '_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Correlation {
+    let mut table = shooter.table("correlation", diagnostics);
+    let mut pairs = Vec::new();
+    for (a, b, key) in PAIRS.iter() {
+        match table.quantity(key, Dimension::Number, diagnostics) {
+            Some(value) if (-1.0..=1.0).contains(&value) => pairs.push((*a, *b, value)),
+            Some(_) => diagnostics.push(table.diagnostic(key, "must be from -1 to 1")),
+            None => {}
+        }
+    }
+    let correlation = Correlation::new(&pairs);
+    let impossible = correlation.is_none().then(|| {
+        let least = Correlation::least_eigenvalue(&pairs);
+        table.table_diagnostic(format!(
+            "these coefficients are impossible together: the matrix of correlations is not positive semi-definite (its least eigenvalue is {least:.3})"
+        ))
+    });
+    table.report_unknown_keys(diagnostics);
+    diagnostics.extend(impossible);
+    correlation.unwrap_or(Correlation::NONE)
+}
+
+/// The keys of `[shooter.correlation]` with their two variables.
+static PAIRS: LazyLock<Vec<(ReleaseVariable, ReleaseVariable, &'static str)>> =
+    LazyLock::new(|| {
+        let mut pairs = Vec::new();
+        for (i, a) in ReleaseVariable::ALL.into_iter().enumerate() {
+            for b in ReleaseVariable::ALL.into_iter().skip(i + 1) {
+                // 36 short names, once in the life of the program.
+                let key: &'static str = format!("{}_{}", a.name(), b.name()).leak();
+                pairs.push((a, b, key));
+            }
+        }
+        pairs
+    });
+
+/// `[nominal]`: the nominal values that are fixed.
+pub(super) fn read_nominal(
+    root: &mut TableReader<'_, '_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> NominalOverrides {
+    let mut table = root.table("nominal", diagnostics);
+    let mut read = |variable: NominalVariable| {
+        table.quantity(variable.name(), variable.dimension(), diagnostics)
+    };
+    let overrides = NominalOverrides {
+        speed_m_s: read(NominalVariable::Speed),
+        pitch_rad: read(NominalVariable::Pitch),
+        polar_rad: read(NominalVariable::Polar),
+        backspin_rad_s: read(NominalVariable::Backspin),
+        rifle_spin_rad_s: read(NominalVariable::RifleSpin),
+        side_spin_rad_s: read(NominalVariable::SideSpin),
+    };
+    table.report_unknown_keys(diagnostics);
+    overrides
+}

@@ -1,0 +1,308 @@
+//! Reads TOML tables key by key. It collects the errors instead of stopping at the first.
+
+use super::diagnostics::{ConfigError, Diagnostic};
+use crate::units::{Dimension, parse};
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A table that is being read. A key that is never asked for is reported as unknown.
+#[derive(Clone)]
+pub(crate) struct TableReader<'t, 'i> {
+    path: String,
+    table: Option<&'t DeTable<'i>>,
+    span: Range<usize>,
+    asked: Vec<&'static str>,
+}
+
+/// Parses a TOML text, then reads it with `read`, which adds what is wrong to the diagnostics.
+///
+/// # Errors
+/// All diagnostics at once. If the syntax is wrong, only those of the syntax.
+pub(crate) fn parse_toml<T>(
+    text: &str,
+    origin: &str,
+    read: impl FnOnce(TableReader<'_, '_>, &mut Vec<Diagnostic>) -> Option<T>,
+) -> Result<T, ConfigError> {
+    let (table, errors) = DeTable::parse_recoverable(text);
+    let mut diagnostics: Vec<Diagnostic> = errors
+        .into_iter()
+        .map(|error| Diagnostic {
+            span: error.span().unwrap_or(0..0),
+            key: String::new(),
+            message: format!("not TOML: {}", error.message()),
+        })
+        .collect();
+    let syntax_is_valid = diagnostics.is_empty();
+    let value = read(TableReader::root(&table), &mut diagnostics);
+    match value {
+        Some(value) if diagnostics.is_empty() => Ok(value),
+        _ => {
+            if !syntax_is_valid {
+                // Errors that follow from a wrong syntax would only confuse.
+                diagnostics.retain(|diagnostic| diagnostic.key.is_empty());
+            }
+            diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
+            Err(ConfigError {
+                origin: origin.to_owned(),
+                text: text.to_owned(),
+                diagnostics,
+            })
+        }
+    }
+}
+
+impl<'t, 'i> TableReader<'t, 'i> {
+    pub(crate) fn root(table: &'t Spanned<DeTable<'i>>) -> Self {
+        Self {
+            path: String::new(),
+            table: Some(table.get_ref()),
+            span: 0..0,
+            asked: Vec::new(),
+        }
+    }
+
+    /// The full name of a key of this table, such as `shooter.errors.c10`.
+    fn full_name(&self, key: &str) -> String {
+        if self.path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    /// Whether the key is given.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.table.is_some_and(|table| table.contains_key(key))
+    }
+
+    fn get(&mut self, key: &'static str) -> Option<&'t Spanned<DeValue<'i>>> {
+        self.asked.push(key);
+        self.table.and_then(|table| table.get(key))
+    }
+
+    /// A diagnostic of one key, or of the whole table if the key is not given.
+    pub(crate) fn diagnostic(&self, key: &str, message: impl Into<String>) -> Diagnostic {
+        let span = self
+            .table
+            .and_then(|table| table.get(key))
+            .map_or_else(|| self.span.clone(), Spanned::span);
+        Diagnostic {
+            span,
+            key: self.full_name(key),
+            message: message.into(),
+        }
+    }
+
+    /// A diagnostic of the whole table.
+    pub(crate) fn table_diagnostic(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic {
+            span: self.span.clone(),
+            key: self.path.clone(),
+            message: message.into(),
+        }
+    }
+
+    /// The place of a dotted key below this table: the deepest part of it that is given.
+    pub(crate) fn span_of(&self, dotted_key: &str) -> Range<usize> {
+        let mut span = self.span.clone();
+        let mut table = self.table;
+        for part in dotted_key.split('.') {
+            let Some(value) = table.and_then(|table| table.get(part)) else {
+                break;
+            };
+            span = value.span();
+            table = match value.get_ref() {
+                DeValue::Table(inner) => Some(inner),
+                _ => None,
+            };
+        }
+        span
+    }
+
+    /// The table under `key`; an empty one if it is not given.
+    pub(crate) fn table(
+        &mut self,
+        key: &'static str,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> TableReader<'t, 'i> {
+        let found = self.get(key);
+        let path = self.full_name(key);
+        let reader = |table, span| TableReader {
+            path,
+            table,
+            span,
+            asked: Vec::new(),
+        };
+        match found.map(|value| (value.get_ref(), value.span())) {
+            Some((DeValue::Table(table), span)) => reader(Some(table), span),
+            Some((_, span)) => {
+                diagnostics.push(self.diagnostic(key, "must be a table, such as [shooter]"));
+                reader(None, span)
+            }
+            None => reader(None, self.span.clone()),
+        }
+    }
+
+    /// A quantity in SI units, if it is given.
+    pub(crate) fn quantity(
+        &mut self,
+        key: &'static str,
+        dimension: Dimension,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<f64> {
+        let value = self.get(key)?;
+        let number = match value.get_ref() {
+            DeValue::String(text) => match parse(text, dimension) {
+                Ok(value) => return Some(value),
+                Err(error) => {
+                    diagnostics.push(self.diagnostic(key, error.to_string()));
+                    return None;
+                }
+            },
+            DeValue::Integer(number) => number.as_str().replace('_', "").parse::<f64>().ok(),
+            DeValue::Float(number) => number.as_str().replace('_', "").parse::<f64>().ok(),
+            _ => None,
+        };
+        let message = match number {
+            Some(number) if dimension == Dimension::Number && number.is_finite() => {
+                return Some(number);
+            }
+            Some(_) if dimension == Dimension::Number => "must be a finite number".to_owned(),
+            Some(number) => {
+                let units = dimension.unit_names();
+                let example = dimension.units().first().map_or("", |(name, _)| name);
+                format!(
+                    "has no unit; write it as text with one of {units}, such as \"{number} {example}\""
+                )
+            }
+            None => "must be a number, or a text with a number and a unit".to_owned(),
+        };
+        diagnostics.push(self.diagnostic(key, message));
+        None
+    }
+
+    /// A quantity that must be given.
+    pub(crate) fn required(
+        &mut self,
+        key: &'static str,
+        dimension: Dimension,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<f64> {
+        if !self.has(key) {
+            self.asked.push(key);
+            let example = dimension.units().first().map_or("", |(name, _)| name);
+            let message = format!("is missing; write {key} = \"... {example}\"");
+            diagnostics.push(self.diagnostic(key, message));
+            return None;
+        }
+        self.quantity(key, dimension, diagnostics)
+    }
+
+    /// A text, if it is given.
+    pub(crate) fn text(
+        &mut self,
+        key: &'static str,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<String> {
+        match self.get(key)?.get_ref() {
+            DeValue::String(text) => Some(text.to_string()),
+            _ => {
+                diagnostics.push(self.diagnostic(key, "must be a text in quotes"));
+                None
+            }
+        }
+    }
+
+    /// A list of quantities in SI units, if it is given.
+    pub(crate) fn quantities(
+        &mut self,
+        key: &'static str,
+        dimension: Dimension,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Vec<f64>> {
+        if !self.has(key) {
+            self.asked.push(key);
+            return None;
+        }
+        let mut values = Vec::new();
+        for text in self.texts(key, diagnostics)? {
+            match parse(&text, dimension) {
+                Ok(value) => values.push(value),
+                Err(error) => diagnostics.push(self.diagnostic(key, error.to_string())),
+            }
+        }
+        if values.is_empty() {
+            diagnostics.push(self.diagnostic(key, "must not be empty"));
+        }
+        Some(values)
+    }
+
+    /// A list of texts, if it is given.
+    pub(crate) fn texts(
+        &mut self,
+        key: &'static str,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Vec<String>> {
+        let texts = match self.get(key)?.get_ref() {
+            DeValue::Array(items) => items
+                .iter()
+                .map(|item| match item.get_ref() {
+                    DeValue::String(text) => Some(text.to_string()),
+                    _ => None,
+                })
+                .collect(),
+            _ => None,
+        };
+        if texts.is_none() {
+            let message = "must be a list of texts, such as [\"...\", \"...\"]";
+            diagnostics.push(self.diagnostic(key, message));
+        }
+        texts
+    }
+
+    /// A whole number within `range`, if it is given.
+    pub(crate) fn count(
+        &mut self,
+        key: &'static str,
+        range: std::ops::RangeInclusive<u64>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<u64> {
+        let value = self.get(key)?;
+        let number = match value.get_ref() {
+            DeValue::Integer(number) if number.radix() == 10 => {
+                number.as_str().replace('_', "").parse::<u64>().ok()
+            }
+            _ => None,
+        };
+        match number {
+            Some(number) if range.contains(&number) => Some(number),
+            _ => {
+                let (low, high) = (range.start(), range.end());
+                let message = format!("must be a whole number from {low} to {high}");
+                diagnostics.push(self.diagnostic(key, message));
+                None
+            }
+        }
+    }
+
+    /// Reports the keys that were never asked for, with those that are known.
+    pub(crate) fn report_unknown_keys(self, diagnostics: &mut Vec<Diagnostic>) {
+        let Some(table) = self.table else { return };
+        for (key, _) in table.iter() {
+            let name: &str = key.get_ref();
+            if self.asked.contains(&name) {
+                continue;
+            }
+            let mut known = self.asked.clone();
+            known.sort_unstable();
+            let message = format!("is not a key here; known are {}", known.join(", "));
+            let shown: String = name.chars().take(60).collect();
+            diagnostics.push(Diagnostic {
+                span: key.span(),
+                key: self.full_name(&shown),
+                message,
+            });
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! The vector instructions that a batch runs on.
+
+use fearless_simd::Level;
+
+/// The vector instructions of a batch, and with them the number of lanes. Every choice gives the same
+/// bits.
+#[derive(Clone, Copy, Debug)]
+pub struct InstructionSet(pub(super) Option<Level>);
+
+impl InstructionSet {
+    /// One shot at a time.
+    pub const SCALAR: Self = Self(None);
+
+    /// The best that this machine has.
+    #[must_use]
+    pub fn best() -> Self {
+        Self(Some(Level::new()))
+    }
+
+    /// All that this machine has with their names, the scalar form first.
+    #[must_use]
+    pub fn available() -> Vec<(&'static str, Self)> {
+        let mut found = vec![
+            ("scalar", Self::SCALAR),
+            ("baseline", Self(Some(Level::baseline()))),
+        ];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            let level = Level::new();
+            if let Some(token) = level.as_avx2() {
+                found.push(("avx2", Self(Some(Level::Avx2(token)))));
+            }
+            if let Some(token) = level.as_avx512() {
+                found.push(("avx512", Self(Some(Level::Avx512(token)))));
+            }
+        }
+        found
+    }
+
+    pub(crate) fn level(self) -> Option<Level> {
+        self.0
+    }
+}
+
+impl Default for InstructionSet {
+    fn default() -> Self {
+        Self::best()
+    }
+}

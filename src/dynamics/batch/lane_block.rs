@@ -1,0 +1,278 @@
+//! Eight or sixteen shots side by side, one in each lane.
+
+use crate::dynamics::contact::friction::FrictionState;
+use crate::dynamics::end_rules::ContactEnd;
+use crate::dynamics::hoop_crossing::HoopCrossing;
+use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
+use crate::math::real::{LaneArray, LaneBits, SimdReal};
+use crate::math::vector::Vec3;
+use crate::model::params::ModelParams;
+use crate::model::{BallState, SolidId};
+
+const ZEROS: LaneArray = [0.0; LaneBits::BITS as usize];
+
+/// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of the
+/// last one, and steps on without harm.
+pub(super) struct LaneBlock {
+    /// The nine state variables.
+    state: [LaneArray; 9],
+    times_s: LaneArray,
+    /// [`FrictionState::zero_slip`] of each solid.
+    zero_slips: [LaneArray; SolidId::COUNT],
+    rolling_times_s: LaneArray,
+    slots: [u32; ZEROS.len()],
+    flags: LaneFlags,
+}
+
+/// The Boolean values of each lane. A local copy stays in registers.
+#[derive(Clone, Copy, Default)]
+struct LaneFlags {
+    above: LaneBits,
+    rose_through: LaneBits,
+    rolling: [LaneBits; SolidId::COUNT],
+    exceeded: [LaneBits; SolidId::COUNT],
+    /// The lane has a shot.
+    occupied: LaneBits,
+}
+
+/// The shots as SIMD numbers.
+#[derive(Clone, Copy)]
+pub(super) struct LaneShots<R: SimdReal> {
+    pub(super) state: BallState<R>,
+    pub(super) crossing: HoopCrossing<R>,
+    pub(super) time_s: R,
+}
+
+/// The lanes whose bits are set, in order.
+pub(super) fn lanes_in(mut bits: LaneBits) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (bits != 0).then(|| {
+            let lane = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            lane
+        })
+    })
+}
+
+/// The bit of one lane.
+#[inline(always)]
+pub(super) fn bit(bits: LaneBits, lane: usize) -> bool {
+    bits >> lane & 1 == 1
+}
+
+/// Sets the bit of one lane.
+#[inline(always)]
+fn set_bit(bits: &mut LaneBits, lane: usize, value: bool) {
+    *bits = *bits & !(1 << lane) | LaneBits::from(value) << lane;
+}
+
+impl LaneBlock {
+    pub(super) fn new() -> Self {
+        Self {
+            state: [ZEROS; 9],
+            times_s: ZEROS,
+            zero_slips: [ZEROS; SolidId::COUNT],
+            rolling_times_s: ZEROS,
+            slots: [0; ZEROS.len()],
+            flags: LaneFlags::default(),
+        }
+    }
+
+    /// The lanes that have a shot.
+    #[inline(always)]
+    pub(super) fn occupied(&self) -> LaneBits {
+        self.flags.occupied
+    }
+
+    /// Puts shots into some lanes, as long as `next` gives any.
+    #[inline(always)]
+    pub(super) fn fill(
+        &mut self,
+        lanes: LaneBits,
+        slots: &[ShotProgress],
+        mut next: impl FnMut() -> Option<u32>,
+    ) {
+        let mut flags = self.flags;
+        for lane in lanes_in(lanes) {
+            let Some(slot) = next() else {
+                break;
+            };
+            self.insert(lane, slot, &slots[slot as usize], &mut flags);
+        }
+        self.flags = flags;
+    }
+
+    /// The slot of the shot in a lane.
+    #[inline(always)]
+    pub(super) fn slot(&self, lane: usize) -> u32 {
+        self.slots[lane]
+    }
+
+    #[inline(always)]
+    fn insert(&mut self, lane: usize, slot: u32, shot: &ShotProgress, flags: &mut LaneFlags) {
+        let BallState {
+            position_m: p,
+            velocity_m_s: v,
+            spin_rad_s: w,
+        } = shot.state;
+        let values = [p.x, p.y, p.z, v.x, v.y, v.z, w.x, w.y, w.z];
+        for (row, value) in self.state.iter_mut().zip(values) {
+            row[lane] = value;
+        }
+        self.times_s[lane] = shot.time_s;
+        self.slots[lane] = slot;
+        set_bit(&mut flags.above, lane, shot.crossing.above);
+        set_bit(&mut flags.rose_through, lane, shot.crossing.rose_through);
+        set_bit(&mut flags.occupied, lane, true);
+    }
+
+    /// Copies the friction of the shots in some lanes from their slots.
+    #[inline(always)]
+    pub(super) fn load_friction_of(&mut self, lanes: LaneBits, slots: &[ShotProgress]) {
+        let mut flags = self.flags;
+        for lane in lanes_in(lanes & flags.occupied) {
+            let mut set = |solid: SolidId, friction: &FrictionState| {
+                set_bit(&mut flags.rolling[solid.index()], lane, friction.rolling);
+                set_bit(&mut flags.exceeded[solid.index()], lane, friction.exceeded);
+                self.zero_slips[solid.index()][lane] = friction.zero_slip;
+            };
+            match &slots[self.slots[lane] as usize].contact {
+                ContactState::Free => {}
+                ContactState::Single(solid, friction) => set(*solid, friction),
+                ContactState::BoardAndRing {
+                    friction,
+                    rolling_time_s,
+                } => {
+                    for solid in SolidId::ALL {
+                        set(solid, &friction[solid.index()]);
+                    }
+                    self.rolling_times_s[lane] = *rolling_time_s;
+                }
+            }
+        }
+        self.flags = flags;
+    }
+
+    /// Takes the shot out of a lane; its contacts are left as they were.
+    #[inline(always)]
+    pub(super) fn remove(&mut self, lane: usize, shot: &mut ShotProgress) {
+        let vector = |i: usize| {
+            Vec3::new(
+                self.state[i][lane],
+                self.state[i + 1][lane],
+                self.state[i + 2][lane],
+            )
+        };
+        shot.state = BallState {
+            position_m: vector(0),
+            velocity_m_s: vector(3),
+            spin_rad_s: vector(6),
+        };
+        shot.time_s = self.times_s[lane];
+        shot.crossing = HoopCrossing {
+            above: bit(self.flags.above, lane),
+            rose_through: bit(self.flags.rose_through, lane),
+        };
+        set_bit(&mut self.flags.occupied, lane, false);
+    }
+
+    /// Friction of the shot in a lane at a solid.
+    #[inline(always)]
+    pub(super) fn friction(&self, solid: SolidId, lane: usize) -> FrictionState {
+        FrictionState {
+            rolling: bit(self.flags.rolling[solid.index()], lane),
+            exceeded: bit(self.flags.exceeded[solid.index()], lane),
+            zero_slip: self.zero_slips[solid.index()][lane],
+        }
+    }
+
+    /// Time for which the ball in a lane has rolled on two solids, s.
+    pub(super) fn rolling_time_s(&self, lane: usize) -> f64 {
+        self.rolling_times_s[lane]
+    }
+
+    #[inline(always)]
+    pub(super) fn load<R: SimdReal>(&self, simd: R::Simd) -> LaneShots<R> {
+        let row = |i: usize| R::load(simd, &self.state[i]);
+        let vector = |i: usize| Vec3::new(row(i), row(i + 1), row(i + 2));
+        LaneShots {
+            state: BallState {
+                position_m: vector(0),
+                velocity_m_s: vector(3),
+                spin_rad_s: vector(6),
+            },
+            crossing: HoopCrossing {
+                above: R::mask_from_bits(simd, self.flags.above),
+                rose_through: R::mask_from_bits(simd, self.flags.rose_through),
+            },
+            time_s: R::load(simd, &self.times_s),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn store<R: SimdReal>(&mut self, shots: &LaneShots<R>) {
+        let BallState {
+            position_m: p,
+            velocity_m_s: v,
+            spin_rad_s: w,
+        } = shots.state;
+        let values = [p.x, p.y, p.z, v.x, v.y, v.z, w.x, w.y, w.z];
+        for (row, value) in self.state.iter_mut().zip(values) {
+            value.store(row);
+        }
+        self.flags.above = R::mask_to_bits(shots.crossing.above);
+        self.flags.rose_through = R::mask_to_bits(shots.crossing.rose_through);
+        shots.time_s.store(&mut self.times_s);
+    }
+
+    #[inline(always)]
+    pub(super) fn load_friction<R: SimdReal>(
+        &self,
+        simd: R::Simd,
+        solid: SolidId,
+    ) -> FrictionState<R> {
+        FrictionState {
+            rolling: R::mask_from_bits(simd, self.flags.rolling[solid.index()]),
+            exceeded: R::mask_from_bits(simd, self.flags.exceeded[solid.index()]),
+            zero_slip: R::load(simd, &self.zero_slips[solid.index()]),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn store_friction<R: SimdReal>(
+        &mut self,
+        solid: SolidId,
+        friction: &FrictionState<R>,
+    ) {
+        self.flags.rolling[solid.index()] = R::mask_to_bits(friction.rolling);
+        self.flags.exceeded[solid.index()] = R::mask_to_bits(friction.exceeded);
+        friction.zero_slip.store(&mut self.zero_slips[solid.index()]);
+    }
+
+    #[inline(always)]
+    pub(super) fn load_rolling_times<R: SimdReal>(&self, simd: R::Simd) -> R {
+        R::load(simd, &self.rolling_times_s)
+    }
+
+    #[inline(always)]
+    pub(super) fn store_rolling_times<R: SimdReal>(&mut self, rolling_times_s: R) {
+        rolling_times_s.store(&mut self.rolling_times_s);
+    }
+}
+
+impl<R: SimdReal> LaneShots<R> {
+    /// Updates time and hoop crossing after a step of `dt` from `before`; returns the shots that end.
+    #[inline(always)]
+    pub(super) fn after_step(
+        &mut self,
+        params: &ModelParams<R>,
+        before: &BallState<R>,
+        dt: R,
+        time_limit_s: f64,
+    ) -> ContactEnd<R> {
+        self.time_s = self.time_s + dt;
+        self.crossing
+            .after_step(params, before, &self.state, dt.is_positive());
+        ContactEnd::new(params, &self.state, self.time_s, time_limit_s)
+    }
+}

@@ -1,0 +1,175 @@
+//! The memory of a batch: the shots in progress, and the queues in which they wait.
+
+use crate::dynamics::end_rules::RunLimits;
+use crate::dynamics::integrators::event_driven::{
+    self, ContactState, ShotProgress, solids_pressed_at_start,
+};
+use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
+use crate::model::params::ModelParams;
+use crate::model::{BallState, SolidId};
+
+/// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache (some
+/// 150 bytes each).
+const SLOTS: usize = 2048;
+
+/// Memory for batches. Reuse it: nothing is allocated once it has grown.
+#[derive(Debug, Default)]
+pub struct BatchWorkspace {
+    /// The shots in progress.
+    pub(super) slots: Vec<ShotProgress>,
+    /// For each slot, the number of its shot in the batch.
+    shots: Vec<u32>,
+    free_slots: Vec<u32>,
+    /// Shots of the batch that have been started.
+    started: usize,
+    pub(crate) verdicts: Vec<Verdict>,
+    /// The slots that wait for each phase, by [`Phase::index`].
+    queues: [Vec<u32>; Phase::COUNT],
+    spare: Vec<u32>,
+}
+
+/// What a shot waits for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Phase {
+    Flight,
+    Single(SolidId),
+    BoardAndRing,
+}
+
+impl Phase {
+    pub(super) const COUNT: usize = SolidId::COUNT + 2;
+    /// Every phase, in the order in which they are worked off.
+    pub(super) const ALL: [Self; Self::COUNT] = [
+        Self::Flight,
+        Self::Single(SolidId::Board),
+        Self::Single(SolidId::Ring),
+        Self::BoardAndRing,
+    ];
+
+    const fn index(self) -> usize {
+        match self {
+            Self::Flight => 0,
+            Self::Single(solid) => 1 + solid.index(),
+            Self::BoardAndRing => 1 + SolidId::COUNT,
+        }
+    }
+
+    fn of(contact: &ContactState) -> Self {
+        match contact {
+            ContactState::Free => Self::Flight,
+            ContactState::Single(solid, _) => Self::Single(*solid),
+            ContactState::BoardAndRing { .. } => Self::BoardAndRing,
+        }
+    }
+}
+
+impl BatchWorkspace {
+    /// Prepares for a batch of `count` shots.
+    pub(super) fn reset(&mut self, count: usize) {
+        self.shots.clear();
+        self.free_slots.clear();
+        for queue in &mut self.queues {
+            queue.clear();
+        }
+        self.slots.clear();
+        self.started = 0;
+        self.verdicts.clear();
+        self.verdicts.resize(count, PENDING);
+    }
+
+    /// Starts shots while there are free slots.
+    pub(super) fn start_shots(
+        &mut self,
+        params: &ModelParams,
+        limits: &RunLimits,
+        starts: &[BallState],
+    ) {
+        while let Some(start) = starts.get(self.started) {
+            if solids_pressed_at_start(params, start).contains(&true) {
+                self.verdicts[self.started] = event_driven::run(params, limits, *start, &mut ());
+                self.started += 1;
+                continue;
+            }
+            let shot = ShotProgress::at_release(params, *start);
+            let slot = if let Some(slot) = self.free_slots.pop() {
+                self.slots[slot as usize] = shot;
+                self.shots[slot as usize] = self.started as u32;
+                slot
+            } else if self.slots.len() < SLOTS {
+                self.slots.push(shot);
+                self.shots.push(self.started as u32);
+                self.slots.len() as u32 - 1
+            } else {
+                return;
+            };
+            self.queues[Phase::Flight.index()].push(slot);
+            self.started += 1;
+        }
+    }
+
+    /// Whether no shot is in progress.
+    pub(super) fn is_idle(&self) -> bool {
+        self.queues.iter().all(Vec::is_empty)
+    }
+
+    /// The slots that wait for a phase.
+    pub(super) fn queue_mut(&mut self, phase: Phase) -> &mut Vec<u32> {
+        &mut self.queues[phase.index()]
+    }
+
+    /// The shots in progress, and the slots that wait for a phase.
+    pub(super) fn slots_and_queue(&mut self, phase: Phase) -> (&[ShotProgress], &mut Vec<u32>) {
+        (&self.slots, &mut self.queues[phase.index()])
+    }
+
+    /// Whether another phase has at least `lanes` shots waiting.
+    pub(super) fn other_phase_fills(&self, lanes: usize, phase: Phase) -> bool {
+        Phase::ALL
+            .iter()
+            .any(|&other| other != phase && self.queues[other.index()].len() >= lanes)
+    }
+
+    /// Queues a shot for its next phase.
+    pub(super) fn enqueue(&mut self, slot: u32) {
+        let phase = Phase::of(&self.slots[slot as usize].contact);
+        self.queue_mut(phase).push(slot);
+    }
+
+    /// Takes the queue of the flights and leaves an empty one. Return it with
+    /// [`BatchWorkspace::return_queue`].
+    pub(super) fn take_flights(&mut self) -> Vec<u32> {
+        let spare = std::mem::take(&mut self.spare);
+        std::mem::replace(self.queue_mut(Phase::Flight), spare)
+    }
+
+    pub(super) fn return_queue(&mut self, mut queue: Vec<u32>) {
+        queue.clear();
+        self.spare = queue;
+    }
+
+    /// Records the end of a shot.
+    pub(super) fn finish(&mut self, slot: u32, ending: Ending, made: bool) {
+        let shot = &self.slots[slot as usize];
+        let verdict = Verdict {
+            made,
+            ending,
+            contacts: shot.contacts,
+            time_s: shot.time_s,
+        };
+        self.record(slot, verdict);
+    }
+
+    /// Records the verdict of a shot and frees its slot.
+    pub(super) fn record(&mut self, slot: u32, verdict: Verdict) {
+        self.verdicts[self.shots[slot as usize] as usize] = verdict;
+        self.free_slots.push(slot);
+    }
+}
+
+/// A verdict that will be overwritten.
+const PENDING: Verdict = Verdict {
+    made: false,
+    ending: Ending::Unresolved,
+    contacts: ContactSequence::EMPTY,
+    time_s: 0.0,
+};

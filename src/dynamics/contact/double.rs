@@ -1,0 +1,536 @@
+//! Contact with two solids at once.
+//!
+//! The mechanics are those of the single contact, with both forces in one balance. Where both contacts
+//! roll, their frictions are coupled: four linear equations keep both slips at zero.
+
+use super::friction::{FrictionBalance, FrictionState, SLIP_DIRECTION_LOST, zero_slip_after};
+use super::normal_force::{NormalForce, ZERO_FORCE_M_S2, has_parted};
+use super::single::SHORTEST_STEP_S;
+use crate::math::real::{Mask, Real};
+use crate::math::vector::{RealVector, Vec2, Vec3};
+use crate::model::params::ModelParams;
+use crate::model::solids::{
+    ContactFrame, ContactKinematics, ContactVector, Material, Solid,
+};
+use crate::model::{BallState, StateDerivative};
+
+/// Index of the first and of the second contact of a pair.
+const FIRST: usize = 0;
+const SECOND: usize = 1;
+
+/// An array of the same expression for both contacts. (A closure in `map` would not be inlined, and then
+/// not be compiled for the vector instructions of its caller.)
+macro_rules! for_both {
+    ($contact:ident => $value:expr) => {
+        [
+            {
+                #[allow(non_upper_case_globals)]
+                const $contact: usize = FIRST;
+                $value
+            },
+            {
+                #[allow(non_upper_case_globals)]
+                const $contact: usize = SECOND;
+                $value
+            },
+        ]
+    };
+}
+
+/// The result of one step.
+pub(crate) struct DoubleContactStep<R: Real> {
+    /// Length of the step, s.
+    pub(crate) dt: R,
+    /// The ball has left the first, the second solid; nothing was integrated.
+    pub(crate) parted: [R::Mask; 2],
+    /// Impulses of both contacts per unit of mass, m/s.
+    pub(crate) impulses: [Vec3<R>; 2],
+}
+
+/// Least slip speed that counts as zero after a step meant to end the slip, m/s. The force of the other
+/// contact turns the slip as it decreases, so each such step leaves about half of it.
+const SLIP_ENDED_M_S: f64 = 1e-3;
+
+/// A linear and an angular acceleration of the ball.
+type Response<R> = (Vec3<R>, Vec3<R>);
+
+/// Two contacts of one state.
+struct ContactPair<R> {
+    kinematics: [ContactKinematics<R>; 2],
+    materials: [Material<R>; 2],
+    /// The directions (n, 1, 2) of each contact in space.
+    axes: [[Vec3<R>; 3]; 2],
+    /// Lever over the moment of inertia (per unit of mass).
+    lever_over_inertia: [R; 2],
+    /// Normal accelerations.
+    normals: [R; 2],
+}
+
+#[inline(always)]
+fn axes_of<R: Real, F: ContactFrame<R>>(params: &ModelParams<R>, frame: F) -> [Vec3<R>; 3] {
+    let (zero, one) = (params.zero(), params.one());
+    [
+        frame.to_space(ContactVector::new(one, zero, zero)),
+        frame.to_space(ContactVector::new(zero, one, zero)),
+        frame.to_space(ContactVector::new(zero, zero, one)),
+    ]
+}
+
+impl<R: Real> ContactPair<R> {
+    #[inline(always)]
+    fn new<A: Solid<R>, B: Solid<R>>(
+        params: &ModelParams<R>,
+        (first, second): (&A, &B),
+        state: &BallState<R>,
+    ) -> Self {
+        let (first_kinematics, first_frame) = first.contact(params, state);
+        let (second_kinematics, second_frame) = second.contact(params, state);
+        let kinematics = [first_kinematics, second_kinematics];
+        let materials = [*first.material(), *second.material()];
+        Self {
+            axes: [axes_of(params, first_frame), axes_of(params, second_frame)],
+            lever_over_inertia: for_both!(i => kinematics[i].lever * params.mass_over_inertia),
+            normals: for_both!(i => kinematics[i].normal_acceleration(&materials[i])),
+            kinematics,
+            materials,
+        }
+    }
+
+    /// The slip rate at a contact from an acceleration of the ball.
+    #[inline(always)]
+    fn slip_rate(&self, contact: usize, (linear, angular): Response<R>) -> Vec2<R> {
+        let [_, tangent_1, tangent_2] = self.axes[contact];
+        let lever = self.kinematics[contact].lever;
+        Vec2::new(
+            tangent_1.dot(linear) - lever * tangent_2.dot(angular),
+            tangent_2.dot(linear) + lever * tangent_1.dot(angular),
+        )
+    }
+
+    /// The acceleration of the ball from (n, 1, 2) accelerations at a contact.
+    #[inline(always)]
+    fn response(&self, contact: usize, force: ContactVector<R>) -> Response<R> {
+        let [normal, tangent_1, tangent_2] = self.axes[contact];
+        let twist = self.lever_over_inertia[contact];
+        let tangent = force.tangent;
+        (
+            (normal * force.normal)
+                .add_scaled(tangent_1, tangent.x)
+                .add_scaled(tangent_2, tangent.y),
+            (tangent_1 * (twist * tangent.y)).add_scaled(tangent_2, -(twist * tangent.x)),
+        )
+    }
+
+    /// The slip rate at a contact from the force of the other contact.
+    #[inline(always)]
+    fn slip_rate_from_other(&self, contact: usize, other: ContactVector<R>) -> Vec2<R> {
+        self.slip_rate(contact, self.response(1 - contact, other))
+    }
+
+    /// The slip rate at a contact without friction there: from motion, gravity and the other contact.
+    #[inline(always)]
+    fn frictionless_slip_rate(&self, contact: usize, other: ContactVector<R>) -> Vec2<R> {
+        self.kinematics[contact].frictionless_slip_rate()
+            + self.slip_rate_from_other(contact, other)
+    }
+
+    /// The normal force of a contact alone.
+    #[inline(always)]
+    fn normal_only(&self, params: &ModelParams<R>, contact: usize) -> ContactVector<R> {
+        ContactVector::new(self.normals[contact], params.zero(), params.zero())
+    }
+
+    /// The greatest friction of a contact.
+    #[inline(always)]
+    fn friction_limit(&self, contact: usize) -> R {
+        self.materials[contact].friction * self.normals[contact].positive_part()
+    }
+
+    /// The friction of both contacts; `sliding` is that of contacts that slide.
+    #[inline(always)]
+    fn frictions(
+        &self,
+        params: &ModelParams<R>,
+        rolling: [R::Mask; 2],
+        sliding: [Vec2<R>; 2],
+    ) -> [Vec2<R>; 2] {
+        if !(rolling[FIRST] | rolling[SECOND]).any() {
+            return sliding;
+        }
+        let wanted = for_both!(i => {
+            let rate = self.frictionless_slip_rate(i, self.normal_only(params, 1 - i));
+            (-rate).select(rolling[i], sliding[i])
+        });
+        self.solve(params, rolling, wanted)
+    }
+
+    /// The tangential accelerations at both contacts that change the slips of the `held` contacts at the
+    /// `wanted` rates. Those of the other contacts are `wanted` themselves.
+    ///
+    /// The tangential acceleration at a contact changes the slip there equally in both directions
+    /// (1 + lever^2 m/I), so the four equations reduce to two.
+    #[inline(always)]
+    fn solve(
+        &self,
+        params: &ModelParams<R>,
+        held: [R::Mask; 2],
+        wanted: [Vec2<R>; 2],
+    ) -> [Vec2<R>; 2] {
+        let [first, second] = wanted;
+        let [own_first, own_second] = for_both!(i => {
+            let own = self.kinematics[i].slip_compliance(params);
+            own.select(held[i], params.one())
+        });
+        let [on_first, on_second] = for_both!(i => self.coupling(params, i, held[i]));
+        let per_first = params.one() / own_first;
+        let back = on_second.times(Vec2::new(first.x * per_first, first.y * per_first));
+        let right = Vec2::new(second.x - back.x, second.y - back.y);
+        let round = on_second.product_scaled(&on_first, per_first);
+        let matrix = Matrix2 {
+            a: own_second - round.a,
+            b: -round.b,
+            c: -round.c,
+            d: own_second - round.d,
+        };
+        let second = matrix.solve(params, right, own_second);
+        let other = on_first.times(second);
+        let first = Vec2::new(
+            (first.x - other.x) * per_first,
+            (first.y - other.y) * per_first,
+        );
+        [first, second]
+    }
+
+    /// The slip rates at a contact for unit tangential accelerations at the other one, where `held`.
+    #[inline(always)]
+    fn coupling(&self, params: &ModelParams<R>, contact: usize, held: R::Mask) -> Matrix2<R> {
+        let (zero, one) = (params.zero(), params.one());
+        let first = self.slip_rate_from_other(contact, ContactVector::new(zero, one, zero));
+        let second = self.slip_rate_from_other(contact, ContactVector::new(zero, zero, one));
+        Matrix2 {
+            a: first.x.select(held, zero),
+            b: second.x.select(held, zero),
+            c: first.y.select(held, zero),
+            d: second.y.select(held, zero),
+        }
+    }
+
+    /// The derivative of the state, and the linear acceleration from each contact.
+    #[inline(always)]
+    fn derivative(
+        &self,
+        params: &ModelParams<R>,
+        state: &BallState<R>,
+        frictions: [Vec2<R>; 2],
+    ) -> (StateDerivative<R>, [Vec3<R>; 2]) {
+        let [first, second] = for_both!(i => {
+            let force = ContactVector {
+                normal: self.normals[i],
+                tangent: frictions[i],
+            };
+            self.response(i, force)
+        });
+        let linear = first.0.add_scaled(second.0, params.one());
+        let derivative = StateDerivative {
+            velocity_m_s: state.velocity_m_s,
+            acceleration_m_s2: Vec3::new(linear.x, linear.y, linear.z - params.gravity),
+            angular_acceleration_rad_s2: first.1.add_scaled(second.1, params.one()),
+        };
+        (derivative, [first.0, second.0])
+    }
+}
+
+/// A 2 x 2 matrix, row by row.
+struct Matrix2<R> {
+    a: R,
+    b: R,
+    c: R,
+    d: R,
+}
+
+impl<R: Real> Matrix2<R> {
+    #[inline(always)]
+    fn times(&self, v: Vec2<R>) -> Vec2<R> {
+        Vec2::new(self.a * v.x + self.b * v.y, self.c * v.x + self.d * v.y)
+    }
+
+    /// The product `self * right * factor`.
+    #[inline(always)]
+    fn product_scaled(&self, right: &Self, factor: R) -> Self {
+        Self {
+            a: (self.a * right.a + self.b * right.c) * factor,
+            b: (self.a * right.b + self.b * right.d) * factor,
+            c: (self.c * right.a + self.d * right.c) * factor,
+            d: (self.c * right.b + self.d * right.d) * factor,
+        }
+    }
+
+    /// The solution of `self * x = right`. The matrix is singular only if both contact points coincide;
+    /// then one contact does all, with `own` as its coefficient.
+    #[inline(always)]
+    fn solve(&self, params: &ModelParams<R>, right: Vec2<R>, own: R) -> Vec2<R> {
+        let determinant = self.a * self.d - self.b * self.c;
+        let regular = determinant.abs().is_positive();
+        let per = params.one() / determinant.select(regular, own);
+        let numerator = Vec2::new(
+            self.d * right.x - self.b * right.y,
+            self.a * right.y - self.c * right.x,
+        );
+        let numerator = numerator.select(regular, right);
+        Vec2::new(numerator.x * per, numerator.y * per)
+    }
+}
+
+/// Friction of the size `limit` against a direction of slip.
+#[inline(always)]
+fn friction_against<R: Real>(limit: R, direction: Vec2<R>) -> Vec2<R> {
+    Vec2::new(-(limit * direction.x), -(limit * direction.y))
+}
+
+/// Advances a ball in contact with two solids by one step of at most `longest`.
+#[inline(always)]
+pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
+    params: &ModelParams<R>,
+    solids: (&A, &B),
+    state: &mut BallState<R>,
+    friction: &mut [FrictionState<R>; 2],
+    longest: R,
+) -> DoubleContactStep<R> {
+    let start = *state;
+    let mut pair = ContactPair::new(params, solids, state);
+    let parted = for_both!(i => has_parted(&pair.kinematics[i]));
+    let over = parted[FIRST] | parted[SECOND];
+    let no_impulse = Vec3::splat(params.zero());
+    if over.all() {
+        return DoubleContactStep {
+            dt: params.zero(),
+            parted,
+            impulses: [no_impulse; 2],
+        };
+    }
+
+    // 1. Slips that have ended are removed by friction's own impulses.
+    let stuck = for_both!(i => {
+        let slip = pair.kinematics[i].slip();
+        friction[i].rolling | slip.norm_squared().le(friction[i].zero_slip.squared())
+    });
+    let mut impulses = [no_impulse; 2];
+    if (stuck[FIRST] | stuck[SECOND]).any() {
+        impulses = remove_slips(params, solids, state, &mut pair, stuck);
+    }
+
+    // 2. Which contacts roll: the stuck ones whose friction suffices. If it does not suffice for one, that
+    //    one slides, and the other is solved for again.
+    let slips = for_both!(i => pair.kinematics[i].slip());
+    let slip_speeds = for_both!(i => params.zero().select(stuck[i], slips[i].norm()));
+    let limits = for_both!(i => pair.friction_limit(i));
+    let mut rolling = for_both!(i => stuck[i] & !friction[i].exceeded);
+    let mut insufficient = [params.splat_mask(false); 2];
+    // For a contact that does not roll: the direction of its slip, or in which it would slip.
+    let directions = for_both!(i => {
+        let slip_rate = pair.frictionless_slip_rate(i, pair.normal_only(params, 1 - i));
+        let driving = slip_rate.select(stuck[i], slips[i]);
+        let size = driving.norm();
+        let per_size = params.one() / size.select(size.is_positive(), params.one());
+        Vec2::new(driving.x * per_size, driving.y * per_size)
+    });
+    let sliding = for_both!(i => friction_against(limits[i], directions[i]));
+    let mut frictions = pair.frictions(params, rolling, sliding);
+    // At most two passes: each ends the roll of one contact.
+    loop {
+        let [first, second] = for_both!(i => {
+            let excess = frictions[i].norm() - limits[i];
+            excess.select(rolling[i], -params.never)
+        });
+        let fails = [
+            second.le(first) & first.is_positive(),
+            first.lt(second) & second.is_positive(),
+        ];
+        if !(fails[FIRST] | fails[SECOND]).any() {
+            break;
+        }
+        for i in [FIRST, SECOND] {
+            rolling[i] = rolling[i] & !fails[i];
+            insufficient[i] = insufficient[i] | fails[i];
+        }
+        frictions = pair.frictions(params, rolling, sliding);
+    }
+
+    // 3. The step ends at the first event of either contact.
+    let (k1, force_1) = pair.derivative(params, state, frictions);
+    let forces = for_both!(i => {
+        let kinematics = &pair.kinematics[i];
+        let acceleration =
+            pair.axes[i][0].dot(k1.acceleration_m_s2) + kinematics.frame_acceleration();
+        NormalForce::new(&pair.materials[i], kinematics, pair.normals[i], acceleration)
+    });
+    let ends = for_both!(i => {
+        forces[i].time_to_end(params, &pair.materials[i], &pair.kinematics[i])
+    });
+    let end = ends[FIRST].min(ends[SECOND]).at_most(longest);
+    let changes = for_both!(i => {
+        let other = ContactVector {
+            normal: pair.normals[1 - i],
+            tangent: frictions[1 - i],
+        };
+        let slip_rate = pair.frictionless_slip_rate(i, other);
+        let slip_compliance = pair.kinematics[i].slip_compliance(params);
+        let balance = FrictionBalance {
+            slip: slip_speeds[i],
+            slip_rate: slip_rate.dot(directions[i]) - limits[i] * slip_compliance,
+            slip_compliance,
+            reserve: Real::max(limits[i] - frictions[i].norm(), params.splat(ZERO_FORCE_M_S2)),
+            // With two contacts this is hard to predict; the rate of the limit is not.
+            d_need_d_compression_acceleration: params.zero(),
+        };
+        balance.time_to_change(params, pair.materials[i].friction, &forces[i], rolling[i])
+    });
+    let next_event = end.min(changes[FIRST]).min(changes[SECOND]);
+    let dt = Real::max(next_event.time(), params.splat(SHORTEST_STEP_S));
+
+    // 4. The classical RK4 step, in the modes that hold for the whole step.
+    let mode = FrictionMode {
+        rolling,
+        directions,
+        thresholds: for_both!(i => slip_speeds[i] * SLIP_DIRECTION_LOST),
+    };
+    let half = dt * 0.5;
+    let (k2, force_2) = stage(params, solids, &state.euler_step(&k1, half), mode);
+    let (k3, force_3) = stage(params, solids, &state.euler_step(&k2, half), mode);
+    let (k4, force_4) = stage(params, solids, &state.euler_step(&k3, dt), mode);
+    let next = state.runge_kutta_step([&k1, &k2, &k3, &k4], dt);
+    let (sixth, third) = (dt * (1.0 / 6.0), dt * (1.0 / 3.0));
+    for i in [FIRST, SECOND] {
+        impulses[i] = impulses[i]
+            .add_scaled(force_1[i], sixth)
+            .add_scaled(force_2[i], third)
+            .add_scaled(force_3[i], third)
+            .add_scaled(force_4[i], sixth);
+        let ends_slip = changes[i].le(next_event) & !rolling[i];
+        let loading = forces[i].rate.is_positive();
+        let exceeded = (friction[i].exceeded | insufficient[i]) & !loading;
+        let zero_slip = zero_slip_after(ends_slip, slip_speeds[i], SLIP_ENDED_M_S);
+        friction[i] = FrictionState {
+            rolling: friction[i].rolling.select(over, rolling[i]),
+            exceeded: friction[i].exceeded.select(over, exceeded),
+            zero_slip: friction[i].zero_slip.select(over, zero_slip),
+        };
+    }
+    *state = start.select(over, next);
+    DoubleContactStep {
+        dt: params.zero().select(over, dt),
+        parted,
+        impulses,
+    }
+}
+
+/// How friction acts at both contacts throughout a step.
+#[derive(Clone, Copy)]
+struct FrictionMode<R: Real> {
+    rolling: [R::Mask; 2],
+    /// Directions of the slips at the start of the step.
+    directions: [Vec2<R>; 2],
+    /// Slips along these directions below which they are used.
+    thresholds: [R; 2],
+}
+
+/// The derivative at one stage of a step, and the linear acceleration from each contact.
+#[inline(always)]
+fn stage<R: Real, A: Solid<R>, B: Solid<R>>(
+    params: &ModelParams<R>,
+    solids: (&A, &B),
+    state: &BallState<R>,
+    mode: FrictionMode<R>,
+) -> (StateDerivative<R>, [Vec3<R>; 2]) {
+    let pair = ContactPair::new(params, solids, state);
+    let sliding = for_both!(i => {
+        let limit = pair.friction_limit(i);
+        let (slip, initial) = (pair.kinematics[i].slip(), mode.directions[i]);
+        let clear = mode.thresholds[i].lt(slip.dot(initial));
+        let per = params.one() / slip.norm().select(clear, params.one());
+        friction_against(limit, Vec2::new(slip.x * per, slip.y * per).select(clear, initial))
+    });
+    pair.derivative(params, state, pair.frictions(params, mode.rolling, sliding))
+}
+
+/// For how long the ball has rolled on both solids without a break, after a step of `dt`, s.
+#[inline(always)]
+pub(crate) fn rolling_time<R: Real>(friction: &[FrictionState<R>; 2], before: R, dt: R) -> R {
+    (before + dt).select(friction[FIRST].rolling & friction[SECOND].rolling, dt.zero())
+}
+
+/// Removes the slips of the stuck contacts together; returns the impulses per unit of mass.
+#[inline(always)]
+fn remove_slips<R: Real, A: Solid<R>, B: Solid<R>>(
+    params: &ModelParams<R>,
+    solids: (&A, &B),
+    state: &mut BallState<R>,
+    pair: &mut ContactPair<R>,
+    stuck: [R::Mask; 2],
+) -> [Vec3<R>; 2] {
+    let zero = params.zero();
+    let wanted = for_both!(i => (-pair.kinematics[i].slip()).select(stuck[i], Vec2::splat(zero)));
+    let kicks = pair.solve(params, stuck, wanted);
+    let impulses = for_both!(i => {
+        let kick = ContactVector {
+            normal: zero,
+            tangent: kicks[i],
+        };
+        let (linear, angular) = pair.response(i, kick);
+        state.velocity_m_s = state.velocity_m_s.add_scaled(linear, params.one());
+        state.spin_rad_s = state.spin_rad_s.add_scaled(angular, params.one());
+        linear
+    });
+    *pair = ContactPair::new(params, solids, state);
+    impulses
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Physics;
+
+    /// A ball on board and ring, moving and turning.
+    fn pair() -> (ModelParams, ContactPair<f64>) {
+        let params = ModelParams::new(&Physics::paper());
+        let x = params.board.touch_x - 0.001;
+        let off = params.ring.radius - (x * x + 0.01).sqrt();
+        let z = (params.ball_radius * params.ball_radius - off * off).sqrt() - 0.001;
+        let state = BallState {
+            position_m: Vec3::new(x, 0.1, z),
+            velocity_m_s: Vec3::new(-0.3, 0.2, -1.0),
+            spin_rad_s: Vec3::new(3.0, -2.0, 1.0),
+        };
+        let pair = ContactPair::new(&params, (&params.board, &params.ring), &state);
+        (params, pair)
+    }
+
+    #[test]
+    fn prop_held_slips_change_at_the_wanted_rates() {
+        let (params, pair) = pair();
+        let wanted = [Vec2::new(0.7, -0.4), Vec2::new(-0.2, 0.5)];
+        for held in [[true, true], [true, false], [false, true], [false, false]] {
+            let found = pair.solve(&params, held, wanted);
+            for i in [FIRST, SECOND] {
+                let force = |contact: usize| ContactVector {
+                    normal: 0.0,
+                    tangent: found[contact],
+                };
+                let own = pair.slip_rate(i, pair.response(i, force(i)));
+                let other = pair.slip_rate_from_other(i, force(1 - i));
+                let expected = if held[i] { own + other } else { found[i] };
+                assert!((expected - wanted[i]).norm() < 1e-12, "{held:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn prop_a_singular_matrix_leaves_the_work_to_one_contact() {
+        let params = ModelParams::new(&Physics::paper());
+        let [a, b, c, d] = [1.0, 2.0, 2.0, 4.0];
+        assert_eq!(
+            Matrix2 { a, b, c, d }.solve(&params, Vec2::new(3.0, 5.0), 2.0),
+            Vec2::new(1.5, 2.5)
+        );
+    }
+}

@@ -1,0 +1,7 @@
+//! The ball in contact with one or two solids.
+
+pub(crate) mod double;
+pub(crate) mod event_time;
+pub(crate) mod friction;
+pub(crate) mod normal_force;
+pub(crate) mod single;

@@ -1,0 +1,115 @@
+//! The normal force of a contact, and when it ends.
+
+use super::event_time::{EventTime, first_root};
+use super::friction::OVERSHOOT;
+use crate::math::real::Real;
+use crate::model::params::ModelParams;
+use crate::model::solids::{ContactKinematics, Material};
+
+/// Normal acceleration that counts as zero, m/s^2 (a bounce reaches a thousand).
+pub(crate) const ZERO_FORCE_M_S2: f64 = 0.5;
+/// Compression at which an outgoing ball has parted, m.
+const PARTED_M: f64 = 1e-7;
+/// The same for a ball faster than [`FAST_M_S`]: the rest of the way takes microseconds.
+const PARTED_FAST_M: f64 = 2e-5;
+/// Speed away from the solid that counts as fast, m/s.
+const FAST_M_S: f64 = 0.1;
+/// Longest time by which a parting step moves the ball, s.
+pub(crate) const PARTING_STEP_S: f64 = PARTED_FAST_M / FAST_M_S;
+
+/// The normal force of a contact per unit of mass, and its derivatives in time.
+pub(crate) struct NormalForce<R> {
+    /// N, m/s^2.
+    pub(crate) value: R,
+    /// N'.
+    pub(crate) rate: R,
+    /// N''.
+    pub(crate) curve: R,
+    /// u''.
+    pub(crate) compression_acceleration: R,
+}
+
+impl<R: Real> NormalForce<R> {
+    /// `acceleration` is that of the centre along the normal, with all forces and the turning of the
+    /// frame.
+    #[inline(always)]
+    pub(crate) fn new(
+        material: &Material<R>,
+        kinematics: &ContactKinematics<R>,
+        value: R,
+        acceleration: R,
+    ) -> Self {
+        let compression_acceleration = -acceleration;
+        let rate = material.damping * compression_acceleration
+            - material.stiffness * kinematics.velocity.normal;
+        let curve = material.stiffness * compression_acceleration - material.damping * rate;
+        Self {
+            value,
+            rate,
+            curve,
+            compression_acceleration,
+        }
+    }
+
+    /// Time until the force ends: until it is zero (an outgoing ball reaches zero force before zero
+    /// compression) or, where it is zero already or will not be, until the compression is zero.
+    #[inline(always)]
+    pub(crate) fn time_to_end(
+        &self,
+        params: &ModelParams<R>,
+        material: &Material<R>,
+        kinematics: &ContactKinematics<R>,
+    ) -> EventTime<R> {
+        let pressing = params.splat(ZERO_FORCE_M_S2).lt(self.value);
+        let (u, du, ddu) = (
+            kinematics.compression.positive_part(),
+            -kinematics.velocity.normal,
+            self.compression_acceleration,
+        );
+        // Does N + N' t + N'' t^2/2 have a zero ahead?
+        let real = (self.value * self.curve * 2.0).le(self.rate.squared());
+        let falls = self.rate.is_negative() | self.curve.is_negative();
+        let force_ends = pressing & real & falls;
+        let end = first_root(
+            params,
+            self.value.select(force_ends, u),
+            self.rate.select(force_ends, du),
+            self.curve.select(force_ends, ddu),
+        );
+        let time = end.time();
+        let found = time.lt(params.never) & !force_ends;
+        // Where the compression ends: one Newton step on its Taylor polynomial, with u''' = -N' and
+        // u'''' = -N''.
+        let t = time.select(found, params.zero());
+        let d3 = -self.rate;
+        let d4 = -self.curve;
+        let value = u + t * (du + t * (ddu * 0.5 + t * (d3 * (1.0 / 6.0) + t * d4 * (1.0 / 24.0))));
+        let slope = du + t * (ddu + t * (d3 * 0.5 + t * d4 * (1.0 / 6.0)));
+        let refined = EventTime {
+            numerator: value - t * slope,
+            denominator: -slope,
+        };
+        let valid = slope.is_negative() & refined.numerator.is_positive() & found;
+        // Where the force ends: a little beyond it, but not so far that a ball with little damping would
+        // be past its parting.
+        let beyond = Real::min(
+            end.numerator * OVERSHOOT,
+            end.numerator + material.relaxation_time * end.denominator,
+        );
+        let coarse = EventTime {
+            numerator: beyond.select(force_ends, end.numerator),
+            denominator: end.denominator,
+        };
+        refined.select(valid, coarse)
+    }
+}
+
+/// Whether the ball has left the solid: it moves away, and the compression is gone but for what the
+/// parting step makes up.
+#[inline(always)]
+pub(crate) fn has_parted<R: Real>(kinematics: &ContactKinematics<R>) -> R::Mask {
+    let v = kinematics.velocity.normal;
+    let fast = v.splat(FAST_M_S).lt(v);
+    let threshold = v.splat(PARTED_FAST_M).select(fast, v.splat(PARTED_M));
+    v.is_positive() & kinematics.compression.le(threshold)
+}

@@ -1,0 +1,85 @@
+//! One arc of free flight and how it ends.
+
+use super::board_touch::{board_times, entry_from_beside};
+use super::parabola::falling_time;
+use super::ring_search::ring_time;
+use crate::math::real::Real;
+use crate::model::params::ModelParams;
+use crate::model::{BallState, SolidId};
+
+/// The possible ends of an arc of free flight, as times from its start, s. The earliest one happens.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FlightArc<R: Real> {
+    /// The centre falls through `z = -R`.
+    pub(crate) below_ring: R,
+    /// The ball touches a solid; by [`SolidId::index`].
+    pub(crate) touch: [R; SolidId::COUNT],
+    /// The ball overlaps the plane of the board beside the rectangle. It may come onto the rectangle or
+    /// pass behind the face: [`FlightArc::resolve_beside_board`] says which.
+    pub(crate) beside_board: R,
+    /// The search for the ring reached its iteration limit. (Never seen; such a shot is not a miss.)
+    pub(crate) unresolved: R::Mask,
+}
+
+impl<R: Real> FlightArc<R> {
+    /// The ends of the arc that starts at `state`.
+    #[inline(always)]
+    pub(crate) fn new(params: &ModelParams<R>, state: &BallState<R>) -> Self {
+        let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
+        let below_ring = falling_time(params, z, vz, -params.ball_radius).positive_part();
+        let (board, beside_board) = board_times(params, state, below_ring);
+        let horizon = Real::min(Real::min(below_ring, board), beside_board);
+        let (ring, unresolved) = ring_time(params, state, horizon);
+        Self {
+            below_ring,
+            touch: [board, ring],
+            beside_board,
+            unresolved,
+        }
+    }
+
+    /// Time at which the ball touches a solid.
+    #[inline(always)]
+    pub(crate) fn touch_of(&self, solid: SolidId) -> R {
+        self.touch[solid.index()]
+    }
+
+    /// Time of the first touch of any solid, or of the fall below the ring if that is earlier.
+    #[inline(always)]
+    pub(crate) fn first_end(&self) -> R {
+        let mut first = self.below_ring;
+        for touch in self.touch {
+            first = Real::min(first, touch);
+        }
+        first
+    }
+}
+
+impl FlightArc<f64> {
+    /// What the ball touches first, if anything.
+    pub(crate) fn first_touch(&self) -> Option<SolidId> {
+        let until = self.below_ring.min(self.beside_board);
+        let [board, ring] = self.touch;
+        if ring <= until && ring < board {
+            Some(SolidId::Ring)
+        } else if board < until {
+            Some(SolidId::Board)
+        } else {
+            None
+        }
+    }
+
+    /// Follows a ball that comes beside the board before anything else: updates the touches of board and
+    /// ring, and returns the time at which the centre passes behind the face (never, if the ball does not
+    /// come beside the board first).
+    pub(crate) fn resolve_beside_board(&mut self, params: &ModelParams, state: &BallState) -> f64 {
+        if self.beside_board >= self.first_end() {
+            return params.never;
+        }
+        let (enters, behind) = entry_from_beside(params, state, self.beside_board);
+        self.touch[SolidId::Board.index()] = enters;
+        let horizon = self.below_ring.min(enters).min(behind);
+        (self.touch[SolidId::Ring.index()], self.unresolved) = ring_time(params, state, horizon);
+        behind
+    }
+}

@@ -1,0 +1,57 @@
+//! The first touch of the board: the centre reaches the plane `x = R - a`, linear in time.
+
+use super::parabola::{falling_time, rising_time};
+use super::ring_search::MIN_JUMP_S;
+use crate::math::real::Real;
+use crate::model::BallState;
+use crate::model::params::ModelParams;
+use crate::model::solids::Solid;
+
+/// Times at which the ball touches the board, and at which it reaches the plane of the board beside it.
+#[inline(always)]
+pub(super) fn board_times<R: Real>(
+    params: &ModelParams<R>,
+    state: &BallState<R>,
+    end: R,
+) -> (R, R) {
+    let board = &params.board;
+    let (p, v) = (state.position_m, state.velocity_m_s);
+    let approaching = v.x.is_negative();
+    let speed = (-v.x).select(approaching, params.one());
+    let reach = (p.x - board.touch_x) / speed;
+    let overlapping = reach.lt(params.splat(-MIN_JUMP_S));
+    let t = reach.positive_part();
+    let y = p.y + v.y * t;
+    let z = p.z + v.z * t - params.half_gravity * t * t;
+    let on_rectangle =
+        y.abs().lt(board.half_width) & board.bottom_z.lt(z) & z.lt(board.top_z) & !overlapping;
+    let arrives = approaching & t.lt(end);
+    (
+        t.select(arrives & on_rectangle, params.never),
+        t.select(arrives & !on_rectangle, params.never),
+    )
+}
+
+/// For a ball whose centre is beside the board's rectangle at the time `from` of its arc, nearer to the
+/// plane than its radius: the times at which the centre comes in front of the rectangle, and at which it
+/// passes the plane of the face.
+pub(super) fn entry_from_beside(params: &ModelParams, state: &BallState, from: f64) -> (f64, f64) {
+    /// Time after a crossing at which to look: on the edge itself the ball is still beside the rectangle.
+    const PAST_S: f64 = 1e-9;
+    let board = &params.board;
+    let [x, y, z] = state.position_m.into();
+    let v = state.velocity_m_s;
+    let face = ((board.face_x - x) / v.x).max(0.0);
+    let enters = [
+        from,
+        (board.half_width - y) / v.y,
+        (-board.half_width - y) / v.y,
+        falling_time(params, z, v.z, board.top_z),
+        rising_time(params, z, v.z, board.bottom_z),
+    ]
+    .into_iter()
+    .map(|t| t + PAST_S)
+    .filter(|&t| t > from && t < face && board.faces(&state.after_flight(params, t)))
+    .fold(params.never, f64::min);
+    (enters, face)
+}

@@ -1,0 +1,213 @@
+//! The first touch of the ring by a ball in free flight, found with certainty.
+//!
+//! It is the first root of `F(t) = (R_H - D)^2 + z^2 - R^2`, where `D` is the distance from the hoop's
+//! axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. Elsewhere
+//!
+//! ```text
+//! F'' = 2 (v_h^2 + v_z^2 - g z - R_H L^2/D^3),    L = x v_y - y v_x (constant in flight)
+//! ```
+//!
+//! is bounded from below by some `-M`. Then the step `2 F/(sqrt(F'^2 + 2 M F) - F')` never passes a root:
+//! grazes are found, however short. Where M = 0 (most shots) it is Newton's step.
+
+use super::parabola::{falling_time, rising_time};
+use crate::math::real::{Mask, Real};
+use crate::model::BallState;
+use crate::model::params::ModelParams;
+
+/// F at which an approaching ball touches the ring, as a fraction of R^2.
+const TOUCH_TOLERANCE: f64 = 1e-10;
+/// Shortest jump, s; a shorter one is left to the bounded step.
+pub(super) const MIN_JUMP_S: f64 = 1e-9;
+/// Limit on the iterations. The search needs one or two, seldom more than ten.
+const MAX_ITERATIONS: u32 = 200;
+
+/// The horizontal motion of an arc: `D^2 = |p|^2 + 2 (p.v) t + |v|^2 t^2`.
+struct HorizontalMotion<R: Real> {
+    speed_squared: R,
+    /// p.v.
+    dot: R,
+    /// x v_y - y v_x.
+    moment: R,
+    distance_squared: R,
+    /// The ball moves straight up or down.
+    still: R::Mask,
+    per_speed_squared: R,
+    /// Square of the least distance from the axis, and its time.
+    closest_squared: R,
+    closest_time: R,
+}
+
+impl<R: Real> HorizontalMotion<R> {
+    #[inline(always)]
+    fn new(params: &ModelParams<R>, state: &BallState<R>) -> Self {
+        let (p, v) = (state.position_m, state.velocity_m_s);
+        let (zero, one) = (params.zero(), params.one());
+        let speed_squared = v.x.squared() + v.y.squared();
+        let still = speed_squared.le(params.splat(1e-12));
+        let per_speed_squared = one / one.select(still, speed_squared);
+        let dot = p.x * v.x + p.y * v.y;
+        let moment = p.x * v.y - p.y * v.x;
+        Self {
+            speed_squared,
+            dot,
+            moment,
+            distance_squared: p.x.squared() + p.y.squared(),
+            still,
+            per_speed_squared,
+            closest_squared: zero.select(still, moment.squared() * per_speed_squared),
+            closest_time: -(dot * per_speed_squared),
+        }
+    }
+
+    /// Square of half the time that the ball spends within `radius` of the axis; negative if it never
+    /// comes so near.
+    #[inline(always)]
+    fn half_chord_squared(&self, radius: R) -> R {
+        (radius.squared() - self.closest_squared) * self.per_speed_squared
+    }
+
+    #[inline(always)]
+    fn distance(&self, t: R) -> R {
+        ((self.speed_squared * t + self.dot * 2.0) * t + self.distance_squared).sqrt()
+    }
+}
+
+/// The parts of an arc in which no touch is possible, and the bound on F'' elsewhere.
+struct SearchBounds<R> {
+    /// The centre falls through z = R.
+    falls_to_top: R,
+    /// The centre rises through z = -R.
+    rises_to_bottom: R,
+    /// The centre rises through z = R.
+    rises_to_top: R,
+    /// The centre enters and leaves the circle of radius R_H - R.
+    inner_enter: R,
+    inner_leave: R,
+    /// The part of -F''/2 that comes from the curvature of the ring.
+    curvature_bound: R,
+}
+
+impl<R: Real> SearchBounds<R> {
+    #[inline(always)]
+    fn new(
+        params: &ModelParams<R>,
+        motion: &HorizontalMotion<R>,
+        (z, vz): (R, R),
+        falls_to_top: R,
+    ) -> Self {
+        let (ring_radius, ball_radius) = (params.ring.radius, params.ball_radius);
+        let inner = ring_radius - ball_radius;
+        let half_chord = motion.half_chord_squared(inner).positive_part().sqrt();
+        let nearest = Real::max(inner.squared(), motion.closest_squared);
+        Self {
+            falls_to_top,
+            rises_to_bottom: rising_time(params, z, vz, -ball_radius),
+            rises_to_top: rising_time(params, z, vz, ball_radius),
+            inner_enter: (motion.closest_time - half_chord).select(!motion.still, -params.never),
+            inner_leave: (motion.closest_time + half_chord).select(!motion.still, params.never),
+            curvature_bound: ring_radius * motion.moment.squared() / (nearest * nearest.sqrt()),
+        }
+    }
+}
+
+/// Time of the first touch of the ring before `horizon` (else never), and whether the search reached its
+/// iteration limit.
+#[inline(always)]
+pub(super) fn ring_time<R: Real>(
+    params: &ModelParams<R>,
+    state: &BallState<R>,
+    horizon: R,
+) -> (R, R::Mask) {
+    let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
+    let (zero, ball_radius) = (params.zero(), params.ball_radius);
+    let motion = HorizontalMotion::new(params, state);
+    let outer = params.ring.radius + ball_radius;
+    let outer_chord_squared = motion.half_chord_squared(outer);
+    let half_chord = outer_chord_squared.positive_part().sqrt();
+    let enters = motion.closest_time - half_chord;
+    let leaves = (motion.closest_time + half_chord).select(!motion.still, params.never);
+    let out_of_reach = !motion.still & outer_chord_squared.is_negative()
+        | motion.still & outer.squared().lt(motion.distance_squared);
+    let stop = Real::min(horizon, leaves);
+    let falls_to_top = falling_time(params, z, vz, ball_radius);
+    let mut t = enters.select(!motion.still, zero).positive_part();
+    // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
+    // and still rising then (a release from beneath) starts when it has come near.
+    let z_then = z + vz * t - params.half_gravity * t * t;
+    t = Real::max(falls_to_top, t).select(ball_radius.lt(z_then), t);
+
+    let mut searching = t.lt(stop) & !out_of_reach;
+    let mut found = params.never;
+    let mut iterations = 0;
+    if searching.any() {
+        let bounds = SearchBounds::new(params, &motion, (z, vz), falls_to_top);
+        while searching.any() && iterations < MAX_ITERATIONS {
+            iterations += 1;
+            let (touches, next) = search_step(params, &motion, &bounds, (z, vz), t);
+            let touches = touches & searching;
+            found = t.select(touches, found);
+            t = next.select(searching, t);
+            searching = searching & !touches & t.lt(stop);
+        }
+    }
+    (found, searching)
+}
+
+/// Whether the ball touches the ring at the time `t`, and the next time to look at.
+#[inline(always)]
+fn search_step<R: Real>(
+    params: &ModelParams<R>,
+    motion: &HorizontalMotion<R>,
+    bounds: &SearchBounds<R>,
+    (z, vz): (R, R),
+    t: R,
+) -> (R::Mask, R) {
+    let (zero, ball_radius) = (params.zero(), params.ball_radius);
+    let z_t = z + vz * t - params.half_gravity * t * t;
+    let vz_t = vz - params.gravity * t;
+    let distance = motion.distance(t);
+    let inward = params.ring.radius - distance;
+    let value = inward.squared() + z_t.squared() - ball_radius.squared();
+    let half_slope = z_t * vz_t
+        - inward * (motion.speed_squared * t + motion.dot)
+            / Real::max(distance, ball_radius * 1e-3);
+    let fall_squared = zero.select(vz_t.is_positive(), vz_t.squared());
+    let half_bound = (bounds.curvature_bound + params.gravity * ball_radius
+        - motion.speed_squared
+        - fall_squared)
+        .positive_part();
+
+    // F + 2 half_slope s - half_bound s^2 >= 0 up to the step s. The small overlap that a parting leaves
+    // counts as none.
+    let root = (half_slope.squared() + half_bound * value.positive_part()).sqrt();
+    let closing = half_slope.le(zero);
+    let bounded = half_bound.is_positive();
+    let numerator = value.select(closing, (half_slope + root).select(bounded, params.never));
+    let denominator = (root - half_slope)
+        .select(closing, half_bound.select(bounded, params.one()));
+    let safe = t + numerator / denominator;
+    let touches = closing & value.le(ball_radius.squared() * TOUCH_TOLERANCE);
+
+    // Jumps over parts where no touch is possible.
+    let below = z_t.lt(-ball_radius) & vz_t.is_positive();
+    let inside = distance.lt(params.ring.radius - ball_radius);
+    let above = ball_radius.lt(z_t);
+    let jump = Real::max(
+        Real::max(
+            bounds.falls_to_top.select(above, zero),
+            bounds.rises_to_bottom.select(below, zero),
+        ),
+        bounds.inner_leave.select(inside, zero),
+    );
+    let jumps = (t + MIN_JUMP_S).lt(jump);
+    // The bound holds up to the inner circle and, for a rising ball, up to z = R. Beyond them comes a part
+    // to jump over.
+    let reaches_inner = t.lt(bounds.inner_enter) & bounds.inner_enter.lt(safe);
+    let reaches_top =
+        t.lt(bounds.rises_to_top) & bounds.rises_to_top.lt(safe) & !reaches_inner;
+    let step = bounds
+        .inner_leave
+        .select(reaches_inner, bounds.falls_to_top.select(reaches_top, safe));
+    (touches, jump.select(jumps, step))
+}

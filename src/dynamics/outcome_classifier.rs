@@ -1,0 +1,149 @@
+//! Derives the full [`Outcome`] of a shot from what an observer sees: how it was made or missed, its entry
+//! and its apex.
+
+use super::observer::{Impulses, Observer};
+use super::outcome::{Ending, Entry, Outcome, OutcomeKind, Verdict};
+use crate::math::vector::Vec3;
+use crate::model::params::ModelParams;
+use crate::model::{BallState, SolidId};
+
+/// Collects what an [`Outcome`] has beyond the [`Verdict`].
+pub(crate) struct OutcomeClassifier {
+    ring_radius_m: f64,
+    /// Unit vector on the floor from the release to the hoop.
+    towards_hoop: (f64, f64),
+    first_contact: Option<SolidId>,
+    entry: Option<Entry>,
+    apex_m: f64,
+    was_inside: bool,
+    board_point_m: Option<(f64, f64, f64)>,
+    /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop.
+    aim_m: Option<(f64, f64)>,
+    /// The first contact was with the board, and the flight after it has not come yet.
+    awaits_flight_off_board: bool,
+}
+
+impl OutcomeClassifier {
+    pub(crate) fn new(ring_radius_m: f64, start: &BallState) -> Self {
+        let [x, y, z] = start.position_m.into();
+        let distance = (x * x + y * y).sqrt();
+        let towards_hoop = if distance > 0.0 {
+            (-x / distance, -y / distance)
+        } else {
+            (-1.0, 0.0)
+        };
+        Self {
+            ring_radius_m,
+            towards_hoop,
+            first_contact: None,
+            entry: None,
+            apex_m: z,
+            was_inside: false,
+            board_point_m: None,
+            aim_m: None,
+            awaits_flight_off_board: false,
+        }
+    }
+
+    fn record_entry(&mut self, (x, y): (f64, f64), velocity: Vec3<f64>) {
+        let horizontal = (velocity.x * velocity.x + velocity.y * velocity.y).sqrt();
+        self.entry = Some(Entry {
+            angle_rad: libm::atan2(-velocity.z, horizontal),
+            offset_m: (x, y),
+        });
+        self.was_inside |= (x * x + y * y).sqrt() < self.ring_radius_m;
+    }
+
+    /// The point [`OutcomeClassifier::aim_m`] relative to the hoop's centre: beyond it and to its right,
+    /// facing the hoop (a bank shot: the board), m.
+    fn aim_beyond_and_right(&self) -> (f64, f64) {
+        let (x, y) = self.aim_m.unwrap_or((0.0, 0.0));
+        let (ahead_x, ahead_y) = self.towards_hoop;
+        match self.first_contact {
+            Some(SolidId::Board) => (x, y),
+            _ => (x * ahead_x + y * ahead_y, x * ahead_y - y * ahead_x),
+        }
+    }
+
+    fn kind_of_miss(&self, verdict: &Verdict) -> OutcomeKind {
+        if verdict.ending == Ending::BehindBoard {
+            return OutcomeKind::OverBoard;
+        }
+        if self.was_inside {
+            return OutcomeKind::InAndOut;
+        }
+        if self.first_contact.is_none() {
+            return OutcomeKind::Airball;
+        }
+        let (beyond, right) = self.aim_beyond_and_right();
+        if right.abs() > beyond.abs() {
+            OutcomeKind::Wide
+        } else if beyond > 0.0 {
+            OutcomeKind::Long
+        } else {
+            OutcomeKind::Short
+        }
+    }
+
+    pub(crate) fn outcome(&self, verdict: Verdict) -> Outcome {
+        let kind = match verdict.ending {
+            Ending::Unresolved => OutcomeKind::Unresolved,
+            Ending::Lodged | Ending::TimeLimit => OutcomeKind::Lodged,
+            _ if verdict.made => OutcomeKind::of_made(&verdict.contacts),
+            _ => self.kind_of_miss(&verdict),
+        };
+        Outcome {
+            verdict,
+            kind,
+            entry: self.entry,
+            apex_m: self.apex_m,
+            board_point_m: self.board_point_m,
+            right_of_centre_m: self.aim_beyond_and_right().1,
+        }
+    }
+}
+
+impl Observer for OutcomeClassifier {
+    fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, start: &BallState) {
+        let (p, v) = (start.position_m, start.velocity_m_s);
+        let top = v.z / params.gravity;
+        if top > 0.0 && top < dt {
+            self.apex_m = self.apex_m.max(p.z + 0.5 * v.z * top);
+        }
+        let end = start.after_flight(params, dt);
+        self.apex_m = self.apex_m.max(end.position_m.z);
+        let square = v.z * v.z + 2.0 * params.gravity * p.z;
+        if square >= 0.0 {
+            let t = (v.z + square.sqrt()) / params.gravity;
+            let crossing = (p.x + v.x * t, p.y + v.y * t);
+            let is_first_flight = self.aim_m.is_none() && self.first_contact.is_none();
+            if is_first_flight || self.awaits_flight_off_board {
+                self.aim_m = Some(crossing);
+            }
+            if t > 0.0 && t <= dt {
+                self.record_entry(crossing, Vec3::new(v.x, v.y, v.z - params.gravity * t));
+            }
+        }
+        self.awaits_flight_off_board = false;
+    }
+
+    fn touch(&mut self, _t: f64, solid: SolidId, state: &BallState) {
+        if solid == SolidId::Board && self.board_point_m.is_none() {
+            let [x, y, z] = state.position_m.into();
+            self.board_point_m = Some((x, y, z));
+        }
+        if self.first_contact.is_none() {
+            self.first_contact = Some(solid);
+            self.awaits_flight_off_board = solid == SolidId::Board;
+        }
+    }
+
+    fn step(&mut self, _t: f64, _dt: f64, states: (&BallState, &BallState), _impulses: Impulses) {
+        let (before, after) = states;
+        let p = after.position_m;
+        self.apex_m = self.apex_m.max(p.z);
+        if before.position_m.z > 0.0 && p.z <= 0.0 {
+            self.record_entry((p.x, p.y), after.velocity_m_s);
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Numbers, vectors and distributions: mathematics without physics.
+
+pub mod grid;
+pub mod normal_distribution;
+mod operators;
+pub(crate) mod real;
+pub(crate) mod simd;
+pub mod sobol;
+pub(crate) mod unrolled;
+pub mod vector;

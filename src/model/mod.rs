@@ -1,0 +1,14 @@
+//! The physical model: constants, geometry of the solids, and the state of the ball.
+
+mod ball_state;
+pub mod court;
+pub(crate) mod params;
+mod physics;
+mod restitution;
+pub(crate) mod solids;
+
+pub use ball_state::BallState;
+pub(crate) use ball_state::StateDerivative;
+pub use physics::{Physics, PhysicsError};
+pub use restitution::{contact_time_s, damping_for_restitution_kg_s, restitution_of_damping};
+pub use solids::SolidId;

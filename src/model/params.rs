@@ -1,0 +1,95 @@
+//! The constants of [`Physics`] in the form that the equations use: per unit of ball mass, and one copy
+//! for each lane.
+
+use super::physics::Physics;
+use super::solids::{Board, Material, Ring, SolidId};
+use crate::math::real::Real;
+
+/// The parameters of the equations of motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ModelParams<R = f64> {
+    /// Radius R of the ball, m.
+    pub(crate) ball_radius: R,
+    /// m/I, 1/m^2.
+    pub(crate) mass_over_inertia: R,
+    /// g, m/s^2.
+    pub(crate) gravity: R,
+    pub(crate) half_gravity: R,
+    /// 1/g, s^2/m.
+    pub(crate) per_gravity: R,
+    pub(crate) board: Board<R>,
+    pub(crate) ring: Ring<R>,
+    /// Time of an event that will not happen, s.
+    pub(crate) never: R,
+}
+
+impl ModelParams {
+    /// The parameters of a valid physics.
+    pub(crate) fn new(physics: &Physics) -> Self {
+        let radius = physics.ball_radius_m;
+        let inertia = physics.inertia_ratio * radius * radius;
+        let half_height = 0.5 * physics.board_height_m;
+        let material = |_: SolidId| Material {
+            stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
+            damping: physics.damping_kg_s / physics.ball_mass_kg,
+            relaxation_time: physics.damping_kg_s / physics.stiffness_n_m,
+            friction: physics.friction,
+        };
+        Self {
+            ball_radius: radius,
+            mass_over_inertia: 1.0 / inertia,
+            gravity: physics.gravity_m_s2,
+            half_gravity: 0.5 * physics.gravity_m_s2,
+            per_gravity: 1.0 / physics.gravity_m_s2,
+            board: Board {
+                touch_x: radius - physics.board_distance_m,
+                face_x: -physics.board_distance_m,
+                half_width: 0.5 * physics.board_width_m,
+                bottom_z: physics.board_centre_height_m - half_height,
+                top_z: physics.board_centre_height_m + half_height,
+                material: material(SolidId::Board),
+            },
+            ring: Ring {
+                radius: physics.ring_radius_m,
+                material: material(SolidId::Ring),
+            },
+            never: 1e9,
+        }
+    }
+
+    /// The same parameters in every lane; `splat` makes the lanes.
+    #[inline(always)]
+    pub(crate) fn map<R: Real>(&self, splat: impl Fn(f64) -> R) -> ModelParams<R> {
+        ModelParams {
+            ball_radius: splat(self.ball_radius),
+            mass_over_inertia: splat(self.mass_over_inertia),
+            gravity: splat(self.gravity),
+            half_gravity: splat(self.half_gravity),
+            per_gravity: splat(self.per_gravity),
+            board: self.board.map(&splat),
+            ring: self.ring.map(&splat),
+            never: splat(self.never),
+        }
+    }
+}
+
+impl<R: Real> ModelParams<R> {
+    /// `value` in every lane.
+    #[inline(always)]
+    pub(crate) fn splat(&self, value: f64) -> R {
+        self.gravity.splat(value)
+    }
+    #[inline(always)]
+    pub(crate) fn zero(&self) -> R {
+        self.gravity.zero()
+    }
+    #[inline(always)]
+    pub(crate) fn one(&self) -> R {
+        self.gravity.one()
+    }
+    /// `value` in every lane of a mask.
+    #[inline(always)]
+    pub(crate) fn splat_mask(&self, value: bool) -> R::Mask {
+        self.gravity.splat_mask(value)
+    }
+}

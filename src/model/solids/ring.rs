@@ -1,0 +1,194 @@
+//! The ring: a circle of radius R_H about the origin, without thickness.
+
+use super::contact_kinematics::{ContactKinematics, ContactVector};
+use super::solid::{
+    Approach, ContactFrame, GapPolynomial, Material, Solid, SolidId, TOUCH_GAP_M,
+};
+use crate::math::real::{Mask, Real};
+use crate::math::vector::{RealVector, Vec2, Vec3};
+use crate::model::ball_state::BallState;
+use crate::model::params::ModelParams;
+
+/// The ring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ring<R = f64> {
+    /// Radius R_H of the circle, m.
+    pub(crate) radius: R,
+    pub(crate) material: Material<R>,
+}
+
+impl Ring {
+    #[inline(always)]
+    pub(crate) fn map<R: Real>(&self, splat: &impl Fn(f64) -> R) -> Ring<R> {
+        Ring {
+            radius: splat(self.radius),
+            material: self.material.map(splat),
+        }
+    }
+}
+
+/// The angles of the hoop coordinates (Eq. 6).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RingFrame<R> {
+    cos_theta: R,
+    sin_theta: R,
+    cos_phi: R,
+    sin_phi: R,
+}
+
+impl<R: Real> RingFrame<R> {
+    /// Components along (u_n, u_phi, u_theta) of a vector in space.
+    #[inline(always)]
+    fn from_space(self, v: Vec3<R>) -> ContactVector<R> {
+        let outward = v.x * self.cos_theta + v.y * self.sin_theta;
+        ContactVector::new(
+            v.z * self.sin_phi - outward * self.cos_phi,
+            v.z * self.cos_phi + outward * self.sin_phi,
+            v.y * self.cos_theta - v.x * self.sin_theta,
+        )
+    }
+}
+
+impl<R: Real> ContactFrame<R> for RingFrame<R> {
+    #[inline(always)]
+    fn to_space(self, vector: ContactVector<R>) -> Vec3<R> {
+        let (along_phi, along_theta) = (vector.tangent.x, vector.tangent.y);
+        let outward = along_phi * self.sin_phi - vector.normal * self.cos_phi;
+        Vec3::new(
+            outward * self.cos_theta - along_theta * self.sin_theta,
+            outward * self.sin_theta + along_theta * self.cos_theta,
+            vector.normal * self.sin_phi + along_phi * self.cos_phi,
+        )
+    }
+
+    #[inline(always)]
+    fn tangent_to_space(self, tangent: Vec2<R>) -> Vec3<R> {
+        let outward = tangent.x * self.sin_phi;
+        Vec3::new(
+            outward * self.cos_theta - tangent.y * self.sin_theta,
+            outward * self.sin_theta + tangent.y * self.cos_theta,
+            tangent.x * self.cos_phi,
+        )
+    }
+}
+
+/// The ring as seen by a ball on another solid.
+#[derive(Clone, Copy)]
+pub(crate) struct RingApproach<R: Real> {
+    /// The ball may reach the ring within a step; the other fields are valid only then.
+    near: R::Mask,
+    gap: R,
+    rate: R,
+    frame_acceleration: R,
+    normal: Vec3<R>,
+}
+
+impl<R: Real> Approach<R> for RingApproach<R> {
+    #[inline(always)]
+    fn has_arrived(&self) -> R::Mask {
+        self.near & self.gap.le(self.gap.splat(TOUCH_GAP_M)) & self.rate.is_negative()
+    }
+
+    #[inline(always)]
+    fn closing_gap(
+        &self,
+        _state: &BallState<R>,
+        acceleration: Vec3<R>,
+    ) -> Option<GapPolynomial<R>> {
+        if !self.near.any() {
+            return None;
+        }
+        Some(GapPolynomial {
+            relevant: self.near,
+            gap: Real::max(self.gap, self.gap.splat(TOUCH_GAP_M)),
+            rate: self.rate,
+            curve: self.normal.dot(acceleration) + self.frame_acceleration,
+        })
+    }
+}
+
+impl<R: Real> Solid<R> for Ring<R> {
+    type Frame = RingFrame<R>;
+    type Approach = RingApproach<R>;
+    const ID: SolidId = SolidId::Ring;
+
+    #[inline(always)]
+    fn material(&self) -> &Material<R> {
+        &self.material
+    }
+
+    #[inline(always)]
+    fn contact(
+        &self,
+        params: &ModelParams<R>,
+        state: &BallState<R>,
+    ) -> (ContactKinematics<R>, RingFrame<R>) {
+        let [x, y, z] = state.position_m.into();
+        let axis = (x.squared() + y.squared()).sqrt();
+        let inward = self.radius - axis;
+        let lever = (inward.squared() + z.squared()).sqrt();
+        // 1/axis and 1/lever with a single division.
+        let per_both = params.one() / (axis * lever);
+        let (per_axis, per_lever) = (per_both * lever, per_both * axis);
+        let frame = RingFrame {
+            cos_theta: x * per_axis,
+            sin_theta: y * per_axis,
+            cos_phi: inward * per_lever,
+            sin_phi: z * per_lever,
+        };
+        let kinematics = ContactKinematics {
+            compression: params.ball_radius - lever,
+            lever,
+            velocity: frame.from_space(state.velocity_m_s),
+            spin: frame.from_space(state.spin_rad_s),
+            gravity: ContactVector::new(
+                -params.gravity * frame.sin_phi,
+                -params.gravity * frame.cos_phi,
+                params.zero(),
+            ),
+            curvature_1: per_lever,
+            curvature_2: -frame.cos_phi * per_axis,
+        };
+        (kinematics, frame)
+    }
+
+    /// The ring is closed: every ball has a nearest point on it.
+    #[inline(always)]
+    fn faces(&self, _state: &BallState<R>) -> R::Mask {
+        self.radius.splat_mask(true)
+    }
+
+    #[inline(always)]
+    fn approach(
+        &self,
+        params: &ModelParams<R>,
+        state: &BallState<R>,
+        max_acceleration: R,
+        longest: R,
+    ) -> RingApproach<R> {
+        let v = state.velocity_m_s;
+        let max_speed = v.x.abs() + v.y.abs() + v.z.abs();
+        let max_path = (max_speed + max_acceleration * longest * 0.5) * longest;
+        let inward = self.radius - state.axis_distance_squared().sqrt();
+        let distance_squared = inward.squared() + state.position_m.z.squared();
+        let near = distance_squared.le((params.ball_radius + max_path).squared());
+        let zero = params.zero();
+        if !near.any() {
+            return RingApproach {
+                near,
+                gap: zero,
+                rate: zero,
+                frame_acceleration: zero,
+                normal: Vec3::splat(zero),
+            };
+        }
+        let (kinematics, frame) = self.contact(params, state);
+        RingApproach {
+            near,
+            gap: -kinematics.compression,
+            rate: kinematics.velocity.normal,
+            frame_acceleration: kinematics.frame_acceleration(),
+            normal: frame.to_space(ContactVector::new(params.one(), zero, zero)),
+        }
+    }
+}

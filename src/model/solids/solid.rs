@@ -1,0 +1,133 @@
+//! What every solid provides.
+
+use super::contact_kinematics::{ContactKinematics, ContactVector};
+use crate::math::real::Real;
+use crate::math::vector::{Vec2, Vec3};
+use crate::model::ball_state::BallState;
+use crate::model::params::ModelParams;
+use serde::Serialize;
+
+/// The solids by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SolidId {
+    /// The backboard.
+    Board,
+    /// The ring.
+    Ring,
+}
+
+impl SolidId {
+    /// Number of solids.
+    pub const COUNT: usize = 2;
+    /// Every solid, in the order of their indices.
+    pub const ALL: [Self; Self::COUNT] = [Self::Board, Self::Ring];
+
+    /// The name in tables and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Board => "board",
+            Self::Ring => "ring",
+        }
+    }
+
+    /// Position in [`SolidId::ALL`].
+    pub(crate) const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// The contact law between the ball and a solid, per unit of ball mass.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Material<R> {
+    /// k/m, 1/s^2.
+    pub(crate) stiffness: R,
+    /// c/m, 1/s.
+    pub(crate) damping: R,
+    /// c/k, s: about the time from zero force (N = 0) to zero compression (u = 0) of an outgoing ball.
+    pub(crate) relaxation_time: R,
+    /// Coefficient of kinetic friction mu.
+    pub(crate) friction: R,
+}
+
+impl Material<f64> {
+    #[inline(always)]
+    pub(super) fn map<R: Real>(&self, splat: &impl Fn(f64) -> R) -> Material<R> {
+        Material {
+            stiffness: splat(self.stiffness),
+            damping: splat(self.damping),
+            relaxation_time: splat(self.relaxation_time),
+            friction: splat(self.friction),
+        }
+    }
+}
+
+/// Directions of a contact frame in space.
+pub(crate) trait ContactFrame<R: Real>: Copy {
+    /// x, y, z components of a vector given along (n, 1, 2).
+    fn to_space(self, vector: ContactVector<R>) -> Vec3<R>;
+
+    /// x, y, z components of a tangential vector given along (1, 2).
+    fn tangent_to_space(self, tangent: Vec2<R>) -> Vec3<R>;
+}
+
+/// The approach of a ball to a solid that it does not touch yet, for the next step of a contact.
+pub(crate) trait Approach<R: Real> {
+    /// Whether the ball has reached the solid.
+    fn has_arrived(&self) -> R::Mask;
+
+    /// How the gap closes from `state` under an acceleration of the centre; `None` if it cannot close within
+    /// the step in any lane. `state` is that of the approach, but the contact may have removed its slip.
+    fn closing_gap(
+        &self,
+        state: &BallState<R>,
+        acceleration: Vec3<R>,
+    ) -> Option<GapPolynomial<R>>;
+}
+
+/// The gap to a solid as `gap + rate t + curve t^2/2`, valid where `relevant` holds.
+pub(crate) struct GapPolynomial<R: Real> {
+    pub(crate) relevant: R::Mask,
+    pub(crate) gap: R,
+    pub(crate) rate: R,
+    pub(crate) curve: R,
+}
+
+/// A rigid body that the ball can touch.
+pub(crate) trait Solid<R: Real>: Copy {
+    /// Directions of the contact frame in space.
+    type Frame: ContactFrame<R>;
+    /// The approach of a ball that touches another solid.
+    type Approach: Approach<R>;
+    /// Its name.
+    const ID: SolidId;
+
+    /// The contact law with the ball.
+    fn material(&self) -> &Material<R>;
+
+    /// Position and motion of the ball relative to the nearest point of the solid, in the frame of the
+    /// contact.
+    fn contact(
+        &self,
+        params: &ModelParams<R>,
+        state: &BallState<R>,
+    ) -> (ContactKinematics<R>, Self::Frame);
+
+    /// Whether the nearest point lies on the solid: a ball whose centre is beside the board's rectangle
+    /// does not touch it.
+    fn faces(&self, state: &BallState<R>) -> R::Mask;
+
+    /// The approach of a ball that touches another solid, over a step of at most `longest`, during which
+    /// its acceleration is at most `max_acceleration`.
+    fn approach(
+        &self,
+        params: &ModelParams<R>,
+        state: &BallState<R>,
+        max_acceleration: R,
+        longest: R,
+    ) -> Self::Approach;
+}
+
+/// Gap at which an approached solid counts as touched, m.
+pub(crate) const TOUCH_GAP_M: f64 = 1e-7;

@@ -1,0 +1,148 @@
+//! Colours on the court, seen from above: the hoop at the top, the shooter's right on the right.
+
+use super::axes::Axes;
+use super::colormaps::{NO_VALUE, Rgb, hex};
+use super::colour_key::{ColourKey, draw_legend};
+use super::court_lines::draw_court_lines;
+use super::svg::{INK, Svg};
+use crate::model::Physics;
+use crate::model::court::Court;
+use crate::units::UnitSystem;
+use std::collections::BTreeSet;
+
+/// Width of the axes, px.
+const AXES_WIDTH: f64 = 400.0;
+/// Space left of the axes for the numbers, and right of them for the key, px.
+const SPACE_LEFT_RIGHT: (f64, f64) = (70.0, 120.0);
+/// Space above and below the axes, px.
+const SPACE_ABOVE_BELOW: (f64, f64) = (34.0, 52.0);
+
+/// A coloured spot on the court.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColouredSpot {
+    /// x, from the board towards midcourt, m.
+    pub x_m: f64,
+    /// y, across, m.
+    pub y_m: f64,
+    /// Its colour; `None` if it has no value.
+    pub colour: Option<Rgb>,
+}
+
+/// What all maps of a plot share.
+#[derive(Clone, Copy, Debug)]
+pub struct CourtMap<'a> {
+    /// The lines of the court.
+    pub court: &'a Court,
+    /// The board and the ring.
+    pub physics: &'a Physics,
+    /// Units of the axes.
+    pub units: UnitSystem,
+    /// Distance between neighbouring spots, m; `None` if the spots are not on a square grid.
+    pub step_m: Option<f64>,
+    /// Greatest x of a spot, m.
+    pub far_x_m: f64,
+}
+
+impl CourtMap<'_> {
+    /// The axes of a map, in its units, whose upper left corner is `corner`.
+    fn axes(&self, corner: (f64, f64)) -> Axes {
+        let corner = (
+            corner.0 + SPACE_LEFT_RIGHT.0,
+            corner.1 + SPACE_ABOVE_BELOW.0,
+        );
+        let (_, unit_m) = self.units.length();
+        let court = self.court;
+        let far = (self.far_x_m + 1.0).min(court.half_line_x_m);
+        let across = (-court.half_width_m / unit_m, court.half_width_m / unit_m);
+        let along = (far / unit_m, court.baseline_x_m / unit_m);
+        Axes::to_scale(corner, AXES_WIDTH, across, along)
+    }
+
+    /// Size of a map with its axes and its key, px.
+    #[must_use]
+    pub fn size(&self) -> (f64, f64) {
+        let axes = self.axes((0.0, 0.0));
+        (
+            SPACE_LEFT_RIGHT.0 + axes.size.0 + SPACE_LEFT_RIGHT.1,
+            SPACE_ABOVE_BELOW.0 + axes.size.1 + SPACE_ABOVE_BELOW.1,
+        )
+    }
+
+    /// Draws a map whose upper left corner is `corner`.
+    pub fn draw(
+        &self,
+        svg: &mut Svg,
+        corner: (f64, f64),
+        title: &str,
+        spots: &[ColouredSpot],
+        key: &ColourKey<'_>,
+    ) {
+        let axes = self.axes(corner);
+        let (long, unit_m) = self.units.length();
+        svg.clipped(axes.corner, axes.size, |svg| {
+            for spot in spots {
+                self.draw_spot(svg, &axes, spot);
+            }
+            draw_court_lines(svg, &axes, unit_m, self.court, self.physics);
+        });
+        axes.draw(
+            svg,
+            title,
+            &format!("across, right facing the board ({long})"),
+            &format!("from the hoop's centre ({long})"),
+        );
+        let (right, _) = axes.lower_right();
+        let beside = (right + 16.0, axes.corner.1 + 18.0);
+        match key {
+            ColourKey::Scale(scale) => {
+                scale.draw(svg, beside, (axes.size.1 - 40.0).min(220.0));
+            }
+            ColourKey::Legend(names) => draw_legend(svg, beside, names),
+        }
+    }
+
+    /// A square of the grid, or a circle if there is no grid.
+    fn draw_spot(&self, svg: &mut Svg, axes: &Axes, spot: &ColouredSpot) {
+        let (_, unit_m) = self.units.length();
+        let colour = hex(spot.colour.unwrap_or(NO_VALUE));
+        let at = axes.pixel((spot.y_m / unit_m, spot.x_m / unit_m));
+        if let Some(step_m) = self.step_m {
+            let side = axes.pixels_of_length(step_m / unit_m);
+            // Slightly larger than the cell, or thin gaps would show between neighbours.
+            let corner = (at.0 - 0.5 * side - 0.1, at.1 - 0.5 * side - 0.1);
+            let style = format!("fill=\"{colour}\" shape-rendering=\"crispEdges\"");
+            svg.rect(corner, (side + 0.2, side + 0.2), &style);
+        } else {
+            let style = format!("fill=\"{colour}\" stroke=\"{INK}\" stroke-width=\"0.5\"");
+            svg.circle(at, 6.0, &style);
+        }
+    }
+
+    /// Outlines an area of grid spots (x, y), m: draws the sides of its squares that have no neighbour in
+    /// the area. Without a grid, draws nothing.
+    pub fn draw_outline(&self, svg: &mut Svg, corner: (f64, f64), area: &[(f64, f64)]) {
+        let Some(step_m) = self.step_m else { return };
+        let axes = self.axes(corner);
+        let (_, unit_m) = self.units.length();
+        let index = |v: f64| (v / step_m).round() as i64;
+        let cells: BTreeSet<(i64, i64)> = area.iter().map(|&(x, y)| (index(x), index(y))).collect();
+        let pixel = |i: f64, j: f64| axes.pixel((j * step_m / unit_m, i * step_m / unit_m));
+        let style =
+            format!("stroke=\"{INK}\" stroke-width=\"2\" fill=\"none\" stroke-linecap=\"square\"");
+        svg.clipped(axes.corner, axes.size, |svg| {
+            for &(i, j) in &cells {
+                let (x, y) = (i as f64, j as f64);
+                for (neighbour, from, to) in [
+                    ((i - 1, j), (x - 0.5, y - 0.5), (x - 0.5, y + 0.5)),
+                    ((i + 1, j), (x + 0.5, y - 0.5), (x + 0.5, y + 0.5)),
+                    ((i, j - 1), (x - 0.5, y - 0.5), (x + 0.5, y - 0.5)),
+                    ((i, j + 1), (x - 0.5, y + 0.5), (x + 0.5, y + 0.5)),
+                ] {
+                    if !cells.contains(&neighbour) {
+                        svg.polyline([pixel(from.0, from.1), pixel(to.0, to.1)], &style);
+                    }
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,23 @@
+//! Plots as SVG and PNG: maps of the court, maps of the releases, and single shots.
+//!
+//! The same input gives the same bytes on every machine and with any number of threads.
+
+pub mod axes;
+pub mod bank_direct_release_map;
+pub mod colormaps;
+pub mod colour_key;
+mod court_lines;
+pub mod court_map;
+pub mod paper_figures;
+pub mod plot;
+pub mod plotted_shot;
+mod polyline_thinning;
+pub mod probability_curves;
+pub mod rasterise;
+pub mod release_map;
+pub mod shot_views;
+pub mod svg;
+pub mod sweep_bank_direct_map;
+pub mod sweep_best_shot_maps;
+pub mod sweep_difference_map;
+pub mod sweep_results;

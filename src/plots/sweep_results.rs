@@ -1,0 +1,181 @@
+//! The results of a sweep by spot, as its plots need them.
+
+use super::colormaps::{NOT_SIGNIFICANT, Rgb, diverging};
+use super::colour_key::ColourKey;
+use super::court_map::{ColouredSpot, CourtMap};
+use super::svg::{Svg, shortened};
+use crate::analysis::sensitivity::Difference;
+use crate::best_shot::ShotKind;
+use crate::model::court::Court;
+use crate::sweep::columns;
+use crate::sweep::jobs::Jobs;
+use crate::sweep::result_row::ResultRow;
+use crate::sweep::{CourtSpot, Region, SweepConfig};
+use std::collections::BTreeMap;
+
+/// A difference is significant if it exceeds this many of its standard errors.
+pub(super) const SIGNIFICANT_SIGMAS: f64 = 2.0;
+
+/// The results at one spot.
+pub(super) struct SpotResults {
+    pub(super) spot: CourtSpot,
+    /// One for each kind of the sweep; `None` if the job has no result yet.
+    rows: Vec<Option<ResultRow>>,
+}
+
+impl SpotResults {
+    /// The row with the largest P of all kinds.
+    pub(super) fn best(&self) -> Option<&ResultRow> {
+        let p = |row: &ResultRow| row.real(columns::PROBABILITY);
+        self.rows
+            .iter()
+            .flatten()
+            .filter(|row| p(row).is_some())
+            .reduce(|a, b| if p(b) > p(a) { b } else { a })
+    }
+}
+
+/// The results of a sweep by spot.
+pub struct SweepResults<'a> {
+    config: &'a SweepConfig,
+    court: Court,
+    spots: Vec<SpotResults>,
+    kinds: Vec<ShotKind>,
+}
+
+impl<'a> SweepResults<'a> {
+    /// From the rows by the number of their job.
+    #[must_use]
+    pub fn new(config: &'a SweepConfig, rows: &BTreeMap<u64, ResultRow>) -> Self {
+        let jobs = Jobs::new(config);
+        let spots = jobs
+            .sources
+            .iter()
+            .map(|source| SpotResults {
+                spot: source.spot,
+                rows: (0..jobs.kinds.len())
+                    .map(|kind| {
+                        let row = rows.get(&jobs.number(source.computed, kind))?;
+                        Some(if source.mirrored {
+                            row.mirrored()
+                        } else {
+                            row.clone()
+                        })
+                    })
+                    .collect(),
+            })
+            .collect();
+        Self {
+            config,
+            court: config.league.court(),
+            spots,
+            kinds: jobs.kinds,
+        }
+    }
+
+    pub(super) fn spots(&self) -> &[SpotResults] {
+        &self.spots
+    }
+
+    /// Whether the sweep has bank and direct shots.
+    pub(super) fn has_both_kinds(&self) -> bool {
+        self.kinds.len() == ShotKind::ALL.len()
+    }
+
+    /// P of the best shot of a kind at a spot.
+    pub(super) fn probability(&self, spot: &SpotResults, kind: ShotKind) -> Option<Difference> {
+        let kind = self.kinds.iter().position(|&other| other == kind)?;
+        spot.rows[kind].as_ref()?.probability()
+    }
+
+    /// The shooter, as the title of a plot.
+    pub(super) fn shooter_name(&self) -> String {
+        shortened(&self.config.settings.shooter.name, 60)
+    }
+
+    /// The shooter and the sweep, to tell two sweeps apart.
+    pub(super) fn name(&self) -> String {
+        format!(
+            "{} ({})",
+            shortened(&self.config.settings.shooter.name, 40),
+            shortened(&self.config.name, 30)
+        )
+    }
+
+    /// The program, the shooter and the size of the sweep, for footnotes.
+    pub(super) fn source_note(&self) -> String {
+        format!(
+            "bankshot {}, {}, {} court, {} places, P to {}",
+            env!("CARGO_PKG_VERSION"),
+            self.shooter_name(),
+            self.config.league.name().to_uppercase(),
+            self.spots.len(),
+            self.config.settings.search.standard_error()
+        )
+    }
+
+    /// A map of the court that shows every spot.
+    pub(super) fn court_map(&self) -> CourtMap<'_> {
+        let settings = &self.config.settings;
+        let spots = self.spots.iter();
+        CourtMap {
+            court: &self.court,
+            physics: &settings.physics,
+            units: settings.output.units,
+            step_m: match self.config.region {
+                Region::HalfCourt { step_m, .. } | Region::Rectangle { step_m, .. } => Some(step_m),
+                _ => None,
+            },
+            far_x_m: spots.fold(0.0, |far: f64, results| far.max(results.spot.x_m)),
+        }
+    }
+
+    /// Draws a colour for each spot on a map.
+    pub(super) fn draw_on(
+        &self,
+        map: &CourtMap<'_>,
+        svg: &mut Svg,
+        corner: (f64, f64),
+        title: &str,
+        key: &ColourKey<'_>,
+        colour: &dyn Fn(&SpotResults) -> Option<Rgb>,
+    ) {
+        let spots: Vec<ColouredSpot> = self
+            .spots
+            .iter()
+            .map(|results| ColouredSpot {
+                x_m: results.spot.x_m,
+                y_m: results.spot.y_m,
+                colour: colour(results),
+            })
+            .collect();
+        map.draw(svg, corner, title, &spots, key);
+    }
+}
+
+/// `a` minus `b`, two independent estimates of P.
+pub(super) fn difference(a: Difference, b: Difference) -> Difference {
+    Difference {
+        value: a.value - b.value,
+        standard_error: libm::hypot(b.standard_error, a.standard_error),
+    }
+}
+
+/// Whether a difference, positive or negative, is significant.
+pub(super) fn is_significant(difference: Difference) -> bool {
+    difference.value.abs() > SIGNIFICANT_SIGMAS * difference.standard_error
+}
+
+/// The largest absolute value of some differences, for the ends of a colour scale.
+pub(super) fn largest_difference(differences: impl Iterator<Item = Difference>) -> f64 {
+    differences.fold(0.0, |largest: f64, by| largest.max(by.value.abs()))
+}
+
+/// The colour of a difference on a scale from `-largest` to `largest`.
+pub(super) fn difference_colour(difference: Difference, largest: f64) -> Rgb {
+    if is_significant(difference) {
+        diverging(difference.value / largest)
+    } else {
+        NOT_SIGNIFICANT
+    }
+}

@@ -1,0 +1,21 @@
+//! Progress of long computations.
+
+/// Receives the progress of a long computation.
+pub trait Progress: Sync {
+    /// A stage of `total` units of work (shots, rounds of a search, bytes) begins.
+    fn begin(&self, stage: &str, total: u64);
+    /// `units` more are done.
+    fn advance(&self, units: u64);
+    /// The stage ends.
+    fn end(&self);
+}
+
+/// Ignores all progress.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _stage: &str, _total: u64) {}
+    fn advance(&self, _units: u64) {}
+    fn end(&self) {}
+}

@@ -1,0 +1,89 @@
+//! The page of a `best` run.
+
+use super::best_shot_run::BestShotRun;
+use super::page::Page;
+use super::page_data::Scene;
+use super::report_error::ReportError;
+use super::report_shot::{ReportShot, describe_location, most_probable};
+use super::sensitivity_table::sensitivity_table;
+use super::shot_table::shot_table;
+use crate::model::court::League;
+use crate::plots::plot::Plot;
+use crate::plots::plotted_shot::PlottedShot;
+use crate::plots::{bank_direct_release_map, probability_curves};
+use crate::probability::Progress;
+use crate::units::{DEGREE_RAD, REV_RAD};
+
+/// Makes the page of a `best` run.
+///
+/// # Errors
+/// The run has no shot.
+pub fn best_shot_page(run: &BestShotRun, progress: &dyn Progress) -> Result<Page, ReportError> {
+    let profile = &run.profile;
+    let better = most_probable(&run.shots).ok_or(ReportError::NoShot)?;
+    let units = profile.output().units;
+    let mut tables = vec![shot_table(&run.shots, units)];
+    tables.extend(sensitivity_table(&run.sensitivity));
+    Ok(Page {
+        title: profile.shooter().name.clone(),
+        answer: answer(run, better),
+        shots: run.shots.clone(),
+        first_spot: 0,
+        scene: Scene {
+            simulator: profile.simulator().clone(),
+            court: League::Ncaa.court(),
+            height_above_hoop_m: profile.height_above_hoop_m(),
+            units,
+        },
+        tables,
+        plots: draw_plots(run, progress),
+        footer: format!(
+            "bankshot {} ({}), profile {}.",
+            env!("CARGO_PKG_VERSION"),
+            env!("BANKSHOT_COMMIT"),
+            &profile.hash()[..12]
+        ),
+    })
+}
+
+fn draw_plots(run: &BestShotRun, progress: &dyn Progress) -> Vec<Plot> {
+    let profile = &run.profile;
+    let shots: Vec<PlottedShot> = run.shots.iter().map(|shot| shot.shot).collect();
+    progress.begin("drawing", 2);
+    let mut plots = Vec::new();
+    plots.extend(bank_direct_release_map::draw_probabilities(profile, &shots));
+    progress.advance(1);
+    plots.extend(bank_direct_release_map::draw_outcomes(profile, &shots));
+    plots.extend(probability_curves::draw(profile, &run.curves));
+    progress.end();
+    plots
+}
+
+fn answer(run: &BestShotRun, better: &ReportShot) -> String {
+    let units = run.profile.output().units;
+    let (long, unit_m) = units.length();
+    let best = &better.shot;
+    let other = run.shots.iter().find(|other| other.shot.kind != best.kind);
+    let compared = other.map_or(String::new(), |other| {
+        let other = &other.shot;
+        format!(
+            ", {:.1} \u{b1} {:.1} points more than the {} shot",
+            100.0 * (best.probability - other.probability),
+            100.0 * libm::hypot(best.standard_error, other.standard_error),
+            other.kind.name()
+        )
+    });
+    format!(
+        "From {}, take the {} shot: P {:.3} \u{b1} {:.3}{compared}. Release at {:.2} {long}/s, {:.1} deg up, polar {:.2} deg, with {:.1} rev/s of backspin{}.",
+        describe_location(&run.profile.location(), units),
+        best.kind.name(),
+        best.probability,
+        best.standard_error,
+        best.nominal.speed_m_s / unit_m,
+        best.nominal.pitch_rad / DEGREE_RAD,
+        // Adding 0 turns a negative zero into zero.
+        best.nominal.polar_rad / DEGREE_RAD + 0.0,
+        best.nominal.backspin_rad_s / REV_RAD,
+        run.aim
+    )
+}

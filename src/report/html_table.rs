@@ -1,0 +1,58 @@
+//! Tables of a page.
+
+use crate::plots::svg::escaped;
+use std::fmt::Write;
+
+/// A table of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HtmlTable {
+    /// What the table shows.
+    pub caption: String,
+    /// Names of the columns, with units.
+    pub columns: Vec<String>,
+    /// The cells of each row, and the index of the shot that the row selects, if any.
+    pub rows: Vec<(Option<usize>, Vec<String>)>,
+}
+
+impl HtmlTable {
+    /// The table as HTML. `number` makes the ids of a page's tables different.
+    pub(super) fn html(&self, number: usize) -> String {
+        let mut html = format!(
+            "<h2 id=\"h-table-{number}\">{}</h2>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
+            escaped(&self.caption)
+        );
+        for column in &self.columns {
+            // Writing to a String never fails, here and below.
+            let _ = write!(
+                html,
+                "<th scope=\"col\"><button type=\"button\">{}</button></th>",
+                escaped(column)
+            );
+        }
+        html.push_str("</tr></thead>\n<tbody>\n");
+        for (shot, cells) in &self.rows {
+            html.push_str(&shot.map_or("<tr>".to_owned(), |shot| {
+                format!("<tr data-shot=\"{shot}\">")
+            }));
+            for cell in cells {
+                let is_number = cell.parse::<f64>().is_ok();
+                let class = if is_number { "" } else { " class=\"text\"" };
+                let _ = write!(html, "<td{class}>{}</td>", escaped(cell));
+            }
+            html.push_str("</tr>\n");
+        }
+        html.push_str("</tbody>\n</table>\n</div>\n");
+        html
+    }
+}
+
+/// A number with a fixed number of decimals, and without a sign if it rounds to zero.
+pub(super) fn format_cell(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let magnitude = text.trim_start_matches('-');
+    if magnitude.chars().all(|c| c == '0' || c == '.') {
+        magnitude.to_owned()
+    } else {
+        text
+    }
+}

@@ -1,0 +1,19 @@
+//! One HTML page of a run: the answer first, the shots in a view that turns, tables that sort, and the plots.
+//!
+//! The page loads nothing from elsewhere, and all names in it are escaped.
+
+pub mod best_shot_page;
+pub mod best_shot_run;
+mod html_table;
+pub mod page;
+mod page_data;
+mod report_error;
+mod report_shot;
+mod sensitivity_table;
+mod shot_table;
+pub mod sweep_page;
+
+pub use html_table::HtmlTable;
+pub use page_data::Scene;
+pub use report_error::ReportError;
+pub use report_shot::ReportShot;

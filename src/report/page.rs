@@ -1,0 +1,100 @@
+//! The page as one HTML file.
+
+use super::html_table::HtmlTable;
+use super::page_data::Scene;
+use super::report_shot::ReportShot;
+use crate::dynamics::StateError;
+use crate::plots::plot::Plot;
+use crate::plots::svg::{escaped, shortened};
+use std::fmt::Write;
+
+const HTML: &str = include_str!("../../assets/report/page.html");
+const CSS: &str = include_str!("../../assets/report/page.css");
+const JS: &str = include_str!("../../assets/report/page.js");
+/// Longest name in a title, in characters.
+const LONGEST_NAME: usize = 120;
+
+/// The content of a page.
+#[derive(Clone, Debug)]
+pub struct Page {
+    /// Title.
+    pub title: String,
+    /// The answer in a sentence or two.
+    pub answer: String,
+    /// The shots, at least one.
+    pub shots: Vec<ReportShot>,
+    /// The spot that is shown first.
+    pub first_spot: usize,
+    /// Where the shots are taken.
+    pub scene: Scene,
+    /// Tables.
+    pub tables: Vec<HtmlTable>,
+    /// Plots.
+    pub plots: Vec<Plot>,
+    /// Program and input that made the page.
+    pub footer: String,
+}
+
+impl Page {
+    /// The page as one HTML file.
+    ///
+    /// # Errors
+    /// A shot has a value that is not finite.
+    pub fn html(&self) -> Result<String, StateError> {
+        let mut body = String::new();
+        for (i, table) in self.tables.iter().enumerate() {
+            body.push_str(&table.html(i));
+        }
+        for plot in &self.plots {
+            body.push_str(&figure_html(plot));
+        }
+        let data = self.scene.page_data(&self.shots, self.first_spot)?;
+        // Inside a script element, only a tag can end the element.
+        let data = data.to_string().replace('<', "\\u003c");
+        let parts = [
+            ("title", escaped(&shortened(&self.title, LONGEST_NAME))),
+            ("css", CSS.to_owned()),
+            ("answer", escaped(&self.answer)),
+            ("body", body),
+            ("footer", escaped(&self.footer)),
+            ("data", data),
+            ("js", JS.to_owned()),
+        ];
+        Ok(fill_template(HTML, &parts))
+    }
+}
+
+fn figure_html(plot: &Plot) -> String {
+    // All drawings number their clips from 1, and ids must differ within a page.
+    let name = &plot.name;
+    let svg = plot
+        .svg
+        .replace("id=\"clip", &format!("id=\"{name}-clip"))
+        .replace("url(#clip", &format!("url(#{name}-clip"));
+    let caption = escaped(&plot.caption);
+    let mut html = String::new();
+    // Writing to a String never fails.
+    let _ = write!(
+        html,
+        "<figure class=\"wide\">\n{svg}<figcaption>{caption}</figcaption>\n</figure>\n"
+    );
+    html
+}
+
+/// Replaces each `{{name}}` of a template by its part. One pass over the template: braces inside a part stay.
+fn fill_template(template: &str, parts: &[(&str, String)]) -> String {
+    let mut page = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once("{{") {
+        page.push_str(before);
+        let Some((name, after)) = after.split_once("}}") else {
+            break;
+        };
+        if let Some((_, text)) = parts.iter().find(|(part, _)| *part == name) {
+            page.push_str(text);
+        }
+        rest = after;
+    }
+    page.push_str(rest);
+    page
+}

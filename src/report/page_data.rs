@@ -1,0 +1,141 @@
+//! The data of a page's script: the shots with their paths, and the court.
+
+use super::report_shot::{ReportShot, describe_location};
+use crate::dynamics::{Release, Simulator, StateError};
+use crate::math::vector::Vec3;
+use crate::model::court::Court;
+use crate::output::json_record::number;
+use crate::units::UnitSystem;
+use serde_json::{Value, json};
+
+/// Spacing of the points of a path, s.
+const INTERVAL_S: f64 = 0.04;
+/// Points closer in time than this are merged, s.
+const MIN_INTERVAL_S: f64 = 0.002;
+
+/// Where the shots of a page are taken.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Simulates the paths.
+    pub simulator: Simulator,
+    /// The lines of the court.
+    pub court: Court,
+    /// Height of the releases above the hoop, m.
+    pub height_above_hoop_m: f64,
+    /// Units of the texts.
+    pub units: UnitSystem,
+}
+
+impl Scene {
+    /// The data as JSON. `first_spot` is the spot that the page shows first.
+    ///
+    /// # Errors
+    /// A shot has a value that is not finite.
+    pub(super) fn page_data(
+        &self,
+        shots: &[ReportShot],
+        first_spot: usize,
+    ) -> Result<Value, StateError> {
+        let records = shots
+            .iter()
+            .map(|shot| self.shot_record(shot))
+            .collect::<Result<Vec<Value>, StateError>>()?;
+        let far_x_m = shots
+            .iter()
+            .map(|shot| shot.location.to_xy().0)
+            .fold(0.0, f64::max);
+        Ok(json!({
+            "shots": records,
+            "court": self.court_record(),
+            "far_x_m": to_centimetre(far_x_m),
+            "first_place": first_spot,
+        }))
+    }
+
+    fn shot_record(&self, shot: &ReportShot) -> Result<Value, StateError> {
+        let (x_m, y_m) = shot.location.to_xy();
+        let mut record = json!({
+            "place": shot.spot,
+            "kind": shot.shot.kind.name(),
+            "x_m": to_centimetre(x_m),
+            "y_m": to_centimetre(y_m),
+            "where": describe_location(&shot.location, self.units),
+            "words": shot.description(self.units),
+        });
+        // The script mirrors the path of the other shot, which keeps the page small.
+        match shot.mirror_of {
+            Some(other) => record["mirror_of"] = other.into(),
+            None => record["path"] = self.path(shot)?,
+        }
+        Ok(record)
+    }
+
+    fn court_record(&self) -> Value {
+        let physics = self.simulator.physics();
+        let mut record = serde_json::to_value(self.court).unwrap_or_default();
+        for (name, value) in [
+            ("three_break_x_m", self.court.three_break_x_m()),
+            ("hoop_height_m", physics.hoop_height_m),
+            ("board_distance_m", physics.board_distance_m),
+            ("board_width_m", physics.board_width_m),
+            ("board_height_m", physics.board_height_m),
+            ("board_centre_height_m", physics.board_centre_height_m),
+            ("ring_radius_m", physics.ring_radius_m),
+            ("ball_radius_m", physics.ball_radius_m),
+        ] {
+            record[name] = number(value);
+        }
+        record
+    }
+
+    /// The path of the error-free shot: `[t, x, y, z]` to the millisecond and the centimetre, about every
+    /// [`INTERVAL_S`] and at each event.
+    fn path(&self, shot: &ReportShot) -> Result<Value, StateError> {
+        let trace = self.simulator.trace(&self.release(shot), INTERVAL_S)?;
+        let events = trace.events.iter();
+        let mut points: Vec<(f64, Vec3<f64>)> = events
+            .map(|event| (event.time_s, event.state.position_m))
+            .collect();
+        // In contact the trace has many more samples than the page needs.
+        let mut last_s = f64::NEG_INFINITY;
+        for sample in &trace.samples {
+            if sample.time_s - last_s >= 0.9 * INTERVAL_S {
+                points.push((sample.time_s, sample.state.position_m));
+                last_s = sample.time_s;
+            }
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by(|a, b| a.0 - b.0 < MIN_INTERVAL_S);
+        Ok(points
+            .into_iter()
+            .map(|(time_s, position)| {
+                json!([
+                    (1000.0 * time_s).round() / 1000.0,
+                    to_centimetre(position.x),
+                    to_centimetre(position.y),
+                    to_centimetre(position.z)
+                ])
+            })
+            .collect())
+    }
+
+    fn release(&self, shot: &ReportShot) -> Release {
+        let nominal = &shot.shot.nominal;
+        Release {
+            distance_m: shot.location.distance_m,
+            court_angle_rad: shot.location.angle_rad,
+            height_above_hoop_m: self.height_above_hoop_m,
+            speed_m_s: nominal.speed_m_s,
+            pitch_rad: nominal.pitch_rad,
+            polar_rad: nominal.polar_rad,
+            backspin_rad_s: nominal.backspin_rad_s,
+            rifle_spin_rad_s: nominal.rifle_spin_rad_s,
+            side_spin_rad_s: nominal.side_spin_rad_s,
+        }
+    }
+}
+
+/// A length rounded to the centimetre, m. Adding 0 turns a negative zero into zero.
+fn to_centimetre(length_m: f64) -> f64 {
+    (100.0 * length_m).round() / 100.0 + 0.0
+}

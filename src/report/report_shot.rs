@@ -1,0 +1,58 @@
+//! A best shot on a page, and its description in words.
+
+use crate::plots::plotted_shot::PlottedShot;
+use crate::shooter::Location;
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+
+/// A best shot on a page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReportShot {
+    /// Number of its spot on the page.
+    pub spot: usize,
+    /// The location of the shooter.
+    pub location: Location,
+    /// The shot with its probability.
+    pub shot: PlottedShot,
+    /// The index of the shot whose mirror image this is, if any.
+    pub mirror_of: Option<usize>,
+}
+
+impl ReportShot {
+    /// One sentence with the shot's kind, P and nominal values.
+    #[must_use]
+    pub fn description(&self, units: UnitSystem) -> String {
+        let (long, unit_m) = units.length();
+        let nominal = &self.shot.nominal;
+        let mut kind = self.shot.kind.name().to_owned();
+        if let Some(first) = kind.get_mut(0..1) {
+            first.make_ascii_uppercase();
+        }
+        format!(
+            "{kind}: P {:.3} \u{b1} {:.3}; {:.2} {long}/s, pitch {:.1} deg, polar {:.1} deg, backspin {:.1} rev/s.",
+            self.shot.probability,
+            self.shot.standard_error,
+            nominal.speed_m_s / unit_m,
+            nominal.pitch_rad / DEGREE_RAD,
+            // Adding 0 turns a negative zero into zero.
+            nominal.polar_rad / DEGREE_RAD + 0.0,
+            nominal.backspin_rad_s / REV_RAD
+        )
+    }
+}
+
+/// A location in words.
+pub(super) fn describe_location(location: &Location, units: UnitSystem) -> String {
+    let (long, unit_m) = units.length();
+    format!(
+        "{:.1} {long} from the hoop at {:.0} deg",
+        location.distance_m / unit_m,
+        location.angle_rad / DEGREE_RAD + 0.0
+    )
+}
+
+/// The shot with the largest P.
+pub(super) fn most_probable(shots: &[ReportShot]) -> Option<&ReportShot> {
+    shots
+        .iter()
+        .max_by(|a, b| a.shot.probability.total_cmp(&b.shot.probability))
+}

@@ -1,0 +1,45 @@
+//! The table of the best shots.
+
+use super::html_table::{HtmlTable, format_cell};
+use super::report_shot::ReportShot;
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+
+/// The table of the best shots.
+pub(super) fn shot_table(shots: &[ReportShot], units: UnitSystem) -> HtmlTable {
+    let (long, unit_m) = units.length();
+    let columns = vec![
+        "shot".to_owned(),
+        format!("distance {long}"),
+        "court angle deg".to_owned(),
+        "P".to_owned(),
+        "\u{b1}".to_owned(),
+        format!("speed {long}/s"),
+        "pitch deg".to_owned(),
+        "polar deg".to_owned(),
+        "backspin rev/s".to_owned(),
+    ];
+    let rows = shots
+        .iter()
+        .enumerate()
+        .map(|(i, ReportShot { location, shot, .. })| {
+            let nominal = &shot.nominal;
+            let cells = vec![
+                shot.kind.name().to_owned(),
+                format_cell(location.distance_m / unit_m, 2),
+                format_cell(location.angle_rad / DEGREE_RAD, 1),
+                format_cell(shot.probability, 4),
+                format_cell(shot.standard_error, 4),
+                format_cell(nominal.speed_m_s / unit_m, 2),
+                format_cell(nominal.pitch_rad / DEGREE_RAD, 1),
+                format_cell(nominal.polar_rad / DEGREE_RAD, 2),
+                format_cell(nominal.backspin_rad_s / REV_RAD, 2),
+            ];
+            (Some(i), cells)
+        })
+        .collect();
+    HtmlTable {
+        caption: "Best shots".to_owned(),
+        columns,
+        rows,
+    }
+}

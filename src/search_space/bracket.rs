@@ -1,0 +1,185 @@
+//! The releases that can go in, from geometry alone.
+//!
+//! A shot that goes in must come within reach of the ring (a circle of radius R_H + R about the hoop's
+//! axis) at or above `z = -R`, and its centre must not pass over the top of the board. Both bound the
+//! speed for each pitch angle. Its direction must lead within reach of the ring, or to a point on the board
+//! from which a bounce can. A bounce keeps between about half and all of its sideways velocity (3/5 for a
+//! rigid ball that rolls at the end), and the restitution's share of the velocity towards the board.
+
+use crate::shooter::{Location, Nominal, Profile};
+use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
+
+/// Points of the path at which the bounds of the speed are computed.
+const PATH_POINTS: u32 = 24;
+/// Spacing of the tested polar angles, rad.
+const POLAR_STEP_RAD: f64 = 0.000_5;
+/// Share of the sideways velocity that a bounce off the board keeps, with a margin on both sides.
+const SIDEWAYS_KEPT: (f64, f64) = (0.4, 1.1);
+/// Default of the greatest speed, as a multiple of the least speed that reaches the hoop.
+const MAX_SPEED_FACTOR: f64 = 2.0;
+
+/// The speeds (for each direction) and the polar angles of the releases that can go in.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Bracket {
+    /// Least and greatest polar angle, rad.
+    pub polar_rad: (f64, f64),
+    /// Greatest speed, m/s.
+    pub speed_max_m_s: f64,
+    location: Location,
+    start_height_m: f64,
+    reach_m: f64,
+    ball_radius_m: f64,
+    gravity_m_s2: f64,
+    face_x_m: f64,
+    board_top_m: f64,
+    board_half_width_m: f64,
+}
+
+impl Bracket {
+    /// The bracket of a profile; `None` if no direction leads to the hoop.
+    #[must_use]
+    pub fn new(profile: &Profile) -> Option<Self> {
+        let physics = profile.physics();
+        let location = profile.location();
+        let start_height_m = profile.height_above_hoop_m();
+        let least = least_speed_m_s(location.distance_m, -start_height_m, physics.gravity_m_s2);
+        let mut bracket = Self {
+            polar_rad: (0.0, 0.0),
+            speed_max_m_s: profile.search().speed_max_m_s.unwrap_or(MAX_SPEED_FACTOR * least),
+            location,
+            start_height_m,
+            reach_m: physics.ring_radius_m + physics.ball_radius_m,
+            ball_radius_m: physics.ball_radius_m,
+            gravity_m_s2: physics.gravity_m_s2,
+            face_x_m: -physics.board_distance_m,
+            board_top_m: physics.board_centre_height_m + 0.5 * physics.board_height_m,
+            board_half_width_m: 0.5 * physics.board_width_m,
+        };
+        let restitution = physics.restitution();
+        let tries = (2.0 * FRAC_PI_2 / POLAR_STEP_RAD) as i64;
+        let mut low = f64::INFINITY;
+        let mut high = f64::NEG_INFINITY;
+        for i in -tries / 2..=tries / 2 {
+            let polar = location.angle_rad + i as f64 * POLAR_STEP_RAD;
+            if bracket.passes_ring(polar) || bracket.banks_to_ring(polar, restitution) {
+                low = low.min(polar - POLAR_STEP_RAD);
+                high = high.max(polar + POLAR_STEP_RAD);
+            }
+        }
+        bracket.polar_rad = (low, high);
+        (low < high).then_some(bracket)
+    }
+
+    fn start(&self) -> (f64, f64) {
+        let (sin, cos) = libm::sincos(self.location.angle_rad);
+        (self.location.distance_m * cos, self.location.distance_m * sin)
+    }
+
+    /// Distance of the hoop's axis from the horizontal path in a direction.
+    fn axis_offset(&self, polar: f64) -> f64 {
+        self.location.distance_m * libm::sin(polar - self.location.angle_rad).abs()
+    }
+
+    fn passes_ring(&self, polar: f64) -> bool {
+        self.axis_offset(polar) < self.reach_m && libm::cos(polar - self.location.angle_rad) > 0.0
+    }
+
+    /// Whether the horizontal path meets the board where a bounce can lead within reach of the ring.
+    fn banks_to_ring(&self, polar: f64, restitution: f64) -> bool {
+        let (sin, cos) = libm::sincos(polar);
+        if cos <= 1e-6 {
+            return false;
+        }
+        let (x, y) = self.start();
+        let plane = self.face_x_m + self.ball_radius_m;
+        let across = y - (x - plane) * sin / cos;
+        if across.abs() > self.board_half_width_m {
+            return false;
+        }
+        let (least, most) = SIDEWAYS_KEPT;
+        (0..=20).any(|i| {
+            let kept = least + (most - least) * f64::from(i) / 20.0;
+            let slope = -sin * kept / (cos * restitution.max(0.05));
+            // Distance of the hoop's axis from the line (plane, across) + t (1, slope), t >= 0.
+            let along = -(plane + across * slope) / (1.0 + slope * slope);
+            let (dx, dy) = (plane + along.max(0.0), across + slope * along.max(0.0));
+            dx * dx + dy * dy < self.reach_m * self.reach_m
+        })
+    }
+
+    /// Length of the horizontal path to the plane of the board's face, if it comes near the board.
+    fn path_to_board(&self, polar: f64) -> Option<f64> {
+        let (sin, cos) = libm::sincos(polar);
+        let (x, y) = self.start();
+        let length = (x - self.face_x_m) / cos;
+        let across = y - length * sin;
+        let near = self.board_half_width_m + self.reach_m;
+        (cos > 1e-6 && across.abs() < near).then_some(length)
+    }
+
+    /// Least and greatest speed with which a shot in this direction can go in, m/s; `None` if there is none.
+    #[must_use]
+    pub fn speeds_m_s(&self, pitch_rad: f64, polar_rad: f64) -> Option<(f64, f64)> {
+        let near = (self.location.distance_m - self.reach_m).max(1e-3);
+        let far = self.location.distance_m + self.reach_m;
+        let end = self.path_to_board(polar_rad).unwrap_or(far).max(near);
+        // A slower shot is below z = -R all the way from `near` to `end`.
+        let least = (0..=PATH_POINTS)
+            .map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS))
+            .map(|s| self.speed_through(s, -self.ball_radius_m, pitch_rad))
+            .fold(f64::INFINITY, f64::min);
+        // A faster shot passes above the far side of the ring, and above the board both where the ball
+        // would touch it (on the way up) and at its face (on the way down).
+        let over_ring = self.speed_through(far, self.ball_radius_m, pitch_rad);
+        let over_board = self.path_to_board(polar_rad).map_or(0.0, |face| {
+            let touch = face - self.ball_radius_m / libm::cos(polar_rad);
+            [touch, face]
+                .map(|s| self.speed_through(s.max(1e-3), self.board_top_m, pitch_rad))
+                .into_iter()
+                .fold(0.0, f64::max)
+        });
+        let most = over_ring.max(over_board).min(self.speed_max_m_s);
+        (least < most).then_some((least, most))
+    }
+
+    /// Speed of the parabola that passes the height `z` at the horizontal distance `s`; infinite if there is
+    /// none.
+    fn speed_through(&self, s: f64, z: f64, pitch_rad: f64) -> f64 {
+        let (sin, cos) = libm::sincos(pitch_rad);
+        let over = self.start_height_m - z + s * sin / cos;
+        if over <= 0.0 || cos <= 1e-6 {
+            return f64::INFINITY;
+        }
+        s / cos * (0.5 * self.gravity_m_s2 / over).sqrt()
+    }
+
+    /// Whether the bracket contains a shot.
+    #[must_use]
+    pub fn contains(&self, shot: &Nominal) -> bool {
+        shot.polar_rad >= self.polar_rad.0
+            && shot.polar_rad <= self.polar_rad.1
+            && self
+                .speeds_m_s(shot.pitch_rad, shot.polar_rad)
+                .is_some_and(|(least, most)| shot.speed_m_s >= least && shot.speed_m_s <= most)
+    }
+}
+
+/// The least speed with which a parabola reaches a point `s` away and `rise` above (Brancazio
+/// 1981):
+/// `v^2 = g (rise + sqrt(rise^2 + s^2))`.
+fn least_speed_m_s(s: f64, rise: f64, gravity: f64) -> f64 {
+    (gravity * (rise + (rise * rise + s * s).sqrt())).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::least_speed_m_s;
+    use crate::units::FOOT_M;
+
+    #[test]
+    fn val_least_speed_to_the_hoop_from_the_line() {
+        let speed = least_speed_m_s(13.75 * FOOT_M, 3.0 * FOOT_M, 32.2 * FOOT_M) / FOOT_M;
+        assert!((speed - 23.4471).abs() < 5e-5, "{speed}");
+    }
+}

@@ -1,0 +1,88 @@
+//! A location on the court.
+
+use crate::model::Physics;
+use crate::units::FOOT_M;
+use serde::Serialize;
+
+/// Greatest distance of a location from the hoop, m.
+const FARTHEST_M: f64 = 40.0;
+
+/// A location on the court, seen from the hoop's axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Location {
+    /// Horizontal distance from the hoop's centre, m.
+    pub distance_m: f64,
+    /// Court angle theta0 from the court's long axis, rad; -pi/2 to pi/2 is in front of the hoop's centre.
+    pub angle_rad: f64,
+}
+
+/// Why nobody can shoot from a location.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum LocationError {
+    /// Under or in the ring.
+    #[error("the place is inside the ring's reach; the distance must be more than {:.2} ft ({reach_m:.3} m)", .reach_m / FOOT_M)]
+    InsideRing {
+        /// Radius of the ring plus that of the ball, m.
+        reach_m: f64,
+    },
+    /// Behind the face of the board.
+    #[error("the place is behind the board (x = {:.2} ft); x = distance cos(angle) must be more than {:.2} ft ({least_m:.3} m)", .x_m / FOOT_M, .least_m / FOOT_M)]
+    BehindBoard {
+        /// x of the location, m.
+        x_m: f64,
+        /// x must be more than this, m.
+        least_m: f64,
+    },
+    /// Farther than any court is long.
+    #[error("the distance must be below 40 m (131 ft)")]
+    TooFar,
+}
+
+impl LocationError {
+    /// The coordinate that is out of range.
+    #[must_use]
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::InsideRing { .. } | Self::TooFar => "distance",
+            Self::BehindBoard { .. } => "angle",
+        }
+    }
+}
+
+impl Location {
+    /// From the coordinates x (from the board towards midcourt) and y, m.
+    #[must_use]
+    pub fn from_xy(x_m: f64, y_m: f64) -> Self {
+        Self {
+            distance_m: (x_m * x_m + y_m * y_m).sqrt(),
+            angle_rad: libm::atan2(y_m, x_m),
+        }
+    }
+
+    /// The coordinates x (from the board towards midcourt) and y, m.
+    #[must_use]
+    pub fn to_xy(&self) -> (f64, f64) {
+        let (sin, cos) = libm::sincos(self.angle_rad);
+        (self.distance_m * cos, self.distance_m * sin)
+    }
+
+    /// Checks that somebody can shoot from here.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn check(&self, physics: &Physics) -> Result<(), LocationError> {
+        let reach_m = physics.ring_radius_m + physics.ball_radius_m;
+        let x_m = self.distance_m * libm::cos(self.angle_rad);
+        let least_m = physics.ball_radius_m - physics.board_distance_m;
+        if !(self.distance_m > reach_m) {
+            return Err(LocationError::InsideRing { reach_m });
+        }
+        if !(x_m > least_m) {
+            return Err(LocationError::BehindBoard { x_m, least_m });
+        }
+        if !(self.distance_m < FARTHEST_M) {
+            return Err(LocationError::TooFar);
+        }
+        Ok(())
+    }
+}

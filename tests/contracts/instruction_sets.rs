@@ -1,0 +1,98 @@
+//! A batch has the bits of single shots, on every set of vector instructions that this machine has.
+//!
+//! The reference is [`Simulator::simulate_state`], which never uses vector instructions. The lanes of sets
+//! that this machine does not have are covered by unit tests of the batch.
+
+use crate::common::{free_throw_uniform, side_uniform, states, wild};
+use bankshot::dynamics::{BatchWorkspace, InstructionSet, Simulator, Verdict};
+use bankshot::model::{BallState, Physics};
+use rayon::prelude::*;
+
+/// Every instruction set of this machine except the scalar one.
+fn vector_sets() -> Vec<(&'static str, InstructionSet)> {
+    let mut sets = InstructionSet::available();
+    sets.retain(|(name, _)| *name != "scalar");
+    assert!(!sets.is_empty(), "no vector instructions to compare");
+    sets
+}
+
+fn single_shots(simulator: &Simulator, starts: &[BallState]) -> Vec<Verdict> {
+    starts
+        .par_iter()
+        .map(|start| simulator.simulate_state(*start).unwrap().verdict)
+        .collect()
+}
+
+fn check(physics: &Physics, starts: &[BallState]) {
+    let simulator = Simulator::new(physics).unwrap();
+    let expected = single_shots(&simulator, starts);
+    for (name, instructions) in vector_sets() {
+        let simulator = simulator.clone().with_instructions(instructions);
+        let mut workspace = BatchWorkspace::default();
+        for size in [1000, 4096, starts.len()] {
+            let found: Vec<Verdict> = starts
+                .chunks(size)
+                .flat_map(|chunk| simulator.verdicts(chunk, &mut workspace).unwrap().to_vec())
+                .collect();
+            assert_eq!(found.len(), expected.len());
+            let differ = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+            assert_eq!(differ, 0, "{name}, batches of {size}");
+        }
+        println!("{name}: {} shots equal single shots", starts.len());
+    }
+}
+
+#[test]
+fn contract_vector_sets_equal_single_shots_on_a_hundred_thousand_shots() {
+    let mut starts = states(&free_throw_uniform(60_000, 41));
+    starts.extend(states(&side_uniform(40_000, 42)));
+    check(&Physics::paper(), &starts);
+    check(
+        &Physics::with_restitution(0.8457).unwrap(),
+        &starts[..20_000],
+    );
+    // Lodged balls, simulated up to the time limit.
+    let without_lodged_rule = Physics {
+        lodged_after_s: 0.0,
+        ..Physics::paper()
+    };
+    check(&without_lodged_rule, &starts[..5_000]);
+    // Bounces that lose nothing or almost nothing.
+    for restitution in [0.99, 1.0] {
+        let physics = Physics::with_restitution(restitution).unwrap();
+        check(&physics, &starts[..10_000]);
+    }
+    let without_friction = Physics {
+        friction: 0.0,
+        ..Physics::paper()
+    };
+    check(&without_friction, &starts[..10_000]);
+}
+
+#[test]
+fn contract_vector_sets_equal_single_shots_on_wild_shots() {
+    let starts = states(&wild(30_000, 43));
+    check(&Physics::paper(), &starts);
+    let short_limit = Physics {
+        lodged_after_s: 0.0,
+        time_limit_s: 1.5,
+        ..Physics::paper()
+    };
+    check(&short_limit, &starts[..5000]);
+}
+
+#[test]
+fn contract_a_batch_of_any_size_has_a_verdict_for_every_shot() {
+    let starts = states(&free_throw_uniform(3000, 45));
+    let simulator = Simulator::new(&Physics::paper()).unwrap();
+    let expected = single_shots(&simulator, &starts);
+    for (name, instructions) in vector_sets() {
+        let simulator = simulator.clone().with_instructions(instructions);
+        let mut workspace = BatchWorkspace::default();
+        // One workspace for all, large batches before small ones.
+        for size in [3000, 0, 1, 7, 17, 2049] {
+            let found = simulator.verdicts(&starts[..size], &mut workspace).unwrap();
+            assert_eq!(found, &expected[..size], "{name}, batch of {size}");
+        }
+    }
+}

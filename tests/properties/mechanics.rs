@@ -1,0 +1,269 @@
+//! Symmetries and invariants of single shots.
+
+use crate::common::{
+    disagreements, event_driven, free_throw_uniform, release, side_uniform, verdicts,
+};
+use bankshot::dynamics::{OutcomeKind, Release, Sample, Simulator};
+use bankshot::math::vector::Vec3;
+use bankshot::model::{BallState, Physics, SolidId};
+use proptest::prelude::*;
+use std::collections::HashSet;
+
+/// Kinetic, rotational, gravitational and elastic energy of the ball, J.
+fn energy(physics: &Physics, state: &BallState) -> f64 {
+    let [x, y, z] = state.position_m.into();
+    let radius = physics.ball_radius_m;
+    let inertia = physics.inertia_ratio * physics.ball_mass_kg * radius * radius;
+    let board = (radius - physics.board_distance_m - x).max(0.0);
+    let level = physics.board_centre_height_m;
+    let on_board = (z - level).abs() < 0.5 * physics.board_height_m
+        && y.abs() < 0.5 * physics.board_width_m
+        && x > -physics.board_distance_m;
+    let inward = physics.ring_radius_m - (x * x + y * y).sqrt();
+    let ring = (radius - (inward * inward + z * z).sqrt()).max(0.0);
+    let spring = if on_board { board * board } else { 0.0 } + ring * ring;
+    0.5 * physics.ball_mass_kg * state.velocity_m_s.norm_squared()
+        + 0.5 * inertia * state.spin_rad_s.norm_squared()
+        + physics.ball_mass_kg * physics.gravity_m_s2 * z
+        + 0.5 * physics.stiffness_n_m * spring
+}
+
+#[test]
+fn prop_energy_never_grows() {
+    // The second physics has no damping, so all losses come from friction.
+    for physics in [Physics::paper(), Physics::with_restitution(1.0).unwrap()] {
+        energy_never_grows(&physics);
+    }
+}
+
+fn energy_never_grows(physics: &Physics) {
+    let simulator = event_driven(physics, 64);
+    let shots = [free_throw_uniform(300, 21), side_uniform(300, 22)].concat();
+    for release in shots {
+        let trace = simulator.trace(&release, 0.02).unwrap();
+        let top = physics.board_centre_height_m + 0.5 * physics.board_height_m;
+        let mut last = f64::INFINITY;
+        for sample in &trace.samples {
+            // A ball that moves on to the board over its edge gains the energy of the spring from nothing,
+            // because contact begins there with a jump. No bank shot of these samples does so.
+            let edge = (sample.state.position_m.z - top).abs() < 0.05;
+            let now = energy(physics, &sample.state);
+            assert!(
+                now <= last * (1.0 + 2e-6) || edge,
+                "{release:?} at {}: {last} to {now}",
+                sample.time_s
+            );
+            last = now;
+        }
+    }
+}
+
+/// From the contact point to the centre, for a ball in single contact.
+fn arm(physics: &Physics, sample: &Sample) -> Vec3<f64> {
+    let p = sample.state.position_m;
+    if sample.touches(SolidId::Board) {
+        return Vec3::new(p.x + physics.board_distance_m, 0.0, 0.0);
+    }
+    let axis = (p.x * p.x + p.y * p.y).sqrt();
+    let scale = 1.0 - physics.ring_radius_m / axis;
+    Vec3::new(p.x * scale, p.y * scale, p.z)
+}
+
+#[test]
+fn prop_angular_momentum_about_the_contact_is_kept() {
+    // All of the contact force acts at the contact point. So about it only gravity has a moment:
+    // I dw + m arm x (dv + g dt k) = 0 for every step of every single contact.
+    let physics = Physics::paper();
+    let radius = physics.ball_radius_m;
+    let inertia = physics.inertia_ratio * radius * radius;
+    let simulator = event_driven(&physics, 256);
+    let mut checked = 0;
+    let shots = [free_throw_uniform(200, 29), side_uniform(200, 23)].concat();
+    for release in shots {
+        let trace = simulator.trace(&release, 0.05).unwrap();
+        for pair in trace.samples.windows(2) {
+            let [a, b] = pair else { unreachable!() };
+            let single = a.touches(SolidId::Board) != a.touches(SolidId::Ring);
+            if !single || a.in_contact != b.in_contact {
+                continue;
+            }
+            let dt = b.time_s - a.time_s;
+            let dw = b.state.spin_rad_s - a.state.spin_rad_s;
+            let mut dv = b.state.velocity_m_s - a.state.velocity_m_s;
+            dv.z += physics.gravity_m_s2 * dt;
+            let middle = (arm(&physics, a) + arm(&physics, b)) * 0.5;
+            let moment = dw * inertia + middle.cross(&dv);
+            let size = dv.norm() * radius;
+            assert!(
+                moment.iter().all(|m| m.abs() < 2e-3 * size + 1e-9),
+                "{moment} of {size} at {}",
+                a.time_s
+            );
+            checked += 1;
+        }
+    }
+    assert!(checked > 10_000, "{checked}");
+}
+
+#[test]
+fn prop_shots_mirrored_in_the_plane_of_symmetry_end_alike() {
+    let simulator = Simulator::new(&Physics::paper()).unwrap();
+    let shots = [free_throw_uniform(2000, 24), side_uniform(2000, 25)].concat();
+    for mut release in shots {
+        release.side_spin_rad_s = 3.0;
+        release.rifle_spin_rad_s = -2.0;
+        let a = simulator.simulate(&release).unwrap();
+        let b = simulator.simulate(&release.mirrored()).unwrap();
+        assert_eq!(a.verdict, b.verdict);
+        assert_eq!(a.kind, b.kind);
+    }
+}
+
+#[test]
+fn prop_a_scaled_world_gives_the_same_shots() {
+    // Lengths times 4 and times times 2 (exact in binary) leave gravity unchanged. Stiffness and damping per
+    // mass scale with the inverse square and the inverse of time.
+    let physics = Physics::paper();
+    let mut large = physics.clone();
+    for length in [
+        &mut large.ball_radius_m,
+        &mut large.ring_radius_m,
+        &mut large.board_distance_m,
+        &mut large.board_width_m,
+        &mut large.board_height_m,
+        &mut large.board_centre_height_m,
+    ] {
+        *length *= 4.0;
+    }
+    large.stiffness_n_m /= 4.0;
+    large.damping_kg_s /= 2.0;
+    large.time_limit_s *= 2.0;
+    large.lodged_after_s *= 2.0;
+    let shots = free_throw_uniform(2000, 26);
+    let scaled: Vec<Release> = shots
+        .iter()
+        .map(|release| Release {
+            distance_m: 4.0 * release.distance_m,
+            height_above_hoop_m: 4.0 * release.height_above_hoop_m,
+            speed_m_s: 2.0 * release.speed_m_s,
+            backspin_rad_s: 0.5 * release.backspin_rad_s,
+            ..*release
+        })
+        .collect();
+    let a = verdicts(&Simulator::new(&physics).unwrap(), &shots);
+    let b = verdicts(&Simulator::new(&large).unwrap(), &scaled);
+    let differ = a.iter().zip(&b).filter(|(a, b)| a.made != b.made).count();
+    // The tolerances are fixed lengths and speeds, so a few chaotic shots can differ.
+    assert!(differ <= 4, "{differ}");
+}
+
+#[test]
+fn prop_outcomes_are_consistent() {
+    let simulator = Simulator::new(&Physics::paper()).unwrap();
+    let mut kinds = HashSet::new();
+    for outcome in simulator.simulate_batch(&free_throw_uniform(20_000, 27)).unwrap() {
+        let contacts = &outcome.verdict.contacts;
+        kinds.insert(outcome.kind);
+        assert_eq!(outcome.verdict.made, outcome.kind.is_made());
+        assert_eq!(
+            contacts.to_string().split_whitespace().count() as u32,
+            contacts.count()
+        );
+        assert_ne!(outcome.kind, OutcomeKind::Unresolved);
+        if matches!(outcome.kind, OutcomeKind::Swish | OutcomeKind::Airball) {
+            assert_eq!(contacts.count(), 0);
+        }
+        if outcome.verdict.made {
+            assert!(outcome.entry.unwrap().angle_rad > 0.0);
+        }
+    }
+    for kind in [
+        OutcomeKind::Swish,
+        OutcomeKind::RimIn,
+        OutcomeKind::BankIn,
+        OutcomeKind::BankRimIn,
+        OutcomeKind::InAndOut,
+        OutcomeKind::Short,
+        OutcomeKind::Long,
+        OutcomeKind::OverBoard,
+        OutcomeKind::Lodged,
+    ] {
+        assert!(kinds.contains(&kind), "no shot was {kind}");
+    }
+}
+
+#[test]
+fn prop_the_rule_for_lodged_balls_changes_no_made_shot() {
+    let with = Physics::paper();
+    let without = Physics {
+        lodged_after_s: 0.0,
+        ..Physics::paper()
+    };
+    let shots = free_throw_uniform(20_000, 28);
+    let (with, without) = (event_driven(&with, 8), event_driven(&without, 8));
+    assert_eq!(disagreements(&with, &without, &shots), 0);
+}
+
+#[test]
+fn prop_grazes_are_found() {
+    // Parabolas that pass the back of the ring at a least distance just below or above R. The event-driven
+    // integrator must tell them apart, however small the overlap. Bisection on the speed, between a swish and
+    // the first contact, finds them.
+    let simulator = Simulator::new(&Physics::paper()).unwrap();
+    let mut edges = 0;
+    for i in 0..50 {
+        let pitch = 45.0 + 0.4 * f64::from(i);
+        let shoot = |speed: f64| {
+            let outcome = simulator.simulate(&release(0.0, speed, pitch, 0.3, 1.0));
+            outcome.unwrap()
+        };
+        let count = |speed: f64| shoot(speed).verdict.contacts.count();
+        let swish = (2200..2700)
+            .map(|v| f64::from(v) * 0.01)
+            .find(|&v| shoot(v).kind == OutcomeKind::Swish);
+        let Some(mut low) = swish else { continue };
+        let mut high = low + 2.0;
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if count(middle) == 0 {
+                low = middle
+            } else {
+                high = middle
+            }
+        }
+        // On both sides of the edge the answer is the one for that side, down to 1e-6 ft/s.
+        for off in [1e-3, 1e-4, 1e-5, 1e-6] {
+            assert_eq!(count(low - off), 0, "pitch {pitch}");
+            assert!(count(high + off) > 0, "pitch {pitch}");
+        }
+        edges += 1;
+    }
+    assert!(edges >= 40, "{edges}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn prop_every_release_ends(
+        distance in 0.4_f64..12.0, court in -1.5_f64..1.5, height in -3.0_f64..1.0,
+        speed in 0.0_f64..30.0, pitch in -1.5_f64..1.57, polar in -3.2_f64..3.2,
+        back in -60.0_f64..60.0, rifle in -60.0_f64..60.0, side in -60.0_f64..60.0,
+    ) {
+        let release = Release {
+            distance_m: distance,
+            court_angle_rad: court,
+            height_above_hoop_m: height,
+            speed_m_s: speed,
+            pitch_rad: pitch,
+            polar_rad: polar,
+            backspin_rad_s: back,
+            rifle_spin_rad_s: rifle,
+            side_spin_rad_s: side,
+        };
+        let simulator = Simulator::new(&Physics::paper()).unwrap();
+        let outcome = simulator.simulate(&release).unwrap();
+        prop_assert!(outcome.verdict.time_s.is_finite() && outcome.apex_m.is_finite());
+        prop_assert!(outcome.kind != OutcomeKind::Unresolved, "{release:?}");
+    }
+}

@@ -1,0 +1,78 @@
+//! The search for the best shot against brute force.
+
+use crate::common::{at, grid, load};
+use bankshot::best_shot::{self, ShotKind};
+use bankshot::probability::{NominalTable, Sampler, Silent};
+use bankshot::search_space::TablePlan;
+use bankshot::shooter::SearchSettings;
+use bankshot::units::FOOT_M;
+
+#[test]
+#[ignore = "two minutes: cargo test --test validation campaign_best -- --ignored --nocapture"]
+fn campaign_best_is_within_three_thousandths_of_a_brute_force_search() {
+    // Authority: brute force. It simulates a table of 9 million points over everything the shooter can intend.
+    // Of the table's nominal shots it takes the thirty best of each kind, no two of them neighbours, and
+    // integrates these to 0.0005.
+    let places = [
+        ("free_throw", 13.75, 0.0),
+        ("free_throw", 6.0, 30.0),
+        ("free_throw", 9.0, 60.0),
+        ("bank_wing", 12.0, 50.0),
+        ("bank_wing", 18.0, 50.0),
+        ("elite", 20.0, 0.0),
+        ("elite", 15.0, 75.0),
+        ("novice", 10.0, 20.0),
+        ("school", 13.75, -45.0),
+        ("three_pointer", 22.0, 10.0),
+    ];
+    for (name, distance_ft, angle_deg) in places {
+        let profile = at(&load(name), distance_ft * FOOT_M, angle_deg)
+            .with(|settings| {
+                settings.search = SearchSettings {
+                    standard_error: Some(0.0005),
+                    ..SearchSettings::default()
+                };
+            })
+            .unwrap();
+        let sampler = Sampler::new(&profile);
+        let best = best_shot::find(&profile, &Silent).unwrap();
+        let wide = profile
+            .with(|settings| settings.grid = grid(120, 90, 84, 10))
+            .unwrap();
+        let plan = TablePlan::for_search(&wide).unwrap();
+        let table = NominalTable::simulate(&wide, &plan, &Silent).probabilities(&wide);
+        let mut order: Vec<usize> = (0..table.values.len()).collect();
+        order.sort_by(|&a, &b| table.values[b].total_cmp(&table.values[a]));
+        let counts = table.counts();
+        let index_of = |i: usize| {
+            let (rest, speed) = (i / counts[3], i % counts[3]);
+            let (rest, spin) = (rest / counts[2], rest % counts[2]);
+            [rest / counts[1], rest % counts[1], spin, speed]
+        };
+        for (kind, found) in best.by_kind() {
+            let mut chosen: Vec<[usize; 4]> = Vec::new();
+            let mut brute = 0.0_f64;
+            for &i in &order {
+                let index = index_of(i);
+                let near = |other: &[usize; 4]| (0..4).all(|k| index[k].abs_diff(other[k]) <= 1);
+                let (p, shot) = table.at(index);
+                if chosen.len() == 30 || p == 0.0 {
+                    break;
+                }
+                if chosen.iter().any(near) || ShotKind::of(&profile, &shot) != kind {
+                    continue;
+                }
+                chosen.push(index);
+                let estimate = sampler.estimate(&shot, 0.0005, 31, &Silent);
+                brute = brute.max(estimate.probability);
+            }
+            let p = found.as_ref().map_or(0.0, |shot| shot.estimate.probability);
+            println!(
+                "{name:13} {distance_ft:5} ft {angle_deg:5} deg {:6}: best {p:.4}, brute force {brute:.4}, {:+.4}",
+                kind.name(),
+                p - brute
+            );
+            assert!(p > brute - 0.003, "{name} {kind:?}: {p} {brute}");
+        }
+    }
+}
