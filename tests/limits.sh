@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A sweep under limits: memory, files, threads, full and read-only disks, odd files in the place of its
-# configuration. Needs root for its mounts. About half a minute.
+# Runs a sweep under limits: memory, open files, threads, full and read-only disks, and unusual files instead
+# of its configuration. Needs root for its mounts. Takes about half a minute.
 #   cargo build --release && tests/limits.sh
 set -uo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
@@ -9,34 +9,36 @@ sweep=$project/tests/small_sweep.toml
 work=$(mktemp -d /tmp/bankshot-limits.XXXXXX)
 trap 'umount "$work/tiny" "$work/readonly" 2>/dev/null; chattr -i "$work/fixed" 2>/dev/null; rm -rf "$work"' EXIT
 passed=0 failed=0
-# expect CODE NAME COMMAND...
+# Runs a command and checks its exit code: expect CODE NAME COMMAND...
 expect() {
   local want=$1 name=$2 got
   shift 2
-  "$@" >"$work/said" 2>&1
+  "$@" >"$work/output" 2>&1
   got=$?
-  if [ "$got" = "$want" ] && ! grep -q 'panicked' "$work/said"; then
+  if [ "$got" = "$want" ] && ! grep -q 'panicked' "$work/output"; then
     passed=$((passed + 1))
-    echo "ok      $name: $got $(head -c 150 "$work/said" | head -1)"
+    echo "ok      $name: $got $(head -c 150 "$work/output" | head -1)"
   else
     failed=$((failed + 1))
-    echo "FAILED  $name: $got in place of $want: $(head -3 "$work/said")"
+    echo "FAILED  $name: exit $got, expected $want: $(head -3 "$work/output")"
   fi
 }
 run() { "$bankshot" sweep "$sweep" --out "$1" --quiet; }
-same() { # the folder's tables are the undisturbed ones after a clean run
-  expect 0 "$1, then undisturbed" run "$2"
+# After a clean run, the tables of the folder are those of the undisturbed run: same NAME FOLDER
+same() {
+  expect 0 "$1, then a clean run" run "$2"
   expect 0 "$1, same bytes" cmp "$work/alone/best_shots.parquet" "$2/best_shots.parquet"
 }
 expect 0 "undisturbed" run "$work/alone"
 
 expect 74 "8 open files" bash -c "ulimit -n 8; exec \"\$@\"" sh "$bankshot" sweep "$sweep" --out "$work/files" --quiet
 same "8 open files" "$work/files"
-expect 74 "no more threads" prlimit --nproc=1:1 setpriv --reuid 65534 --clear-groups "$bankshot" sweep "$sweep" --out "$work/threads" --quiet
+expect 74 "no more threads" prlimit --nproc=1:1 setpriv --reuid 65534 --clear-groups \
+  "$bankshot" sweep "$sweep" --out "$work/threads" --quiet
 same "no more threads" "$work/threads"
-# An allocation that fails aborts the program; the next start goes on.
-bash -c "ulimit -v 60000; exec \"\$@\"" sh "$bankshot" sweep "$sweep" --out "$work/memory" --quiet >"$work/said" 2>&1
-echo "        60 MB of address space: exit $?, $(head -1 "$work/said")"
+# An allocation that fails aborts the program. The next start continues.
+bash -c "ulimit -v 60000; exec \"\$@\"" sh "$bankshot" sweep "$sweep" --out "$work/memory" --quiet >"$work/output" 2>&1
+echo "        60 MB of address space: exit $?, $(head -1 "$work/output")"
 same "60 MB of address space" "$work/memory"
 
 mkdir "$work/tiny" "$work/readonly"
@@ -52,13 +54,13 @@ run "$work/tiny/out" >/dev/null 2>&1
 cp "$work/tiny/out/best_shots.csv" "$work/before.csv"
 dd if=/dev/zero of="$work/tiny/full" bs=4k 2>/dev/null
 expect 74 "merge on a full disk" "$bankshot" merge "$work/tiny/out"
-expect 0 "its old tables are untouched" cmp "$work/before.csv" "$work/tiny/out/best_shots.csv"
+expect 0 "the old tables are unchanged" cmp "$work/before.csv" "$work/tiny/out/best_shots.csv"
 umount "$work/tiny"
 
 mount -t tmpfs -o ro tmpfs "$work/readonly"
 expect 74 "a read-only disk" run "$work/readonly/out"
 umount "$work/readonly"
-mkdir "$work/fixed" && chattr +i "$work/fixed" && expect 74 "a folder that cannot change" run "$work/fixed"
+mkdir "$work/fixed" && chattr +i "$work/fixed" && expect 74 "an immutable folder" run "$work/fixed"
 chattr -i "$work/fixed"
 ln -s "$work/real" "$work/link" && mkdir "$work/real"
 same "a linked folder" "$work/link"
@@ -74,11 +76,11 @@ expect 2 "a TOML of 2 GB" config "$work/large.toml"
 printf '\xff\xfe[sweep]' >"$work/bytes.toml"
 expect 2 "a TOML that is not UTF-8" config "$work/bytes.toml"
 printf '[sweep]\nname = "a\0b"' >"$work/nul.toml"
-expect 2 "a NUL in it" config "$work/nul.toml"
+expect 2 "a TOML with a NUL" config "$work/nul.toml"
 mkfifo "$work/fifo.toml"
-expect 2 "a FIFO" config "$work/fifo.toml"
-expect 2 "a folder" config "$work"
-expect 2 "nothing" config "$work/nothing.toml"
+expect 2 "a FIFO instead of a TOML" config "$work/fifo.toml"
+expect 2 "a folder instead of a TOML" config "$work"
+expect 2 "a missing TOML" config "$work/missing.toml"
 expect 0 "nothing was written" test ! -e "$work/none"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Power cuts under a sweep: an ext4 file system in a file is shut down at random moments, as if the power had gone,
-# mounted again and the sweep goes on; no job that was reported done may be missing. Needs root, loop devices
-# and xfs_io (package xfsprogs). About a minute.
+# Simulates power cuts during a sweep. An ext4 file system in a file is shut down at random moments, mounted
+# again, and the sweep continues. No job that was reported as done may be missing. Needs root, loop devices
+# and xfs_io (package xfsprogs). Takes about a minute.
 #   cargo build --release && tests/power_cut.sh [CUTS]
 set -euo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
@@ -15,9 +15,10 @@ truncate -s 64M "$disk"
 mkfs.ext4 -q "$disk"
 "$bankshot" sweep "$project/tests/small_sweep.toml" --out "$work/alone" --quiet >/dev/null
 mount -o loop "$disk" "$mount"
-out=$mount/out rounds=0 lost=0
-# What the program has been told is on disk, read from the store just before the cut by a process that commits nothing.
-there() { python3 - "$1" <<'PY'
+out=$mount/out complete=0 lost=0
+# Prints the jobs in the stores of a folder. It runs just before the cut and commits nothing, so these are the
+# jobs that the program believes to be on disk.
+saved_jobs() { python3 - "$1" <<'PY'
 import glob, sqlite3, sys
 done = set()
 for path in glob.glob(sys.argv[1] + "/store/*.sqlite"):
@@ -31,18 +32,18 @@ PY
 for cut in $(seq "$cuts"); do
   "$bankshot" sweep "$project/tests/small_sweep.toml" --out "$out" --quiet >/dev/null 2>&1 &
   sleep "0.$((RANDOM % 9))$((RANDOM % 10))"
-  before=$(there "$out")
-  # Without flushing: what was not synced is gone.
+  before=$(saved_jobs "$out")
+  # This shutdown does not flush, so data that was not synced is lost.
   xfs_io -x -c 'shutdown' "$mount"
   wait || true
   umount -l "$mount"
   mount -o loop "$disk" "$mount"
-  after=" $(there "$out") "
+  after=" $(saved_jobs "$out") "
   for job in $before; do
-    [[ $after == *" $job "* ]] || { echo "cut $cut: job $job was on disk and is gone"; lost=$((lost + 1)); }
+    [[ $after == *" $job "* ]] || { echo "cut $cut: job $job was on disk and is lost"; lost=$((lost + 1)); }
   done
   if [ -e "$out/best_shots.csv" ]; then
-    rounds=$((rounds + 1))
+    complete=$((complete + 1))
     for table in best_shots.csv best_shots.parquet; do cmp "$work/alone/$table" "$out/$table"; done
     rm -rf "$out"
     sync
@@ -51,4 +52,4 @@ done
 "$bankshot" sweep "$project/tests/small_sweep.toml" --out "$out" --quiet >/dev/null
 for table in best_shots.csv best_shots.parquet provenance.json; do cmp "$work/alone/$table" "$out/$table"; done
 [ "$lost" = 0 ]
-echo "$cuts power cuts, $rounds whole sweeps among them, no finished job lost, the same bytes in the end"
+echo "$cuts power cuts, $complete complete sweeps, no finished job lost, the same bytes at the end"

@@ -10,7 +10,10 @@ use bankshot::units::FOOT_M;
 fn assert_agrees(profile: &Profile) {
     assert_eq!(profile.simulator().physics(), profile.physics());
     assert_eq!(profile.simulator().physics(), &profile.settings().physics);
-    assert_eq!(profile.simulator().integrator(), profile.settings().integrator);
+    assert_eq!(
+        profile.simulator().integrator(),
+        profile.settings().integrator
+    );
 }
 
 #[test]
@@ -101,7 +104,9 @@ fn contract_impossible_choices_of_a_search_are_refused() {
         ),
     ] {
         let text = format!("{profile}\n[search]\n{search}\n");
-        let error = config::parse_profile(&text, "test").unwrap_err().to_string();
+        let error = config::parse_profile(&text, "test")
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(message), "{search}: {error}");
     }
 }

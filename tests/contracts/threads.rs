@@ -39,7 +39,11 @@ fn contract_threads_and_instruction_sets_change_no_bit_of_p() {
     let one = find(1, InstructionSet::SCALAR);
     for (name, instructions) in InstructionSet::available() {
         for threads in THREADS {
-            assert_eq!(one, find(threads, instructions), "{name}, {threads} threads");
+            assert_eq!(
+                one,
+                find(threads, instructions),
+                "{name}, {threads} threads"
+            );
         }
     }
 }

@@ -127,9 +127,12 @@ fn prop_best_shots_are_of_their_kind_and_mirror() {
         let difference = (one.estimate.probability - two.estimate.probability).abs();
         let error = error_of_difference(one, two);
         println!("{kind:?}: difference {difference:.5}, standard error {error:.5}");
-        // Two comparisons at 4.5 standard errors: a false alarm for 1 of 75,000 choices of seeds. The rms error
-        // of the tables is 0.001.
-        assert!(difference < 4.5 * error + 0.001, "{kind:?} {difference} {error}");
+        // Two comparisons at 4.5 standard errors: a false alarm for 1 of 75,000 choices of seeds. The rms
+        // error of the tables is 0.001.
+        assert!(
+            difference < 4.5 * error + 0.001,
+            "{kind:?} {difference} {error}"
+        );
     }
 }
 
@@ -143,8 +146,8 @@ fn prop_the_best_shot_is_not_below_its_own_table() {
         let difference = shot.estimate.probability - shot.table_probability;
         let error = shot.estimate.standard_error;
         println!("best minus table: {difference:+.5}, standard error {error:.5}");
-        // Three times the rms error of the table, and 4.5 standard errors: a false alarm for fewer than 1 of 1000
-        // choices of seeds.
+        // Three times the rms error of the table, and 4.5 standard errors: a false alarm for fewer than 1
+        // of 1000 choices of seeds.
         assert!(difference > -0.003 - 4.5 * error, "{shot:?}");
     }
 }

@@ -161,7 +161,10 @@ fn prop_a_scaled_world_gives_the_same_shots() {
 fn prop_outcomes_are_consistent() {
     let simulator = Simulator::new(&Physics::paper()).unwrap();
     let mut kinds = HashSet::new();
-    for outcome in simulator.simulate_batch(&free_throw_uniform(20_000, 27)).unwrap() {
+    for outcome in simulator
+        .simulate_batch(&free_throw_uniform(20_000, 27))
+        .unwrap()
+    {
         let contacts = &outcome.verdict.contacts;
         kinds.insert(outcome.kind);
         assert_eq!(outcome.verdict.made, outcome.kind.is_made());

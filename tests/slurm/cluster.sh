@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# A whole Slurm cluster on this one machine, on loopback only, in one private folder; for drills.
+# Runs a complete Slurm cluster on this machine, for drills: on loopback only, in one private folder.
 #   cluster.sh up [NODES]        start munged, slurmctld and NODES times slurmd (installs them on Debian)
-#   cluster.sh env               what to export to use it
-#   cluster.sh kill-node nX      the machine dies: slurmd and all that it runs
-#   cluster.sh cut-node nX       the cable is cut: slurmd dies, what it runs lives on
-#   cluster.sh start-node nX     the node comes back
+#   cluster.sh env               print what to export to use the cluster
+#   cluster.sh kill-node nX      a machine dies: kill slurmd and everything that it runs
+#   cluster.sh cut-node nX       the network of a node fails: kill slurmd, but not what it runs
+#   cluster.sh start-node nX     start a node again
 #   cluster.sh kill-controller | start-controller
-#   cluster.sh down              stop all of it
-# Needs root and Debian 12 or newer (slurm-wlm, munge); no systemd, no cgroups.
+#   cluster.sh down              stop everything
+# Needs root and Debian 12 or newer (slurm-wlm, munge). Needs neither systemd nor cgroups.
 set -euo pipefail
 root=${BANKSHOT_CLUSTER:-/tmp/bankshot-cluster}
 port=${BANKSHOT_CLUSTER_PORT:-27800}
@@ -15,7 +15,7 @@ conf=$root/slurm.conf
 
 install() {
   command -v slurmctld >/dev/null && command -v munged >/dev/null && command -v pgrep >/dev/null && return
-  # The packages would start services of their own.
+  # Without this policy the packages start their own services.
   local policy=/usr/sbin/policy-rc.d made=
   [ -e $policy ] || { printf '#!/bin/sh\nexit 101\n' >$policy; chmod 755 $policy; made=yes; }
   apt-get update -qq
@@ -32,7 +32,7 @@ configure() {
     head -c 1024 /dev/urandom >"$root/munge/key"
     chmod 400 "$root/munge/key"
   fi
-  # A dead node is noticed after 10 s (300 s by default on a real cluster).
+  # Slurm notices a dead node after 10 s (on a real cluster after 300 s by default).
   cat >"$conf" <<CONF
 ClusterName=drill
 SlurmctldHost=$host(127.0.0.1)
@@ -67,7 +67,7 @@ KillWait=5
 MinJobAge=300
 SchedulerParameters=batch_sched_delay=1,sched_interval=5,bf_interval=5
 CONF
-  # Without a mounted cgroup, v1 asks nobody.
+  # No cgroup is mounted. With the plugin for v1, Slurm does not need one.
   echo 'CgroupPlugin=cgroup/v1' >"$root/cgroup.conf"
   for k in $(seq "$nodes"); do
     echo "NodeName=n$k NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + k)) CPUs=1 RealMemory=512 State=UNKNOWN" >>"$conf"
@@ -87,13 +87,14 @@ munge() {
 controller() { alive "$root/pid/slurmctld.pid" || slurmctld -f "$conf"; }
 node() { alive "$root/pid/slurmd.$1.pid" || { mkdir -p "$root/spool/$1"; slurmd -f "$conf" -N "$1"; }; }
 
+# Prints a process and all its descendants, the descendants first.
 family() {
   local child
   for child in $(pgrep -P "$1" || true); do family "$child"; done
   echo "$1"
 }
 
-# The step daemons of a node: those with a child that runs on it.
+# Prints the step daemons of a node: those with a child that runs on it.
 steps() {
   local step child
   for step in $(pgrep -f '^slurmstepd: ' || true); do

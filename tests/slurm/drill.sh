@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A sweep on a real Slurm of three nodes, on this machine, while things die; in the end the tables must have the
-# bytes of one undisturbed run. About 6 minutes on 2 cores; needs root on Debian (installs slurm-wlm and munge).
+# Runs a sweep on a real Slurm of three nodes on this machine, while programs, nodes and the controller are
+# killed. At the end the tables must have the bytes of one undisturbed run. Takes about 6 minutes on 2 cores.
+# Needs root on Debian (installs slurm-wlm and munge).
 #   cargo build --release && tests/slurm/drill.sh
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -31,18 +32,21 @@ eval "$("$here/cluster.sh" env)"
 sinfo -N
 cd "$work"
 out=$work/out
-# Many nodes have one name here, as none would on a real cluster; two tasks of one shard would find each other's lock.
+# All nodes have the same host name here, unlike on a real cluster. So two tasks of one shard would find each
+# other's lock.
 submit() {
   local tries
   for tries in 1 2 3 4 5; do
-    sbatch --parsable --time=10 --mem-per-cpu=100M --array="$1" "$project/configs/cluster/array.sbatch" sweep.toml "$out" "$shards" && return
+    sbatch --parsable --time=10 --mem-per-cpu=100M --array="$1" \
+      "$project/configs/cluster/array.sbatch" sweep.toml "$out" "$shards" && return
     sleep 3
   done
   return 1
 }
-jobs_there() { "$BANKSHOT" status "$out" 2>/dev/null | grep -o '[0-9]* of [0-9]* jobs' | head -1 || true; }
+jobs_done() { "$BANKSHOT" status "$out" 2>/dev/null | grep -o '[0-9]* of [0-9]* jobs done' | head -1 || true; }
 running() { squeue -h -t running -o '%i %N %K' | sort; }
-wait_for() { # until a command says yes, at most $1 s
+# Waits until a command succeeds, at most SECONDS: wait_for SECONDS COMMAND...
+wait_for() {
   local until=$((SECONDS + $1)); shift
   while ! "$@"; do [ $SECONDS -lt $until ] || { say "waited too long for: $*"; return 1; }; sleep 1; done
 }
@@ -53,7 +57,7 @@ first=$(submit "1-$shards")
 say "submitted array $first"
 wait_for 60 has_running
 sleep 2
-say "running: $(running | tr '\n' ';') there: $(jobs_there)"
+say "running: $(running | tr '\n' ';') $(jobs_done)"
 
 say "the program is killed in one task"
 victim=$(pgrep -f "sweep sweep.toml --out $out" | head -1)
@@ -69,23 +73,23 @@ say "task $task is cancelled"
 [ -z "$task" ] || scancel "$task"
 
 sleep 1
-say "the cable of n3 is cut: its task lives on and will be requeued"
+say "the network of n3 fails: its task continues and will be requeued"
 "$here/cluster.sh" cut-node n3
 
-say "the controller dies and comes back"
+say "the controller dies and is started again"
 "$here/cluster.sh" kill-controller
 sleep 3
 "$here/cluster.sh" start-controller
 sleep 12
-say "the nodes come back; there: $(jobs_there)"
+say "the nodes are started again; $(jobs_done)"
 "$here/cluster.sh" start-node n2
 "$here/cluster.sh" start-node n3
 
-# Whatever Slurm requeued, lost or gave up: submit what is missing until nothing is.
+# Slurm may have requeued, lost or given up tasks. Submit what is missing until nothing is missing.
 for round in 1 2 3 4 5; do
   wait_for 400 is_empty
   missing=$("$BANKSHOT" missing "$out" --shards "$shards" || true)
-  say "queue empty; missing: ${missing:-none}; there: $(jobs_there)"
+  say "queue empty; missing: ${missing:-none}; $(jobs_done)"
   [ -n "$missing" ] || break
   submit "$missing" >/dev/null
   sleep 5
@@ -96,6 +100,6 @@ for table in best_shots.csv best_shots.parquet provenance.json; do
   cmp "$work/alone/$table" "$out/$table"
 done
 say "stores: $(ls "$out/store" | tr '\n' ' ')"
-say "the tables are those of the undisturbed run, byte for byte"
+say "the tables have the bytes of the undisturbed run"
 cd /
 rm -rf "$work"

@@ -3,9 +3,9 @@
     python3 tests/validation/generate_bands.py [CASE ...] [--dt SECONDS]
 
 It compiles benches/peers/paper_rk4.c (needs a C compiler) and simulates 3000 speeds per case at 52 deg,
-0.002 ft/s apart, with uniform steps of 5e-6 s. One case takes about a minute and a half. The test
-tests/validation/paper_figures.rs holds the bands that this script prints. Bands of 0.03 ft/s or less are
-not listed, but they count in the total.
+0.002 ft/s apart, with uniform steps of 5e-6 s. One case takes about two minutes. The tests of
+tests/validation/paper_figures.rs expect these bands. Bands of 0.03 ft/s or less are not listed, but they
+count in the total.
 """
 
 import argparse

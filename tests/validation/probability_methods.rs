@@ -71,11 +71,7 @@ fn val_grid_monte_carlo_and_sobol_agree_on_six_shots() {
         ),
         ("near", place(5.0, 20.0), nominal(17.3, 65.0, 20.0, 1.0)),
         // A little too fast and to the side: the ball runs round the ring.
-        (
-            "swirl",
-            place(13.75, 0.0),
-            nominal(23.9, 48.0, 1.6, 2.0),
-        ),
+        ("swirl", place(13.75, 0.0), nominal(23.9, 48.0, 1.6, 2.0)),
     ] {
         let plan = TablePlan::for_search(&profile).unwrap();
         let sobol = Sampler::new(&profile).estimate(&shot, 0.0006, 3, &Silent);

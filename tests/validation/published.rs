@@ -159,6 +159,7 @@ impl LeastSpeed {
         assert!((55.5..=59.5).contains(&pitch_deg), "{pitch_deg}");
         let speed = self.best.nominal.speed_m_s;
         assert!(speed > self.least_m_s && speed < 7.6, "{speed}");
+        // The value of docs/validation.md, less what a coarse table loses.
         let p = self.best.estimate.probability;
         assert!((p - 0.708).abs() < 0.006, "{p}");
     }
@@ -209,9 +210,10 @@ fn val_slegers_2021_success_goes_with_the_scatter_of_speed() {
     check_scatter(scatter_of_players(Effort::Coarse));
 }
 
-/// Silverberg, Tran and Adams 2011, "Optimal targets for the bank shot in men's basketball" (J. Quant. Anal.
-/// Sports 7): the bank shot is better near the hoop and at the sides, the direct shot far away and straight on.
-/// Distance (ft), court angle (deg), and whether the bank shot is better.
+/// Silverberg, Tran and Adams 2011, "Optimal targets for the bank shot in men's basketball" (J. Quant.
+/// Anal. Sports 7): the bank shot is better near the hoop and at the sides, the direct shot is better far
+/// away and straight on. Each row has the distance (ft), the court angle (deg), and whether the bank shot is
+/// better.
 const PLACES: [(f64, f64, bool); 8] = [
     (6.0, 0.0, true),
     (6.0, 30.0, true),
@@ -232,7 +234,11 @@ fn check_bank_against_direct(effort: Effort) {
             "| {distance_ft} ft | {angle_deg} deg | {:.3} | {:.3} | {gain:+.3} +- {error:.3} |",
             direct.estimate.probability, bank.estimate.probability
         );
-        assert_eq!(gain > 0.0, bank_is_better, "{distance_ft} ft {angle_deg} deg");
+        assert_eq!(
+            gain > 0.0,
+            bank_is_better,
+            "{distance_ft} ft {angle_deg} deg"
+        );
         assert!(gain.abs() > 4.5 * error, "{gain} {error}");
     }
 }
@@ -270,7 +276,10 @@ fn campaign_published() {
         let sum = eq25_grids::common_grid(&profile, &plan, &shot, n, &Silent);
         let off = sum.probability - sobol.probability;
         worst = worst.max(off.abs());
-        println!("| paper-grid, n = {n} | {:.4} | {off:+.4} | |", sum.probability);
+        println!(
+            "| paper-grid, n = {n} | {:.4} | {off:+.4} | |",
+            sum.probability
+        );
     }
     assert!(worst > 5.0 * sobol.standard_error, "no aliasing: {worst}");
 

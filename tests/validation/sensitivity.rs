@@ -48,7 +48,11 @@ fn val_backspin_helps_a_free_throw_and_more_of_it_helps_more() {
     // Authority: the paper (Figs. 12 and 13) finds wider bands with 3 rev/s than without.
     let (profile, shot) = free_throw();
     let found = analyse(&profile, &shot);
-    let gains: Vec<f64> = found.backspins.iter().map(|other| other.gain.value).collect();
+    let gains: Vec<f64> = found
+        .backspins
+        .iter()
+        .map(|other| other.gain.value)
+        .collect();
     assert!(gains.is_sorted(), "{gains:?}");
     let best = found.backspin_gain().unwrap();
     assert!(best.value > 10.0 * best.standard_error, "{best:?}");
