@@ -22,10 +22,7 @@ pub struct ProbabilityCurve {
 }
 
 /// The lines of a window's table through the nominal shot nearest to the given one.
-pub(crate) fn from_table(
-    table: &NominalProbabilities,
-    nominal: &Nominal,
-) -> Vec<ProbabilityCurve> {
+pub(crate) fn from_table(table: &NominalProbabilities, nominal: &Nominal) -> Vec<ProbabilityCurve> {
     let counts = table.counts();
     let index = table.index_of(nominal);
     NominalVariable::SEARCHABLE

@@ -103,7 +103,10 @@ impl<'a> ProbabilityMap<'a> {
             nominal,
             cells,
             step,
-            margin: (reach(speed_sigma, step.0), reach(dispersion.c20_rad, step.1)),
+            margin: (
+                reach(speed_sigma, step.0),
+                reach(dispersion.c20_rad, step.1),
+            ),
         }
     }
 
@@ -184,10 +187,9 @@ impl<'a> ProbabilityMap<'a> {
             .into_par_iter()
             .flat_map_iter(|row| {
                 let weights = cell_weights(rows, row + self.margin.1, sigma);
-                (0..self.cells.columns)
-                    .map(move |column| {
-                        weighted_mean(&weights, by_row.iter().map(|values| values[column]))
-                    })
+                (0..self.cells.columns).map(move |column| {
+                    weighted_mean(&weights, by_row.iter().map(|values| values[column]))
+                })
             })
             .collect()
     }

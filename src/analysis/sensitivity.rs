@@ -196,10 +196,7 @@ pub fn analyse(
         heights: analysis.heights(&HEIGHTS_M[..heights]),
         windows: ShotWindow::VARIABLES.map(|variable| ShotWindow {
             variable,
-            ends: topics
-                .windows
-                .then(|| analysis.window(variable))
-                .flatten(),
+            ends: topics.windows.then(|| analysis.window(variable)).flatten(),
         }),
     };
     progress.end();
@@ -300,11 +297,7 @@ impl Analysis<'_> {
     }
 
     /// Gain in P if the standard deviation of one error is multiplied by `factor`, 0 to 1.
-    fn gain_with_error_scaled(
-        &self,
-        variable: ReleaseVariable,
-        factor: f64,
-    ) -> Option<Difference> {
+    fn gain_with_error_scaled(&self, variable: ReleaseVariable, factor: f64) -> Option<Difference> {
         let other = self
             .profile
             .with(|settings| {

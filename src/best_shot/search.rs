@@ -179,10 +179,7 @@ pub fn find_kinds(
 /// the other is its mirror image.
 fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
     let most = profile.shooter().max_side_spin_rad_s;
-    let is_searched = profile
-        .search()
-        .choice
-        .includes(NominalVariable::SideSpin);
+    let is_searched = profile.search().choice.includes(NominalVariable::SideSpin);
     match (is_searched, plan.mirrored) {
         (false, _) => vec![plan.nominal.side_spin_rad_s],
         (true, true) => vec![0.0, most],
@@ -405,10 +402,22 @@ impl BestShotSearch<'_> {
         let pitch = searches(NominalVariable::Pitch);
         let backspin = max_spin > min_spin;
         [
-            (Limit::PitchMin, pitch && nominal.pitch_rad <= search.pitch_min_rad),
-            (Limit::PitchMax, pitch && nominal.pitch_rad >= search.pitch_max_rad),
-            (Limit::NoBackspin, backspin && nominal.backspin_rad_s <= min_spin),
-            (Limit::MaxBackspin, backspin && nominal.backspin_rad_s >= max_spin),
+            (
+                Limit::PitchMin,
+                pitch && nominal.pitch_rad <= search.pitch_min_rad,
+            ),
+            (
+                Limit::PitchMax,
+                pitch && nominal.pitch_rad >= search.pitch_max_rad,
+            ),
+            (
+                Limit::NoBackspin,
+                backspin && nominal.backspin_rad_s <= min_spin,
+            ),
+            (
+                Limit::MaxBackspin,
+                backspin && nominal.backspin_rad_s >= max_spin,
+            ),
             (
                 Limit::MaxSideSpin,
                 searches(NominalVariable::SideSpin)

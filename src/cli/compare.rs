@@ -132,7 +132,9 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     let shots = PlottedShot::of_best(&best);
     let mut plots: Vec<Plot> = Vec::new();
     plots.extend(bank_direct_release_map::draw_outcomes(&profile, &shots));
-    plots.extend(bank_direct_release_map::draw_probabilities(&profile, &shots));
+    plots.extend(bank_direct_release_map::draw_probabilities(
+        &profile, &shots,
+    ));
     let mut text = probabilities_text(&profile, &best);
     let mut exit = run_folder::exit_code(&profile, &best);
     if let Some(other) = other {

@@ -109,4 +109,10 @@ macro_rules! usage_errors {
     };
 }
 
-usage_errors!(ConfigError, ProfileError, PlanError, BestShotError, StateError);
+usage_errors!(
+    ConfigError,
+    ProfileError,
+    PlanError,
+    BestShotError,
+    StateError
+);

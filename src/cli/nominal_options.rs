@@ -76,9 +76,9 @@ impl NominalOptions {
         let default = match variable {
             NominalVariable::Speed | NominalVariable::Pitch => None,
             NominalVariable::Polar => Some(profile.location().angle_rad),
-            NominalVariable::Backspin
-            | NominalVariable::RifleSpin
-            | NominalVariable::SideSpin => Some(0.0),
+            NominalVariable::Backspin | NominalVariable::RifleSpin | NominalVariable::SideSpin => {
+                Some(0.0)
+            }
         };
         profile
             .nominal_overrides()

@@ -74,9 +74,7 @@ fn forecast(profile: &Profile, plan: &TablePlan, wide_sample: u64) -> Forecast {
         seconds: forecast_s(profile, plan),
         threads,
         // The table, a batch of shots on each thread, and the program.
-        memory_bytes: plan.memory_bytes as f64
-            + (threads * MAX_BATCH_BYTES) as f64
-            + PROGRAM_BYTES,
+        memory_bytes: plan.memory_bytes as f64 + (threads * MAX_BATCH_BYTES) as f64 + PROGRAM_BYTES,
         mass_outside: (
             plan.mass_outside(profile, &middle),
             plan.mass_outside(profile, &edge),

@@ -1,8 +1,8 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
 use super::args::{IntegratorName, SimulateOptions};
-use super::failure::{Failure, code};
 use super::config_files::read_text;
+use super::failure::{Failure, code};
 use super::progress_bars::ProgressBars;
 use super::terminal::print_remark;
 use bankshot::config::parse_physics;
@@ -81,9 +81,13 @@ fn simulator(options: &SimulateOptions) -> Result<Simulator, Failure> {
     };
     let integrator = match options.integrator {
         None => from_file,
-        Some(IntegratorName::Exact) if matches!(from_file, Integrator::EventDriven { .. }) => from_file,
+        Some(IntegratorName::Exact) if matches!(from_file, Integrator::EventDriven { .. }) => {
+            from_file
+        }
         Some(IntegratorName::Exact) => Integrator::EVENT_DRIVEN,
-        Some(IntegratorName::Paper) if matches!(from_file, Integrator::PaperRk4 { .. }) => from_file,
+        Some(IntegratorName::Paper) if matches!(from_file, Integrator::PaperRk4 { .. }) => {
+            from_file
+        }
         Some(IntegratorName::Paper) => Integrator::PAPER_RK4,
     };
     Simulator::with_integrator(&physics, integrator).map_err(Failure::usage)
@@ -162,7 +166,9 @@ impl Stream<'_> {
             let mut record = ByteRecord::new();
             let mut bytes = 0;
             while batch.len() < BATCH
-                && reader.read_byte_record(&mut record).map_err(StreamError::Input)?
+                && reader
+                    .read_byte_record(&mut record)
+                    .map_err(StreamError::Input)?
             {
                 bytes += record.as_slice().len() as u64 + record.len() as u64;
                 batch.push(std::mem::take(&mut record));
@@ -194,10 +200,12 @@ impl Stream<'_> {
                 let release = self.columns.release(row, self.simulator.physics())?;
                 let outcome = self.simulator.simulate(&release);
                 // Its values are finite: they were checked one by one.
-                outcome.map(|outcome| outcome_cells(&outcome)).map_err(|error| RowError {
-                    column: "release".to_owned(),
-                    reason: error.to_string(),
-                })
+                outcome
+                    .map(|outcome| outcome_cells(&outcome))
+                    .map_err(|error| RowError {
+                        column: "release".to_owned(),
+                        reason: error.to_string(),
+                    })
             })
             .collect();
         for (row, outcome) in batch.iter().zip(outcomes) {

@@ -12,7 +12,10 @@ const MAX_FAILURES: usize = 10;
 
 /// How many jobs ended how, and which failed.
 pub(crate) fn job_summary(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> String {
-    let with_status = |status| rows.values().filter(move |row| row.status() == Some(status));
+    let with_status = |status| {
+        rows.values()
+            .filter(move |row| row.status() == Some(status))
+    };
     let mut text = format!(
         "{} of {} jobs done: {} found, {} without a shot that can go in, {} failed\n",
         rows.len(),

@@ -65,7 +65,11 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
             EventKind::Touch(solid) => format!("touches the {}", solid.name()),
             EventKind::Part {
                 solid, duration_s, ..
-            } => format!("leaves the {} ({:.1} ms)", solid.name(), 1000.0 * duration_s),
+            } => format!(
+                "leaves the {} ({:.1} ms)",
+                solid.name(),
+                1000.0 * duration_s
+            ),
             EventKind::End => ending_text(outcome.verdict.ending).to_owned(),
         };
         let _ = writeln!(
@@ -119,7 +123,10 @@ pub(crate) fn trace_json(trace: &Trace, units: UnitSystem) -> serde_json::Value 
             } => {
                 record.push(("duration_s".to_owned(), number(duration_s)));
                 let impulse: [f64; 3] = impulse_n_s.into();
-                record.push(("impulse_n_s".to_owned(), impulse.map(number).to_vec().into()));
+                record.push((
+                    "impulse_n_s".to_owned(),
+                    impulse.map(number).to_vec().into(),
+                ));
                 format!("leave {}", solid.name())
             }
             EventKind::End => "end".to_owned(),

@@ -45,10 +45,7 @@ pub(super) fn read_search(
     search
 }
 
-fn read_choice(
-    table: &mut TableReader<'_, '_>,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> SearchChoice {
+fn read_choice(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>) -> SearchChoice {
     let Some(names) = table.texts("choose", diagnostics) else {
         return SearchChoice::default();
     };

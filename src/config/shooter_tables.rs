@@ -38,20 +38,12 @@ fn read_dispersion(
     table: &mut TableReader<'_, '_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> ReleaseDispersion {
-    let mut required = |key, dimension| {
-        table
-            .required(key, dimension, diagnostics)
-            .unwrap_or(0.0)
-    };
+    let mut required = |key, dimension| table.required(key, dimension, diagnostics).unwrap_or(0.0);
     let c10_m_s = required("c10", Dimension::Speed);
     let c20_rad = required("c20", Dimension::Angle);
     let c30_rad = required("c30", Dimension::Angle);
     let c40_rad_s = required("c40", Dimension::Spin);
-    let mut optional = |key, dimension| {
-        table
-            .quantity(key, dimension, diagnostics)
-            .unwrap_or(0.0)
-    };
+    let mut optional = |key, dimension| table.quantity(key, dimension, diagnostics).unwrap_or(0.0);
     ReleaseDispersion {
         c10_m_s,
         c11: optional("c11", Dimension::Number),

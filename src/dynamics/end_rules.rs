@@ -82,20 +82,24 @@ impl ContactEnd<f64> {
 /// Whether the centre is below `z = -R` and falls: nothing can touch the ball any more.
 #[inline(always)]
 pub(crate) fn fell_below_ring<R: Real>(params: &ModelParams<R>, state: &BallState<R>) -> R::Mask {
-    state.position_m.z.lt(-params.ball_radius) & state.velocity_m_s.z.is_negative()
+    state.position_m.z.lt(-params.ball.radius) & state.velocity_m_s.z.is_negative()
 }
 
 /// Whether a flight that ended at `z = -R` had risen above it: `state` is its end. A flight that never
 /// rises so high ends at its highest point.
 #[inline(always)]
 pub(crate) fn rose_to_ring<R: Real>(params: &ModelParams<R>, state: &BallState<R>) -> R::Mask {
-    let level = params.splat(-1.0) * params.ball_radius - TOUCH_GAP_M;
+    let level = params.splat(-1.0) * params.ball.radius - TOUCH_GAP_M;
     level.lt(state.position_m.z)
 }
 
 /// How a flight ended that reached neither a solid nor the time limit.
 pub(crate) fn flight_ending(rose: bool) -> Ending {
-    if rose { Ending::Fell } else { Ending::NeverRose }
+    if rose {
+        Ending::Fell
+    } else {
+        Ending::NeverRose
+    }
 }
 
 /// Whether a ball that has rolled on two solids for `rolling_time_s` is lodged.

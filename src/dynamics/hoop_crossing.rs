@@ -33,10 +33,9 @@ impl<R: Real> HoopCrossing<R> {
     #[inline(always)]
     pub(crate) fn after_flight(&mut self, params: &ModelParams<R>, start: &BallState<R>, dt: R) {
         let (p, v) = (start.position_m, start.velocity_m_s);
-        let square = v.z.squared() + params.gravity * p.z * 2.0;
-        let t = (v.z - square.positive_part().sqrt()) * params.per_gravity;
-        let rises =
-            p.z.is_negative() & params.zero().le(square) & v.z.is_positive() & t.lt(dt);
+        let square = v.z.squared() + params.ball.gravity * p.z * 2.0;
+        let t = (v.z - square.positive_part().sqrt()) * params.ball.per_gravity;
+        let rises = p.z.is_negative() & params.zero().le(square) & v.z.is_positive() & t.lt(dt);
         let distance_squared = (p.x + v.x * t).squared() + (p.y + v.y * t).squared();
         let inside = distance_squared.lt(params.ring.radius.squared());
         self.rose_through = self.rose_through | (rises & inside);
@@ -52,10 +51,11 @@ impl<R: Real> HoopCrossing<R> {
         after: &BallState<R>,
         stepped: R::Mask,
     ) {
-        let rises = before.position_m.z.is_negative()
-            & params.zero().le(after.position_m.z)
-            & stepped;
-        let inside = after.axis_distance_squared().lt(params.ring.radius.squared());
+        let rises =
+            before.position_m.z.is_negative() & params.zero().le(after.position_m.z) & stepped;
+        let inside = after
+            .axis_distance_squared()
+            .lt(params.ring.radius.squared());
         self.rose_through = self.rose_through | (rises & inside);
         self.above = self.above | rises;
     }
@@ -65,6 +65,8 @@ impl<R: Real> HoopCrossing<R> {
     pub(crate) fn is_made(&self, params: &ModelParams<R>, state: &BallState<R>) -> R::Mask {
         self.above
             & !self.rose_through
-            & state.axis_distance_squared().lt(params.ring.radius.squared())
+            & state
+                .axis_distance_squared()
+                .lt(params.ring.radius.squared())
     }
 }

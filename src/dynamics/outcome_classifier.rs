@@ -106,22 +106,22 @@ impl OutcomeClassifier {
 impl Observer for OutcomeClassifier {
     fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, start: &BallState) {
         let (p, v) = (start.position_m, start.velocity_m_s);
-        let top = v.z / params.gravity;
+        let top = v.z / params.ball.gravity;
         if top > 0.0 && top < dt {
             self.apex_m = self.apex_m.max(p.z + 0.5 * v.z * top);
         }
-        let end = start.after_flight(params, dt);
+        let end = start.after_flight(&params.ball, dt);
         self.apex_m = self.apex_m.max(end.position_m.z);
-        let square = v.z * v.z + 2.0 * params.gravity * p.z;
+        let square = v.z * v.z + 2.0 * params.ball.gravity * p.z;
         if square >= 0.0 {
-            let t = (v.z + square.sqrt()) / params.gravity;
+            let t = (v.z + square.sqrt()) / params.ball.gravity;
             let crossing = (p.x + v.x * t, p.y + v.y * t);
             let is_first_flight = self.aim_m.is_none() && self.first_contact.is_none();
             if is_first_flight || self.awaits_flight_off_board {
                 self.aim_m = Some(crossing);
             }
             if t > 0.0 && t <= dt {
-                self.record_entry(crossing, Vec3::new(v.x, v.y, v.z - params.gravity * t));
+                self.record_entry(crossing, Vec3::new(v.x, v.y, v.z - params.ball.gravity * t));
             }
         }
         self.awaits_flight_off_board = false;

@@ -142,8 +142,8 @@ fn check_finite(index: usize, state: BallState) -> Result<BallState, StateError>
 pub struct Simulator {
     physics: Physics,
     integrator: Integrator,
-    params: ModelParams,
-    limits: RunLimits,
+    pub(super) params: ModelParams,
+    pub(super) limits: RunLimits,
     instructions: InstructionSet,
 }
 
@@ -309,9 +309,7 @@ impl Simulator {
     ) -> &'w [Verdict] {
         match (self.integrator, self.instructions.level()) {
             (Integrator::EventDriven { .. }, Some(level)) => {
-                fearless_simd::dispatch!(level, simd => {
-                    batch::run(simd, &self.params, &self.limits, starts, workspace)
-                });
+                batch::run(level, &self.params, &self.limits, starts, workspace);
             }
             _ => {
                 workspace.verdicts.clear();

@@ -123,7 +123,7 @@ impl Recorder {
     pub(crate) fn into_trace(mut self, params: &ModelParams, outcome: Outcome) -> Trace {
         let (time_s, state, flight_s) = self.last;
         let state = if flight_s > 0.0 {
-            state.after_flight(params, flight_s)
+            state.after_flight(&params.ball, flight_s)
         } else {
             state
         };
@@ -142,7 +142,7 @@ impl Observer for Recorder {
     fn flight(&mut self, params: &ModelParams, t: f64, dt: f64, start: &BallState) {
         let mut done = 0.0;
         while done < dt {
-            self.sample(t + done, start.after_flight(params, done));
+            self.sample(t + done, start.after_flight(&params.ball, done));
             done += self.interval_s;
         }
         self.last = (t, *start, dt);

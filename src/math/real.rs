@@ -7,9 +7,7 @@
 
 use fearless_simd::Simd;
 use std::fmt::Debug;
-use std::ops::{
-    Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign,
-};
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 /// The truth values of a comparison, one for each lane.
 pub trait Mask:

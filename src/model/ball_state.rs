@@ -1,6 +1,6 @@
 //! Position, velocity and spin of the ball.
 
-use super::params::ModelParams;
+use super::ball_params::BallParams;
 use crate::math::real::Real;
 use crate::math::vector::{RealVector, Vec3};
 
@@ -43,7 +43,9 @@ impl<R: Real> BallState<R> {
     pub(crate) fn euler_step(&self, derivative: &StateDerivative<R>, dt: R) -> Self {
         Self {
             position_m: self.position_m.add_scaled(derivative.velocity_m_s, dt),
-            velocity_m_s: self.velocity_m_s.add_scaled(derivative.acceleration_m_s2, dt),
+            velocity_m_s: self
+                .velocity_m_s
+                .add_scaled(derivative.acceleration_m_s2, dt),
             spin_rad_s: self
                 .spin_rad_s
                 .add_scaled(derivative.angular_acceleration_rad_s2, dt),
@@ -61,12 +63,12 @@ impl<R: Real> BallState<R> {
 
     /// The state after `dt` of free flight.
     #[inline(always)]
-    pub(crate) fn after_flight(&self, params: &ModelParams<R>, dt: R) -> Self {
+    pub(crate) fn after_flight(&self, ball: &BallParams<R>, dt: R) -> Self {
         let p = self.position_m.add_scaled(self.velocity_m_s, dt);
         let v = self.velocity_m_s;
         Self {
-            position_m: Vec3::new(p.x, p.y, p.z - params.half_gravity * dt * dt),
-            velocity_m_s: Vec3::new(v.x, v.y, v.z - params.gravity * dt),
+            position_m: Vec3::new(p.x, p.y, p.z - ball.half_gravity * dt * dt),
+            velocity_m_s: Vec3::new(v.x, v.y, v.z - ball.gravity * dt),
             spin_rad_s: self.spin_rad_s,
         }
     }

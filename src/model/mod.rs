@@ -1,5 +1,6 @@
 //! The physical model: constants, geometry of the solids, and the state of the ball.
 
+pub(crate) mod ball_params;
 mod ball_state;
 pub mod court;
 pub(crate) mod params;

@@ -1,6 +1,7 @@
 //! The constants of [`Physics`] in the form that the equations use: per unit of ball mass, and one copy
 //! for each lane.
 
+use super::ball_params::BallParams;
 use super::physics::Physics;
 use super::solids::{Board, Material, Ring, SolidId};
 use crate::math::real::Real;
@@ -8,19 +9,9 @@ use crate::math::real::Real;
 /// The parameters of the equations of motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ModelParams<R = f64> {
-    /// Radius R of the ball, m.
-    pub(crate) ball_radius: R,
-    /// m/I, 1/m^2.
-    pub(crate) mass_over_inertia: R,
-    /// g, m/s^2.
-    pub(crate) gravity: R,
-    pub(crate) half_gravity: R,
-    /// 1/g, s^2/m.
-    pub(crate) per_gravity: R,
+    pub(crate) ball: BallParams<R>,
     pub(crate) board: Board<R>,
     pub(crate) ring: Ring<R>,
-    /// Time of an event that will not happen, s.
-    pub(crate) never: R,
 }
 
 impl ModelParams {
@@ -36,11 +27,14 @@ impl ModelParams {
             friction: physics.friction,
         };
         Self {
-            ball_radius: radius,
-            mass_over_inertia: 1.0 / inertia,
-            gravity: physics.gravity_m_s2,
-            half_gravity: 0.5 * physics.gravity_m_s2,
-            per_gravity: 1.0 / physics.gravity_m_s2,
+            ball: BallParams {
+                radius,
+                mass_over_inertia: 1.0 / inertia,
+                gravity: physics.gravity_m_s2,
+                half_gravity: 0.5 * physics.gravity_m_s2,
+                per_gravity: 1.0 / physics.gravity_m_s2,
+                never: 1e9,
+            },
             board: Board {
                 touch_x: radius - physics.board_distance_m,
                 face_x: -physics.board_distance_m,
@@ -53,7 +47,6 @@ impl ModelParams {
                 radius: physics.ring_radius_m,
                 material: material(SolidId::Ring),
             },
-            never: 1e9,
         }
     }
 
@@ -61,14 +54,9 @@ impl ModelParams {
     #[inline(always)]
     pub(crate) fn map<R: Real>(&self, splat: impl Fn(f64) -> R) -> ModelParams<R> {
         ModelParams {
-            ball_radius: splat(self.ball_radius),
-            mass_over_inertia: splat(self.mass_over_inertia),
-            gravity: splat(self.gravity),
-            half_gravity: splat(self.half_gravity),
-            per_gravity: splat(self.per_gravity),
+            ball: self.ball.map(&splat),
             board: self.board.map(&splat),
             ring: self.ring.map(&splat),
-            never: splat(self.never),
         }
     }
 }
@@ -77,19 +65,19 @@ impl<R: Real> ModelParams<R> {
     /// `value` in every lane.
     #[inline(always)]
     pub(crate) fn splat(&self, value: f64) -> R {
-        self.gravity.splat(value)
+        self.ball.splat(value)
     }
     #[inline(always)]
     pub(crate) fn zero(&self) -> R {
-        self.gravity.zero()
+        self.ball.zero()
     }
     #[inline(always)]
     pub(crate) fn one(&self) -> R {
-        self.gravity.one()
+        self.ball.one()
     }
     /// `value` in every lane of a mask.
     #[inline(always)]
     pub(crate) fn splat_mask(&self, value: bool) -> R::Mask {
-        self.gravity.splat_mask(value)
+        self.ball.splat_mask(value)
     }
 }

@@ -36,7 +36,10 @@ impl AtomicFile {
                 "it is a folder",
             ));
         }
-        if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
+        if existing
+            .as_ref()
+            .is_some_and(|existing| !existing.is_file())
+        {
             let file = File::options().write(true).open(path)?;
             return Ok(Self {
                 target: Target::Stream(file),

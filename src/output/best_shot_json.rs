@@ -43,7 +43,10 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: UnitSystem) -> Rec
         named("share_board", number(estimate.shares.banked())),
         named("unresolved", estimate.unresolved.into()),
         named("error_free_kind", outcome.kind.name().into()),
-        named("error_free_contacts", outcome.verdict.contacts.to_string().into()),
+        named(
+            "error_free_contacts",
+            outcome.verdict.contacts.to_string().into(),
+        ),
         named(
             "entry_angle_deg",
             optional(outcome.entry.map(|entry| entry.angle_rad / DEGREE_RAD)),
@@ -179,7 +182,13 @@ pub fn best_shots_json(profile: &Profile, best: &BestShots, units: UnitSystem) -
         ),
     ];
     for (kind, shot) in best.by_kind() {
-        add_kind(&mut record, profile, kind, shot.as_ref().map_err(ToString::to_string), units);
+        add_kind(
+            &mut record,
+            profile,
+            kind,
+            shot.as_ref().map_err(ToString::to_string),
+            units,
+        );
     }
     if let Some(difference) = bank_minus_direct(best) {
         let value = object(difference_record(&difference));

@@ -190,7 +190,11 @@ fn windows_text(sensitivity: &Sensitivity, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     let width = |window: &ShotWindow| match window.variable {
         NominalVariable::Speed => format!("speed within {:.2} {long}/s", window.width() / metre),
-        variable => format!("{} within {:.1} deg", variable.name(), window.width() / DEGREE_RAD),
+        variable => format!(
+            "{} within {:.1} deg",
+            variable.name(),
+            window.width() / DEGREE_RAD
+        ),
     };
     let widths: Vec<String> = sensitivity.windows.iter().map(width).collect();
     format!("{}, the others exact", widths.join(", "))

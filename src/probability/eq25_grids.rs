@@ -171,11 +171,10 @@ impl<'a> Grid<'a> {
             .collect();
         progress.end();
         // In the order of the cells, so that the number of threads changes nothing.
-        sums.iter()
-            .fold(GridSum::default(), |total, sum| GridSum {
-                probability: total.probability + sum.probability,
-                shots: total.shots + sum.shots,
-            })
+        sums.iter().fold(GridSum::default(), |total, sum| GridSum {
+            probability: total.probability + sum.probability,
+            shots: total.shots + sum.shots,
+        })
     }
 
     /// The sum over speed and backspin of one (pitch, polar) cell.

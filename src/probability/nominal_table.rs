@@ -84,9 +84,7 @@ impl NominalProbabilities {
                 .unwrap_or(0)
         };
         let axes = self.axes();
-        std::array::from_fn(|i| {
-            nearest(axes[i], nominal.get(NominalVariable::TABLE_AXES[i]))
-        })
+        std::array::from_fn(|i| nearest(axes[i], nominal.get(NominalVariable::TABLE_AXES[i])))
     }
 
     /// P and the nominal shot at an index.

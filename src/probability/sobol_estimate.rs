@@ -80,7 +80,8 @@ impl<'a> Sampler<'a> {
         let distribution = ReleaseDistribution::new(self.profile, nominal);
         let starts: Vec<BallState> = (from..to)
             .map(|index| {
-                let release = distribution.from_uniform(|dimension| scramble.point(index, dimension));
+                let release =
+                    distribution.from_uniform(|dimension| scramble.point(index, dimension));
                 release.state()
             })
             .collect();
@@ -100,7 +101,12 @@ impl<'a> Sampler<'a> {
             .into_par_iter()
             .step_by(block as usize)
             .map_init(BatchWorkspace::default, |workspace, start| {
-                self.block(nominal, scramble, (start, (start + block).min(to)), workspace)
+                self.block(
+                    nominal,
+                    scramble,
+                    (start, (start + block).min(to)),
+                    workspace,
+                )
             })
             .reduce(Counts::default, Counts::plus)
     }

@@ -46,7 +46,10 @@ impl Bracket {
         let least = least_speed_m_s(location.distance_m, -start_height_m, physics.gravity_m_s2);
         let mut bracket = Self {
             polar_rad: (0.0, 0.0),
-            speed_max_m_s: profile.search().speed_max_m_s.unwrap_or(MAX_SPEED_FACTOR * least),
+            speed_max_m_s: profile
+                .search()
+                .speed_max_m_s
+                .unwrap_or(MAX_SPEED_FACTOR * least),
             location,
             start_height_m,
             reach_m: physics.ring_radius_m + physics.ball_radius_m,
@@ -73,7 +76,10 @@ impl Bracket {
 
     fn start(&self) -> (f64, f64) {
         let (sin, cos) = libm::sincos(self.location.angle_rad);
-        (self.location.distance_m * cos, self.location.distance_m * sin)
+        (
+            self.location.distance_m * cos,
+            self.location.distance_m * sin,
+        )
     }
 
     /// Distance of the hoop's axis from the horizontal path in a direction.

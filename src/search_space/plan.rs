@@ -105,10 +105,7 @@ impl TablePlan {
     /// # Errors
     /// The table would be too large, or no release reaches the hoop.
     pub fn for_search(profile: &Profile) -> Result<Self, PlanError> {
-        let searches_side_spin = profile
-            .search()
-            .choice
-            .includes(NominalVariable::SideSpin);
+        let searches_side_spin = profile.search().choice.includes(NominalVariable::SideSpin);
         let side_spin_rad_s = if searches_side_spin {
             0.0
         } else {
@@ -155,7 +152,10 @@ impl TablePlan {
                 grid.pitch,
             ),
             polar: axis(polar, grid.polar),
-            backspin: axis((low_spin - spin_margin, high_spin + spin_margin), grid.backspin),
+            backspin: axis(
+                (low_spin - spin_margin, high_spin + spin_margin),
+                grid.backspin,
+            ),
             speeds_per_line: grid.speed,
             speed_m_s,
             mirrored,
@@ -220,8 +220,7 @@ impl TablePlan {
         };
         let (mut nominal_polar, mut polar_rad) = (polar.nominal(), polar.cells());
         let rotates_sideways = centre.rifle_spin_rad_s != 0.0 || centre.side_spin_rad_s != 0.0;
-        let mirrored =
-            self.mirrored && !rotates_sideways && polar_rad.0 < 0.0 && polar_rad.1 > 0.0;
+        let mirrored = self.mirrored && !rotates_sideways && polar_rad.0 < 0.0 && polar_rad.1 > 0.0;
         if mirrored {
             let high = nominal_polar.high.max(-nominal_polar.low);
             nominal_polar = Linspace::new(0.0, high, WINDOW_POINTS);
@@ -413,5 +412,9 @@ fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Linspace> {
     let sigma = profile.shooter().dispersion.speed_m_s(low);
     let step = (0.5 * sigma).clamp(0.01, 0.06);
     let count = ((high - low) / step).ceil() as usize;
-    Some(Linspace::new(low, high, count.clamp(10, MAX_NOMINAL_SPEEDS)))
+    Some(Linspace::new(
+        low,
+        high,
+        count.clamp(10, MAX_NOMINAL_SPEEDS),
+    ))
 }

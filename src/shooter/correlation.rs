@@ -150,9 +150,7 @@ fn semi_definite_factor(matrix: &Matrix) -> Option<Matrix> {
 
 #[cfg(test)]
 mod tests {
-    use super::ReleaseVariable::{
-        Backspin, CourtAngle, Height, Pitch, Polar, SideSpin, Speed,
-    };
+    use super::ReleaseVariable::{Backspin, CourtAngle, Height, Pitch, Polar, SideSpin, Speed};
     use super::*;
 
     #[test]

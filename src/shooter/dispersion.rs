@@ -187,7 +187,9 @@ impl ReleaseDispersion {
             );
         }
         if checks.is_valid(&key("c40"))
-            && !is_plausible(max_backspin_rad_s, MAX_SPIN_RAD_S, &|w| self.backspin_rad_s(w))
+            && !is_plausible(max_backspin_rad_s, MAX_SPIN_RAD_S, &|w| {
+                self.backspin_rad_s(w)
+            })
         {
             checks.refuse(
                 &key("c40"),

@@ -206,9 +206,7 @@ fn check_nominal(nominal: &NominalOverrides, checks: &mut SettingChecks) {
             NominalVariable::Pitch | NominalVariable::Polar => {
                 (value.abs() <= PI, "between -180 and 180 deg")
             }
-            NominalVariable::Backspin
-            | NominalVariable::SideSpin
-            | NominalVariable::RifleSpin => (
+            NominalVariable::Backspin | NominalVariable::SideSpin | NominalVariable::RifleSpin => (
                 value.abs() <= MAX_SPIN_RAD_S,
                 "within 200 rad/s (31.8 rev/s)",
             ),

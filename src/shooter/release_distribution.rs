@@ -54,9 +54,8 @@ impl ReleaseDistribution {
     #[must_use]
     pub fn from_normal(&self, independent: [f64; N]) -> Release {
         let normals = self.correlation.apply(independent);
-        let error = |variable: ReleaseVariable| {
-            self.sigmas[variable.index()] * normals[variable.index()]
-        };
+        let error =
+            |variable: ReleaseVariable| self.sigmas[variable.index()] * normals[variable.index()];
         let centre = &self.centre;
         Release {
             speed_m_s: centre.speed_m_s + error(ReleaseVariable::Speed),

@@ -268,7 +268,10 @@ impl SearchSettings {
         let omits = |variable| !self.choice.includes(variable);
         if self.choice.is_empty() {
             let known = NominalVariable::SEARCHABLE.map(NominalVariable::name);
-            checks.refuse(KEY, format!("must name one or more of {}", known.join(", ")));
+            checks.refuse(
+                KEY,
+                format!("must name one or more of {}", known.join(", ")),
+            );
             return;
         }
         if omits(NominalVariable::Speed) && nominal.speed_m_s.is_none() {

@@ -80,7 +80,9 @@ fn rescue(
         ));
     }
     let mut rows = Vec::new();
-    result_store::read_rows(path, folder.hash(), folder.job_count(), |row| rows.push(row))?;
+    result_store::read_rows(path, folder.hash(), folder.job_count(), |row| {
+        rows.push(row)
+    })?;
     if !rows.is_empty() {
         // The new store is complete under another name before the damaged one is renamed: no valid row is
         // ever missing.

@@ -89,9 +89,7 @@ impl Manifest {
 
     /// The values that differ from those of another manifest, each with its key.
     pub(super) fn differences(&self, new: &Self) -> Vec<String> {
-        let program = |manifest: &Self| {
-            serde_json::json!({"version": manifest.version, "commit": manifest.commit})
-        };
+        let program = |manifest: &Self| serde_json::json!({"version": manifest.version, "commit": manifest.commit});
         let mut found = Vec::new();
         collect_differences("program", &program(self), &program(new), &mut found);
         collect_differences("", &self.configuration, &new.configuration, &mut found);

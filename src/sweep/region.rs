@@ -88,9 +88,10 @@ impl Region {
                     .filter(is_possible)
                     .collect()
             }
-            Self::Rectangle { step_m, x_m, y_m } => {
-                grid(*step_m, *x_m, *y_m).map(spot).filter(is_possible).collect()
-            }
+            Self::Rectangle { step_m, x_m, y_m } => grid(*step_m, *x_m, *y_m)
+                .map(spot)
+                .filter(is_possible)
+                .collect(),
             Self::Arcs {
                 distances_m,
                 angles_rad,
@@ -116,7 +117,9 @@ impl Region {
             Self::Locations(locations) => {
                 let spots: Vec<CourtSpot> = locations.iter().copied().map(spot).collect();
                 for (row, spot) in spots.iter().enumerate() {
-                    spot.location().check(physics).map_err(|error| (row, error))?;
+                    spot.location()
+                        .check(physics)
+                        .map_err(|error| (row, error))?;
                 }
                 spots
             }

@@ -127,10 +127,7 @@ pub(super) fn read_region(
     })
 }
 
-fn read_values(
-    table: &mut TableReader<'_, '_>,
-    diagnostics: &mut Vec<Diagnostic>,
-) -> RegionValues {
+fn read_values(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>) -> RegionValues {
     let step_m = table.quantity("step", Dimension::Length, diagnostics);
     if step_m.is_some_and(|step| !(step >= MIN_STEP_M)) {
         diagnostics.push(table.diagnostic("step", "must be 0.001 m or more"));
@@ -159,11 +156,7 @@ fn read_values(
 }
 
 /// Reports keys that the kind of region needs or does not have.
-fn check_keys(
-    table: &TableReader<'_, '_>,
-    kind: &RegionKind,
-    diagnostics: &mut Vec<Diagnostic>,
-) {
+fn check_keys(table: &TableReader<'_, '_>, kind: &RegionKind, diagnostics: &mut Vec<Diagnostic>) {
     let name = kind.name;
     for key in kind.required {
         if !table.has(key) {

@@ -134,7 +134,10 @@ impl ResultRow {
             (columns::SHARE_SWISH, estimate.shares.swish),
             (columns::SHARE_RING, estimate.shares.ring),
             (columns::SHARE_BOARD, estimate.shares.board),
-            (columns::SHARE_BOARD_AND_RING, estimate.shares.board_and_ring),
+            (
+                columns::SHARE_BOARD_AND_RING,
+                estimate.shares.board_and_ring,
+            ),
             (columns::TABLE_PROBABILITY, shot.table_probability),
             (columns::MASS_OUTSIDE_BRACKET, shot.mass_outside),
         ] {
@@ -143,7 +146,11 @@ impl ResultRow {
         self.set_integer(columns::SHOTS, estimate.shots);
         self.set_integer(columns::UNRESOLVED, estimate.unresolved);
         if !shot.at_limits.is_empty() {
-            let names: Vec<&str> = shot.at_limits.iter().map(|limit| Limit::name(*limit)).collect();
+            let names: Vec<&str> = shot
+                .at_limits
+                .iter()
+                .map(|limit| Limit::name(*limit))
+                .collect();
             self.set_text(columns::AT_LIMITS, &names.join(" "));
         }
     }
@@ -153,10 +160,16 @@ impl ResultRow {
         self.set_text(columns::ERROR_FREE_KIND, outcome.kind.name());
         let board_point = outcome.board_point_m;
         for (column, value) in [
-            (columns::ENTRY_ANGLE, outcome.entry.map(|entry| entry.angle_rad)),
+            (
+                columns::ENTRY_ANGLE,
+                outcome.entry.map(|entry| entry.angle_rad),
+            ),
             (columns::AIM_PAST_CENTRE, shot.aim_past_centre_m),
             (columns::BOARD_AIM_ACROSS, board_point.map(|point| point.1)),
-            (columns::BOARD_AIM_ABOVE_HOOP, board_point.map(|point| point.2)),
+            (
+                columns::BOARD_AIM_ABOVE_HOOP,
+                board_point.map(|point| point.2),
+            ),
         ] {
             if let Some(value) = value {
                 self.set_real(column, value);

@@ -162,9 +162,7 @@ impl ResultTables {
         column_type: ColumnType,
     ) -> Result<(), ParquetError> {
         let cells = || self.lines.iter().map(|line| &line.cells[i]);
-        let levels: Vec<i16> = cells()
-            .map(|cell| i16::from(*cell != Cell::Null))
-            .collect();
+        let levels: Vec<i16> = cells().map(|cell| i16::from(*cell != Cell::Null)).collect();
         let levels = Some(&levels[..]);
         match column_type {
             ColumnType::Real => {

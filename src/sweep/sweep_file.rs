@@ -10,9 +10,7 @@ use crate::config::{
     read_settings, read_settings_of,
 };
 use crate::model::court::League;
-use crate::shooter::{
-    IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash,
-};
+use crate::shooter::{IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash};
 use serde::{Deserialize, Serialize};
 
 /// Longest name of a sweep, in characters.

@@ -5,8 +5,6 @@ mod constants;
 mod quantity;
 mod unit_system;
 
-pub use constants::{
-    DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG,
-};
+pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
 pub use quantity::{Dimension, QuantityError, parse};
 pub use unit_system::UnitSystem;

@@ -2,9 +2,7 @@
 //!
 //! A unit is never guessed. A bare number is refused if the dimension needs a unit.
 
-use super::constants::{
-    DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG,
-};
+use super::constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
 
 /// The physical dimension of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

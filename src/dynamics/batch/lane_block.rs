@@ -246,7 +246,9 @@ impl LaneBlock {
     ) {
         self.flags.rolling[solid.index()] = R::mask_to_bits(friction.rolling);
         self.flags.exceeded[solid.index()] = R::mask_to_bits(friction.exceeded);
-        friction.zero_slip.store(&mut self.zero_slips[solid.index()]);
+        friction
+            .zero_slip
+            .store(&mut self.zero_slips[solid.index()]);
     }
 
     #[inline(always)]

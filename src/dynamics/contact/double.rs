@@ -9,9 +9,7 @@ use super::single::SHORTEST_STEP_S;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::params::ModelParams;
-use crate::model::solids::{
-    ContactFrame, ContactKinematics, ContactVector, Material, Solid,
-};
+use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Material, Solid};
 use crate::model::{BallState, StateDerivative};
 
 /// Index of the first and of the second contact of a pair.
@@ -83,13 +81,13 @@ impl<R: Real> ContactPair<R> {
         (first, second): (&A, &B),
         state: &BallState<R>,
     ) -> Self {
-        let (first_kinematics, first_frame) = first.contact(params, state);
-        let (second_kinematics, second_frame) = second.contact(params, state);
+        let (first_kinematics, first_frame) = first.contact(&params.ball, state);
+        let (second_kinematics, second_frame) = second.contact(&params.ball, state);
         let kinematics = [first_kinematics, second_kinematics];
         let materials = [*first.material(), *second.material()];
         Self {
             axes: [axes_of(params, first_frame), axes_of(params, second_frame)],
-            lever_over_inertia: for_both!(i => kinematics[i].lever * params.mass_over_inertia),
+            lever_over_inertia: for_both!(i => kinematics[i].lever * params.ball.mass_over_inertia),
             normals: for_both!(i => kinematics[i].normal_acceleration(&materials[i])),
             kinematics,
             materials,
@@ -178,7 +176,7 @@ impl<R: Real> ContactPair<R> {
     ) -> [Vec2<R>; 2] {
         let [first, second] = wanted;
         let [own_first, own_second] = for_both!(i => {
-            let own = self.kinematics[i].slip_compliance(params);
+            let own = self.kinematics[i].slip_compliance(&params.ball);
             own.select(held[i], params.one())
         });
         let [on_first, on_second] = for_both!(i => self.coupling(params, i, held[i]));
@@ -233,7 +231,7 @@ impl<R: Real> ContactPair<R> {
         let linear = first.0.add_scaled(second.0, params.one());
         let derivative = StateDerivative {
             velocity_m_s: state.velocity_m_s,
-            acceleration_m_s2: Vec3::new(linear.x, linear.y, linear.z - params.gravity),
+            acceleration_m_s2: Vec3::new(linear.x, linear.y, linear.z - params.ball.gravity),
             angular_acceleration_rad_s2: first.1.add_scaled(second.1, params.one()),
         };
         (derivative, [first.0, second.0])
@@ -340,7 +338,7 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
     loop {
         let [first, second] = for_both!(i => {
             let excess = frictions[i].norm() - limits[i];
-            excess.select(rolling[i], -params.never)
+            excess.select(rolling[i], -params.ball.never)
         });
         let fails = [
             second.le(first) & first.is_positive(),
@@ -374,7 +372,7 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
             tangent: frictions[1 - i],
         };
         let slip_rate = pair.frictionless_slip_rate(i, other);
-        let slip_compliance = pair.kinematics[i].slip_compliance(params);
+        let slip_compliance = pair.kinematics[i].slip_compliance(&params.ball);
         let balance = FrictionBalance {
             slip: slip_speeds[i],
             slip_rate: slip_rate.dot(directions[i]) - limits[i] * slip_compliance,
@@ -456,7 +454,10 @@ fn stage<R: Real, A: Solid<R>, B: Solid<R>>(
 /// For how long the ball has rolled on both solids without a break, after a step of `dt`, s.
 #[inline(always)]
 pub(crate) fn rolling_time<R: Real>(friction: &[FrictionState<R>; 2], before: R, dt: R) -> R {
-    (before + dt).select(friction[FIRST].rolling & friction[SECOND].rolling, dt.zero())
+    (before + dt).select(
+        friction[FIRST].rolling & friction[SECOND].rolling,
+        dt.zero(),
+    )
 }
 
 /// Removes the slips of the stuck contacts together; returns the impulses per unit of mass.
@@ -495,7 +496,7 @@ mod tests {
         let params = ModelParams::new(&Physics::paper());
         let x = params.board.touch_x - 0.001;
         let off = params.ring.radius - (x * x + 0.01).sqrt();
-        let z = (params.ball_radius * params.ball_radius - off * off).sqrt() - 0.001;
+        let z = (params.ball.radius * params.ball.radius - off * off).sqrt() - 0.001;
         let state = BallState {
             position_m: Vec3::new(x, 0.1, z),
             velocity_m_s: Vec3::new(-0.3, 0.2, -1.0),

@@ -6,6 +6,10 @@ use crate::model::BallState;
 use crate::model::params::ModelParams;
 use crate::model::solids::Approach;
 
+/// A step that ends a roll or a force goes this factor beyond the predicted time, so that the next step
+/// starts after the event and not, again and again, just before it.
+pub(crate) const OVERSHOOT: f64 = 1.03;
+
 /// The time until an event, as a fraction. The earliest of several events is found without a division,
 /// which costs as much as a dozen multiplications.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +32,7 @@ impl<R: Real> EventTime<R> {
     /// Never.
     #[inline(always)]
     pub(crate) fn never(params: &ModelParams<R>) -> Self {
-        Self::after(params.never)
+        Self::after(params.ball.never)
     }
 
     /// `self` where `condition` holds, `other` elsewhere.
@@ -149,7 +153,7 @@ mod tests {
             } else {
                 prop_assert!(touch > longest * (1.0 - 1e-9));
             }
-            if root < params.never {
+            if root < params.ball.never {
                 let scale = gap + (rate * root).abs() + (curve * root * root).abs();
                 prop_assert!((gap + rate * root + 0.5 * curve * root * root).abs() < 1e-9 * scale);
             }

@@ -1,6 +1,6 @@
 //! How friction acts at a contact, and when it changes.
 
-use super::event_time::{EventTime, first_root};
+use super::event_time::{EventTime, OVERSHOOT, first_root};
 use super::normal_force::NormalForce;
 use crate::math::real::Real;
 use crate::model::params::ModelParams;
@@ -10,9 +10,6 @@ const ZERO_SLIP_M_S: f64 = 1e-9;
 /// A step that is meant to end the slip may leave this fraction of it. Friction's own impulse removes the
 /// rest. (With 0.05 there were more steps and no better agreement.)
 const SLIP_REMAINDER: f64 = 0.2;
-/// A step that ends a roll goes this factor beyond the predicted time, so that the next step starts after
-/// the event and not, again and again, just before it.
-pub(crate) const OVERSHOOT: f64 = 1.03;
 /// In a step that ends the slip, a stage with less than this fraction of the initial slip keeps the
 /// initial direction: at zero slip the sliding law has none.
 pub(crate) const SLIP_DIRECTION_LOST: f64 = 0.1;
@@ -76,8 +73,7 @@ impl<R: Real> FrictionBalance<R> {
     ) -> EventTime<R> {
         let limit_rate = friction * force.rate;
         let slip_curve = -(limit_rate * self.slip_compliance);
-        let need_rate =
-            self.d_need_d_compression_acceleration * force.compression_acceleration;
+        let need_rate = self.d_need_d_compression_acceleration * force.compression_acceleration;
         let c0 = self.reserve.select(rolling, self.slip);
         let c1 = (limit_rate - need_rate).select(rolling, self.slip_rate);
         let c2 = (friction * force.curve).select(rolling, slip_curve);

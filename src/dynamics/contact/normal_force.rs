@@ -1,7 +1,6 @@
 //! The normal force of a contact, and when it ends.
 
-use super::event_time::{EventTime, first_root};
-use super::friction::OVERSHOOT;
+use super::event_time::{EventTime, OVERSHOOT, first_root};
 use crate::math::real::Real;
 use crate::model::params::ModelParams;
 use crate::model::solids::{ContactKinematics, Material};
@@ -77,7 +76,7 @@ impl<R: Real> NormalForce<R> {
             self.curve.select(force_ends, ddu),
         );
         let time = end.time();
-        let found = time.lt(params.never) & !force_ends;
+        let found = time.lt(params.ball.never) & !force_ends;
         // Where the compression ends: one Newton step on its Taylor polynomial, with u''' = -N' and
         // u'''' = -N''.
         let t = time.select(found, params.zero());

@@ -40,14 +40,14 @@ fn derivative<R: Real, F: ContactFrame<R>>(
     contact: ContactVector<R>,
 ) -> StateDerivative<R> {
     let a = frame.to_space(contact);
-    let lever_over_inertia = kinematics.lever * params.mass_over_inertia;
+    let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
     let torque = Vec2::new(
         lever_over_inertia * contact.tangent.y,
         -(lever_over_inertia * contact.tangent.x),
     );
     StateDerivative {
         velocity_m_s: state.velocity_m_s,
-        acceleration_m_s2: Vec3::new(a.x, a.y, a.z - params.gravity),
+        acceleration_m_s2: Vec3::new(a.x, a.y, a.z - params.ball.gravity),
         angular_acceleration_rad_s2: frame.tangent_to_space(torque),
     }
 }
@@ -69,7 +69,7 @@ fn stage<R: Real, S: Solid<R>>(
     rolling: R::Mask,
     direction: SlipDirection<R>,
 ) -> StateDerivative<R> {
-    let (kinematics, frame) = solid.contact(params, state);
+    let (kinematics, frame) = solid.contact(&params.ball, state);
     let normal = kinematics.normal_acceleration(solid.material());
     let limit = solid.material().friction * normal.positive_part();
     let (slip, initial) = (kinematics.slip(), direction.initial);
@@ -82,8 +82,12 @@ fn stage<R: Real, S: Solid<R>>(
     );
     let mut denominator = slip.norm().select(clear, params.one());
     if rolling.any() {
-        numerator = kinematics.frictionless_slip_rate().select(rolling, numerator);
-        denominator = kinematics.slip_compliance(params).select(rolling, denominator);
+        numerator = kinematics
+            .frictionless_slip_rate()
+            .select(rolling, numerator);
+        denominator = kinematics
+            .slip_compliance(&params.ball)
+            .select(rolling, denominator);
     }
     let factor = -(params.one() / denominator);
     let contact = ContactVector {
@@ -108,8 +112,11 @@ fn remove_slip<R: Real, F: ContactFrame<R>>(
         (-(impulse_per_slip * slip.x)).select(stuck, zero),
         (-(impulse_per_slip * slip.y)).select(stuck, zero),
     );
-    let lever_over_inertia = kinematics.lever * params.mass_over_inertia;
-    let turn = Vec2::new(lever_over_inertia * impulse.y, -(lever_over_inertia * impulse.x));
+    let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
+    let turn = Vec2::new(
+        lever_over_inertia * impulse.y,
+        -(lever_over_inertia * impulse.x),
+    );
     kinematics.velocity.tangent = kinematics.velocity.tangent + impulse;
     kinematics.spin.tangent = kinematics.spin.tangent + turn;
     let one = params.one();
@@ -134,7 +141,7 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
     time_to_other: impl FnOnce(&BallState<R>, Vec3<R>) -> EventTime<R>,
 ) -> SingleContactStep<R> {
     let material = solid.material();
-    let (mut kinematics, frame) = solid.contact(params, state);
+    let (mut kinematics, frame) = solid.contact(&params.ball, state);
     let parted = has_parted(&kinematics);
     if parted.all() {
         finish_parting(params, solid, state, (&kinematics, frame), parted);
@@ -146,19 +153,23 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
 
     // 1. Which balls stick: those that roll, and those whose slip has ended.
     let slip = kinematics.slip();
-    let stuck =
-        (friction.rolling | slip.norm_squared().le(friction.zero_slip.squared())) & !parted;
-    let slip_compliance = kinematics.slip_compliance(params);
+    let stuck = (friction.rolling | slip.norm_squared().le(friction.zero_slip.squared())) & !parted;
+    let slip_compliance = kinematics.slip_compliance(&params.ball);
     // Only stuck contacts need it.
     let mut impulse_per_slip = params.one();
     if stuck.any() {
         impulse_per_slip = params.one() / slip_compliance;
-        remove_slip(params, state, (&mut kinematics, frame), impulse_per_slip, stuck);
+        remove_slip(
+            params,
+            state,
+            (&mut kinematics, frame),
+            impulse_per_slip,
+            stuck,
+        );
     }
     let normal = kinematics.normal_acceleration(material);
     let limit = material.friction * normal.positive_part();
-    let normal_acceleration =
-        normal + kinematics.gravity.normal + kinematics.frame_acceleration();
+    let normal_acceleration = normal + kinematics.gravity.normal + kinematics.frame_acceleration();
     let force = NormalForce::new(material, &kinematics, normal, normal_acceleration);
 
     // 2. The direction of the slip (or the direction in which a stuck ball would slip), and friction.
@@ -203,9 +214,27 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
 
     // 4. The classical RK4 step.
     let half = dt * 0.5;
-    let k2 = stage(params, solid, &state.euler_step(&k1, half), rolling, stage_direction);
-    let k3 = stage(params, solid, &state.euler_step(&k2, half), rolling, stage_direction);
-    let k4 = stage(params, solid, &state.euler_step(&k3, dt), rolling, stage_direction);
+    let k2 = stage(
+        params,
+        solid,
+        &state.euler_step(&k1, half),
+        rolling,
+        stage_direction,
+    );
+    let k3 = stage(
+        params,
+        solid,
+        &state.euler_step(&k2, half),
+        rolling,
+        stage_direction,
+    );
+    let k4 = stage(
+        params,
+        solid,
+        &state.euler_step(&k3, dt),
+        rolling,
+        stage_direction,
+    );
     let next = state.runge_kutta_step([&k1, &k2, &k3, &k4], dt);
 
     if parted.any() {

@@ -26,7 +26,7 @@ impl<R: Real> FlightArc<R> {
     #[inline(always)]
     pub(crate) fn new(params: &ModelParams<R>, state: &BallState<R>) -> Self {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-        let below_ring = falling_time(params, z, vz, -params.ball_radius).positive_part();
+        let below_ring = falling_time(params, z, vz, -params.ball.radius).positive_part();
         let (board, beside_board) = board_times(params, state, below_ring);
         let horizon = Real::min(Real::min(below_ring, board), beside_board);
         let (ring, unresolved) = ring_time(params, state, horizon);
@@ -74,7 +74,7 @@ impl FlightArc<f64> {
     /// come beside the board first).
     pub(crate) fn resolve_beside_board(&mut self, params: &ModelParams, state: &BallState) -> f64 {
         if self.beside_board >= self.first_end() {
-            return params.never;
+            return params.ball.never;
         }
         let (enters, behind) = entry_from_beside(params, state, self.beside_board);
         self.touch[SolidId::Board.index()] = enters;

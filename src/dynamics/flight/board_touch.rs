@@ -22,13 +22,13 @@ pub(super) fn board_times<R: Real>(
     let overlapping = reach.lt(params.splat(-MIN_JUMP_S));
     let t = reach.positive_part();
     let y = p.y + v.y * t;
-    let z = p.z + v.z * t - params.half_gravity * t * t;
+    let z = p.z + v.z * t - params.ball.half_gravity * t * t;
     let on_rectangle =
         y.abs().lt(board.half_width) & board.bottom_z.lt(z) & z.lt(board.top_z) & !overlapping;
     let arrives = approaching & t.lt(end);
     (
-        t.select(arrives & on_rectangle, params.never),
-        t.select(arrives & !on_rectangle, params.never),
+        t.select(arrives & on_rectangle, params.ball.never),
+        t.select(arrives & !on_rectangle, params.ball.never),
     )
 }
 
@@ -51,7 +51,7 @@ pub(super) fn entry_from_beside(params: &ModelParams, state: &BallState, from: f
     ]
     .into_iter()
     .map(|t| t + PAST_S)
-    .filter(|&t| t > from && t < face && board.faces(&state.after_flight(params, t)))
-    .fold(params.never, f64::min);
+    .filter(|&t| t > from && t < face && board.faces(&state.after_flight(&params.ball, t)))
+    .fold(params.ball.never, f64::min);
     (enters, face)
 }

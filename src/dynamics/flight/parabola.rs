@@ -7,14 +7,14 @@ use crate::model::params::ModelParams;
 /// of its highest point.
 #[inline(always)]
 pub(crate) fn falling_time<R: Real>(params: &ModelParams<R>, z: R, vz: R, level: R) -> R {
-    let square = vz.squared() + params.gravity * (z - level) * 2.0;
-    (vz + square.positive_part().sqrt()) * params.per_gravity
+    let square = vz.squared() + params.ball.gravity * (z - level) * 2.0;
+    (vz + square.positive_part().sqrt()) * params.ball.per_gravity
 }
 
 /// Time at which the centre rises through the height `level`. Meaningful only for a ball that starts below
 /// and gets there.
 #[inline(always)]
 pub(crate) fn rising_time<R: Real>(params: &ModelParams<R>, z: R, vz: R, level: R) -> R {
-    let square = vz.squared() + params.gravity * (z - level) * 2.0;
-    (vz - square.positive_part().sqrt()) * params.per_gravity
+    let square = vz.squared() + params.ball.gravity * (z - level) * 2.0;
+    (vz - square.positive_part().sqrt()) * params.ball.per_gravity
 }

@@ -96,7 +96,7 @@ impl<R: Real> SearchBounds<R> {
         (z, vz): (R, R),
         falls_to_top: R,
     ) -> Self {
-        let (ring_radius, ball_radius) = (params.ring.radius, params.ball_radius);
+        let (ring_radius, ball_radius) = (params.ring.radius, params.ball.radius);
         let inner = ring_radius - ball_radius;
         let half_chord = motion.half_chord_squared(inner).positive_part().sqrt();
         let nearest = Real::max(inner.squared(), motion.closest_squared);
@@ -104,8 +104,10 @@ impl<R: Real> SearchBounds<R> {
             falls_to_top,
             rises_to_bottom: rising_time(params, z, vz, -ball_radius),
             rises_to_top: rising_time(params, z, vz, ball_radius),
-            inner_enter: (motion.closest_time - half_chord).select(!motion.still, -params.never),
-            inner_leave: (motion.closest_time + half_chord).select(!motion.still, params.never),
+            inner_enter: (motion.closest_time - half_chord)
+                .select(!motion.still, -params.ball.never),
+            inner_leave: (motion.closest_time + half_chord)
+                .select(!motion.still, params.ball.never),
             curvature_bound: ring_radius * motion.moment.squared() / (nearest * nearest.sqrt()),
         }
     }
@@ -120,13 +122,13 @@ pub(super) fn ring_time<R: Real>(
     horizon: R,
 ) -> (R, R::Mask) {
     let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-    let (zero, ball_radius) = (params.zero(), params.ball_radius);
+    let (zero, ball_radius) = (params.zero(), params.ball.radius);
     let motion = HorizontalMotion::new(params, state);
     let outer = params.ring.radius + ball_radius;
     let outer_chord_squared = motion.half_chord_squared(outer);
     let half_chord = outer_chord_squared.positive_part().sqrt();
     let enters = motion.closest_time - half_chord;
-    let leaves = (motion.closest_time + half_chord).select(!motion.still, params.never);
+    let leaves = (motion.closest_time + half_chord).select(!motion.still, params.ball.never);
     let out_of_reach = !motion.still & outer_chord_squared.is_negative()
         | motion.still & outer.squared().lt(motion.distance_squared);
     let stop = Real::min(horizon, leaves);
@@ -134,11 +136,11 @@ pub(super) fn ring_time<R: Real>(
     let mut t = enters.select(!motion.still, zero).positive_part();
     // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
     // and still rising then (a release from beneath) starts when it has come near.
-    let z_then = z + vz * t - params.half_gravity * t * t;
+    let z_then = z + vz * t - params.ball.half_gravity * t * t;
     t = Real::max(falls_to_top, t).select(ball_radius.lt(z_then), t);
 
     let mut searching = t.lt(stop) & !out_of_reach;
-    let mut found = params.never;
+    let mut found = params.ball.never;
     let mut iterations = 0;
     if searching.any() {
         let bounds = SearchBounds::new(params, &motion, (z, vz), falls_to_top);
@@ -163,9 +165,9 @@ fn search_step<R: Real>(
     (z, vz): (R, R),
     t: R,
 ) -> (R::Mask, R) {
-    let (zero, ball_radius) = (params.zero(), params.ball_radius);
-    let z_t = z + vz * t - params.half_gravity * t * t;
-    let vz_t = vz - params.gravity * t;
+    let (zero, ball_radius) = (params.zero(), params.ball.radius);
+    let z_t = z + vz * t - params.ball.half_gravity * t * t;
+    let vz_t = vz - params.ball.gravity * t;
     let distance = motion.distance(t);
     let inward = params.ring.radius - distance;
     let value = inward.squared() + z_t.squared() - ball_radius.squared();
@@ -173,7 +175,7 @@ fn search_step<R: Real>(
         - inward * (motion.speed_squared * t + motion.dot)
             / Real::max(distance, ball_radius * 1e-3);
     let fall_squared = zero.select(vz_t.is_positive(), vz_t.squared());
-    let half_bound = (bounds.curvature_bound + params.gravity * ball_radius
+    let half_bound = (bounds.curvature_bound + params.ball.gravity * ball_radius
         - motion.speed_squared
         - fall_squared)
         .positive_part();
@@ -183,9 +185,11 @@ fn search_step<R: Real>(
     let root = (half_slope.squared() + half_bound * value.positive_part()).sqrt();
     let closing = half_slope.le(zero);
     let bounded = half_bound.is_positive();
-    let numerator = value.select(closing, (half_slope + root).select(bounded, params.never));
-    let denominator = (root - half_slope)
-        .select(closing, half_bound.select(bounded, params.one()));
+    let numerator = value.select(
+        closing,
+        (half_slope + root).select(bounded, params.ball.never),
+    );
+    let denominator = (root - half_slope).select(closing, half_bound.select(bounded, params.one()));
     let safe = t + numerator / denominator;
     let touches = closing & value.le(ball_radius.squared() * TOUCH_TOLERANCE);
 
@@ -204,8 +208,7 @@ fn search_step<R: Real>(
     // The bound holds up to the inner circle and, for a rising ball, up to z = R. Beyond them comes a part
     // to jump over.
     let reaches_inner = t.lt(bounds.inner_enter) & bounds.inner_enter.lt(safe);
-    let reaches_top =
-        t.lt(bounds.rises_to_top) & bounds.rises_to_top.lt(safe) & !reaches_inner;
+    let reaches_top = t.lt(bounds.rises_to_top) & bounds.rises_to_top.lt(safe) & !reaches_inner;
     let step = bounds
         .inner_leave
         .select(reaches_inner, bounds.falls_to_top.select(reaches_top, safe));

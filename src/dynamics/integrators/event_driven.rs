@@ -5,9 +5,7 @@ use crate::dynamics::contact::double;
 use crate::dynamics::contact::event_time::time_to_touch;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::single;
-use crate::dynamics::end_rules::{
-    ContactEnd, RunLimits, flight_ending, is_lodged, rose_to_ring,
-};
+use crate::dynamics::end_rules::{ContactEnd, RunLimits, flight_ending, is_lodged, rose_to_ring};
 use crate::dynamics::flight::FlightArc;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
@@ -152,7 +150,7 @@ pub(crate) fn solids_pressed_at_start(
     start: &BallState,
 ) -> [bool; SolidId::COUNT] {
     let p = start.position_m;
-    if p.z.abs() > params.ball_radius && p.x > params.board.touch_x {
+    if p.z.abs() > params.ball.radius && p.x > params.board.touch_x {
         return [false; SolidId::COUNT];
     }
     [
@@ -162,7 +160,7 @@ pub(crate) fn solids_pressed_at_start(
 }
 
 fn is_pressed<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState) -> bool {
-    let (kinematics, _) = solid.contact(params, state);
+    let (kinematics, _) = solid.contact(&params.ball, state);
     kinematics.compression > TOUCH_GAP_M && solid.faces(state)
 }
 
@@ -191,12 +189,12 @@ pub(crate) fn max_acceleration<R: Real, S: Solid<R>>(
     state: &BallState<R>,
     longest: R,
 ) -> R {
-    let (kinematics, _) = solid.contact(params, state);
+    let (kinematics, _) = solid.contact(&params.ball, state);
     let material = solid.material();
     let normal_speed = kinematics.velocity.normal.abs();
     let compression = kinematics.compression.positive_part() + normal_speed * longest;
     let normal = material.stiffness * compression + material.damping * normal_speed;
-    normal * (material.friction + 1.0) + params.gravity
+    normal * (material.friction + 1.0) + params.ball.gravity
 }
 
 impl<O: Observer> Run<'_, O> {
@@ -248,19 +246,22 @@ impl<O: Observer> Run<'_, O> {
 
     fn advance_flight(&mut self, dt: f64) {
         let shot = &mut self.shot;
-        self.observer.flight(self.params, shot.time_s, dt, &shot.state);
+        self.observer
+            .flight(self.params, shot.time_s, dt, &shot.state);
         shot.crossing.after_flight(self.params, &shot.state, dt);
-        shot.state = shot.state.after_flight(self.params, dt);
+        shot.state = shot.state.after_flight(&self.params.ball, dt);
         shot.time_s += dt;
     }
 
     fn touch(&mut self, solid: SolidId) {
         self.shot.contacts.push(solid);
-        self.observer.touch(self.shot.time_s, solid, &self.shot.state);
+        self.observer
+            .touch(self.shot.time_s, solid, &self.shot.state);
     }
 
     fn part(&mut self, solid: SolidId) {
-        self.observer.part(self.shot.time_s, solid, &self.shot.state);
+        self.observer
+            .part(self.shot.time_s, solid, &self.shot.state);
     }
 
     /// Contact with one solid until the ball parts, touches the other solid, or the shot ends.
@@ -280,7 +281,7 @@ impl<O: Observer> Run<'_, O> {
                 return None;
             }
             let bound = max_acceleration(params, solid, &before, longest);
-            let approach = other.approach(params, &before, bound, longest);
+            let approach = other.approach(&params.ball, &before, bound, longest);
             if approach.has_arrived() {
                 self.touch(T::ID);
                 let mut both = [FrictionState::new(params); SolidId::COUNT];
@@ -355,7 +356,11 @@ impl<O: Observer> Run<'_, O> {
     /// Impulse per unit of mass of the only contact of a step: the change of velocity without gravity.
     fn impulse_since(&self, before: &BallState, dt: f64) -> Vec3<f64> {
         let (v, u) = (self.shot.state.velocity_m_s, before.velocity_m_s);
-        Vec3::new(v.x - u.x, v.y - u.y, v.z - u.z + self.params.gravity * dt)
+        Vec3::new(
+            v.x - u.x,
+            v.y - u.y,
+            v.z - u.z + self.params.ball.gravity * dt,
+        )
     }
 
     fn after_step(&mut self, dt: f64, before: &BallState, impulses: Impulses) -> Option<Ending> {

@@ -32,7 +32,7 @@ impl Pressed {
     fn new(params: &ModelParams, state: &BallState) -> Self {
         let board = state.position_m.x < params.board.touch_x && params.board.faces(state);
         let [x, y, z] = state.position_m.into();
-        let radius = params.ball_radius;
+        let radius = params.ball.radius;
         let ring = z.abs() < radius && {
             let inward = params.ring.radius - (x * x + y * y).sqrt();
             inward * inward + z * z < radius * radius
@@ -55,24 +55,28 @@ fn sliding_response<S: Solid<f64>>(
     solid: &S,
     state: &BallState,
 ) -> (Vec3<f64>, Vec3<f64>) {
-    let (kinematics, frame) = solid.contact(params, state);
+    let (kinematics, frame) = solid.contact(&params.ball, state);
     let normal = kinematics.normal_acceleration(solid.material());
     let slip = kinematics.slip();
     let speed = slip.norm();
     let limit = solid.material().friction * normal.max(0.0);
     let per = if speed > 0.0 { limit / speed } else { 0.0 };
     let (friction_1, friction_2) = (-per * slip.x, -per * slip.y);
-    let twist = kinematics.lever * params.mass_over_inertia;
+    let twist = kinematics.lever * params.ball.mass_over_inertia;
     (
         frame.to_space(ContactVector::new(normal, friction_1, friction_2)),
-        frame.to_space(ContactVector::new(0.0, twist * friction_2, -twist * friction_1)),
+        frame.to_space(ContactVector::new(
+            0.0,
+            twist * friction_2,
+            -twist * friction_1,
+        )),
     )
 }
 
 /// The right-hand side of Eq. 17, and the solids that press the ball there.
 fn derivative(params: &ModelParams, state: &BallState) -> (StateDerivative, Pressed) {
     let pressed = Pressed::new(params, state);
-    let mut linear = Vec3::new(0.0, 0.0, -params.gravity);
+    let mut linear = Vec3::new(0.0, 0.0, -params.ball.gravity);
     let mut angular = Vec3::zeros();
     for solid in SolidId::ALL {
         if !pressed.by(solid) {
@@ -189,7 +193,7 @@ impl<O: Observer> Run<'_, O> {
         }
         // Where the last step crossed z = -R, by the parabola of that step.
         if !pressed.any() && fall <= dt {
-            self.state = before.after_flight(params, fall);
+            self.state = before.after_flight(&params.ball, fall);
             self.time_s += fall - dt;
         }
         Some(flight_ending(self.rises_above_ring(&before)))
@@ -198,14 +202,14 @@ impl<O: Observer> Run<'_, O> {
     /// Time at which a parabola from a state falls through z = -R, s.
     fn falling_time(&self, state: &BallState) -> f64 {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-        falling_time(self.params, z, vz, -self.params.ball_radius)
+        falling_time(self.params, z, vz, -self.params.ball.radius)
     }
 
     /// Whether a parabola from a state is or rises above z = -R.
     fn rises_above_ring(&self, state: &BallState) -> bool {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-        let radius = self.params.ball_radius;
-        z > -radius || vz * vz + 2.0 * self.params.gravity * (z + radius) > 0.0
+        let radius = self.params.ball.radius;
+        z > -radius || vz * vz + 2.0 * self.params.ball.gravity * (z + radius) > 0.0
     }
 
     fn report_changes(&mut self, pressed: Pressed, state: &BallState) {

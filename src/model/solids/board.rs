@@ -1,13 +1,12 @@
 //! The front face of the board: a rectangle in the plane `x = -a`.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
-use super::solid::{
-    Approach, ContactFrame, GapPolynomial, Material, Solid, SolidId, TOUCH_GAP_M,
-};
+use super::material::Material;
+use super::solid::{Approach, ContactFrame, GapPolynomial, Solid, SolidId, TOUCH_GAP_M};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{Vec2, Vec3};
+use crate::model::ball_params::BallParams;
 use crate::model::ball_state::BallState;
-use crate::model::params::ModelParams;
 
 /// The board.
 #[derive(Clone, Copy, Debug)]
@@ -68,11 +67,7 @@ impl<R: Real> Approach<R> for BoardApproach<R> {
     }
 
     #[inline(always)]
-    fn closing_gap(
-        &self,
-        state: &BallState<R>,
-        acceleration: Vec3<R>,
-    ) -> Option<GapPolynomial<R>> {
+    fn closing_gap(&self, state: &BallState<R>, acceleration: Vec3<R>) -> Option<GapPolynomial<R>> {
         let distance = state.position_m.x - self.touch_x;
         let gap = Real::max(distance, distance.splat(TOUCH_GAP_M));
         let (rate, curve) = (state.velocity_m_s.x, acceleration.x);
@@ -103,17 +98,17 @@ impl<R: Real> Solid<R> for Board<R> {
     #[inline(always)]
     fn contact(
         &self,
-        params: &ModelParams<R>,
+        ball: &BallParams<R>,
         state: &BallState<R>,
     ) -> (ContactKinematics<R>, BoardFrame) {
         let (x, v, w) = (state.position_m.x, state.velocity_m_s, state.spin_rad_s);
-        let zero = params.zero();
+        let zero = ball.zero();
         let kinematics = ContactKinematics {
             compression: self.touch_x - x,
             lever: x - self.face_x,
             velocity: ContactVector::new(v.x, v.y, v.z),
             spin: ContactVector::new(w.x, w.y, w.z),
-            gravity: ContactVector::new(zero, zero, -params.gravity),
+            gravity: ContactVector::new(zero, zero, -ball.gravity),
             curvature_1: zero,
             curvature_2: zero,
         };
@@ -133,7 +128,7 @@ impl<R: Real> Solid<R> for Board<R> {
     #[inline(always)]
     fn approach(
         &self,
-        _params: &ModelParams<R>,
+        _ball: &BallParams<R>,
         state: &BallState<R>,
         _max_acceleration: R,
         longest: R,

@@ -1,9 +1,9 @@
 //! The ball in contact with one solid, in the frame `(n, 1, 2)` of the contact.
 
-use super::solid::Material;
+use super::material::Material;
 use crate::math::real::Real;
 use crate::math::vector::Vec2;
-use crate::model::params::ModelParams;
+use crate::model::ball_params::BallParams;
 
 /// A vector along the normal and the two tangents of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,8 +84,8 @@ impl<R: Real> ContactKinematics<R> {
 
     /// Rate of the slip for a unit of friction per unit of mass: 1 + lever^2 m/I.
     #[inline(always)]
-    pub(crate) fn slip_compliance(&self, params: &ModelParams<R>) -> R {
-        self.lever.squared() * params.mass_over_inertia + 1.0
+    pub(crate) fn slip_compliance(&self, ball: &BallParams<R>) -> R {
+        self.lever.squared() * ball.mass_over_inertia + 1.0
     }
 
     /// The derivative of the frictionless slip rate along a direction with respect to u'. (The normal

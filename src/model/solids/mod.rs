@@ -11,11 +11,13 @@
 
 mod board;
 mod contact_kinematics;
+mod material;
 mod ring;
 mod solid;
 
 pub(crate) use board::Board;
 pub(crate) use contact_kinematics::{ContactKinematics, ContactVector};
+pub(crate) use material::Material;
 pub(crate) use ring::Ring;
-pub(crate) use solid::{Approach, ContactFrame, Material, Solid, TOUCH_GAP_M};
 pub use solid::SolidId;
+pub(crate) use solid::{Approach, ContactFrame, Solid, TOUCH_GAP_M};

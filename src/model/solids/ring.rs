@@ -1,13 +1,12 @@
 //! The ring: a circle of radius R_H about the origin, without thickness.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
-use super::solid::{
-    Approach, ContactFrame, GapPolynomial, Material, Solid, SolidId, TOUCH_GAP_M,
-};
+use super::material::Material;
+use super::solid::{Approach, ContactFrame, GapPolynomial, Solid, SolidId, TOUCH_GAP_M};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
+use crate::model::ball_params::BallParams;
 use crate::model::ball_state::BallState;
-use crate::model::params::ModelParams;
 
 /// The ring.
 #[derive(Clone, Copy, Debug)]
@@ -120,7 +119,7 @@ impl<R: Real> Solid<R> for Ring<R> {
     #[inline(always)]
     fn contact(
         &self,
-        params: &ModelParams<R>,
+        ball: &BallParams<R>,
         state: &BallState<R>,
     ) -> (ContactKinematics<R>, RingFrame<R>) {
         let [x, y, z] = state.position_m.into();
@@ -128,7 +127,7 @@ impl<R: Real> Solid<R> for Ring<R> {
         let inward = self.radius - axis;
         let lever = (inward.squared() + z.squared()).sqrt();
         // 1/axis and 1/lever with a single division.
-        let per_both = params.one() / (axis * lever);
+        let per_both = ball.one() / (axis * lever);
         let (per_axis, per_lever) = (per_both * lever, per_both * axis);
         let frame = RingFrame {
             cos_theta: x * per_axis,
@@ -137,14 +136,14 @@ impl<R: Real> Solid<R> for Ring<R> {
             sin_phi: z * per_lever,
         };
         let kinematics = ContactKinematics {
-            compression: params.ball_radius - lever,
+            compression: ball.radius - lever,
             lever,
             velocity: frame.from_space(state.velocity_m_s),
             spin: frame.from_space(state.spin_rad_s),
             gravity: ContactVector::new(
-                -params.gravity * frame.sin_phi,
-                -params.gravity * frame.cos_phi,
-                params.zero(),
+                -ball.gravity * frame.sin_phi,
+                -ball.gravity * frame.cos_phi,
+                ball.zero(),
             ),
             curvature_1: per_lever,
             curvature_2: -frame.cos_phi * per_axis,
@@ -161,7 +160,7 @@ impl<R: Real> Solid<R> for Ring<R> {
     #[inline(always)]
     fn approach(
         &self,
-        params: &ModelParams<R>,
+        ball: &BallParams<R>,
         state: &BallState<R>,
         max_acceleration: R,
         longest: R,
@@ -171,8 +170,8 @@ impl<R: Real> Solid<R> for Ring<R> {
         let max_path = (max_speed + max_acceleration * longest * 0.5) * longest;
         let inward = self.radius - state.axis_distance_squared().sqrt();
         let distance_squared = inward.squared() + state.position_m.z.squared();
-        let near = distance_squared.le((params.ball_radius + max_path).squared());
-        let zero = params.zero();
+        let near = distance_squared.le((ball.radius + max_path).squared());
+        let zero = ball.zero();
         if !near.any() {
             return RingApproach {
                 near,
@@ -182,13 +181,13 @@ impl<R: Real> Solid<R> for Ring<R> {
                 normal: Vec3::splat(zero),
             };
         }
-        let (kinematics, frame) = self.contact(params, state);
+        let (kinematics, frame) = self.contact(ball, state);
         RingApproach {
             near,
             gap: -kinematics.compression,
             rate: kinematics.velocity.normal,
             frame_acceleration: kinematics.frame_acceleration(),
-            normal: frame.to_space(ContactVector::new(params.one(), zero, zero)),
+            normal: frame.to_space(ContactVector::new(ball.one(), zero, zero)),
         }
     }
 }

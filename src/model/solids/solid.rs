@@ -1,10 +1,11 @@
 //! What every solid provides.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
+use super::material::Material;
 use crate::math::real::Real;
 use crate::math::vector::{Vec2, Vec3};
+use crate::model::ball_params::BallParams;
 use crate::model::ball_state::BallState;
-use crate::model::params::ModelParams;
 use serde::Serialize;
 
 /// The solids by name.
@@ -38,31 +39,6 @@ impl SolidId {
     }
 }
 
-/// The contact law between the ball and a solid, per unit of ball mass.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Material<R> {
-    /// k/m, 1/s^2.
-    pub(crate) stiffness: R,
-    /// c/m, 1/s.
-    pub(crate) damping: R,
-    /// c/k, s: about the time from zero force (N = 0) to zero compression (u = 0) of an outgoing ball.
-    pub(crate) relaxation_time: R,
-    /// Coefficient of kinetic friction mu.
-    pub(crate) friction: R,
-}
-
-impl Material<f64> {
-    #[inline(always)]
-    pub(super) fn map<R: Real>(&self, splat: &impl Fn(f64) -> R) -> Material<R> {
-        Material {
-            stiffness: splat(self.stiffness),
-            damping: splat(self.damping),
-            relaxation_time: splat(self.relaxation_time),
-            friction: splat(self.friction),
-        }
-    }
-}
-
 /// Directions of a contact frame in space.
 pub(crate) trait ContactFrame<R: Real>: Copy {
     /// x, y, z components of a vector given along (n, 1, 2).
@@ -79,11 +55,7 @@ pub(crate) trait Approach<R: Real> {
 
     /// How the gap closes from `state` under an acceleration of the centre; `None` if it cannot close within
     /// the step in any lane. `state` is that of the approach, but the contact may have removed its slip.
-    fn closing_gap(
-        &self,
-        state: &BallState<R>,
-        acceleration: Vec3<R>,
-    ) -> Option<GapPolynomial<R>>;
+    fn closing_gap(&self, state: &BallState<R>, acceleration: Vec3<R>) -> Option<GapPolynomial<R>>;
 }
 
 /// The gap to a solid as `gap + rate t + curve t^2/2`, valid where `relevant` holds.
@@ -110,7 +82,7 @@ pub(crate) trait Solid<R: Real>: Copy {
     /// contact.
     fn contact(
         &self,
-        params: &ModelParams<R>,
+        ball: &BallParams<R>,
         state: &BallState<R>,
     ) -> (ContactKinematics<R>, Self::Frame);
 
@@ -122,7 +94,7 @@ pub(crate) trait Solid<R: Real>: Copy {
     /// its acceleration is at most `max_acceleration`.
     fn approach(
         &self,
-        params: &ModelParams<R>,
+        ball: &BallParams<R>,
         state: &BallState<R>,
         max_acceleration: R,
         longest: R,

@@ -1,0 +1,278 @@
+//! Imports go one way: between the layers of the crate, and between the files of each.
+#![cfg(feature = "app")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The layers. Each may use those before it.
+const LAYERS: [&str; 15] = [
+    "math",
+    "units",
+    "model",
+    "dynamics",
+    "shooter",
+    "config",
+    "search_space",
+    "probability",
+    "analysis",
+    "best_shot",
+    "output",
+    "sweep",
+    "plots",
+    "report",
+    "cli",
+];
+
+/// A module path from the root of the crate, such as `["dynamics", "contact", "single"]`.
+type ModulePath = Vec<String>;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// Every source file with its module path, without unit tests.
+fn modules() -> BTreeMap<ModulePath, String> {
+    fn visit(folder: &Path, found: &mut BTreeMap<ModulePath, String>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                visit(&path, found);
+            } else if path.extension().is_some_and(|end| end == "rs") {
+                let inside = path.strip_prefix(root()).unwrap().with_extension("");
+                let mut names: ModulePath = inside
+                    .iter()
+                    .map(|part| part.to_string_lossy().into_owned())
+                    .collect();
+                if names.last().is_some_and(|name| name == "mod") {
+                    names.pop();
+                }
+                let text = fs::read_to_string(&path).unwrap();
+                let code = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+                found.insert(names, without_comments(code));
+            }
+        }
+    }
+    let mut found = BTreeMap::new();
+    visit(&root(), &mut found);
+    found.remove(&vec!["lib".to_owned()]);
+    found.remove(&vec!["main".to_owned()]);
+    found
+}
+
+fn without_comments(code: &str) -> String {
+    code.lines()
+        .map(|line| line.split("//").next().unwrap())
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// The paths that begin with one of `crate`, `bankshot`, `super` and `self`, with the braces of a `use`
+/// written out.
+fn paths(code: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    while let Some(at) = ["crate::", "bankshot::", "super::", "self::"]
+        .iter()
+        .filter_map(|head| code[start..].find(head).map(|at| at + start))
+        .min()
+    {
+        let is_start = !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
+        let mut rest = &code[at..];
+        if is_start {
+            expand(&mut rest, &[], &mut found);
+        }
+        start = at + code[at..].find("::").unwrap() + 2;
+    }
+    found
+}
+
+/// Reads one path, or the paths in one pair of braces, off the front of `rest`.
+fn expand(rest: &mut &str, prefix: &[String], found: &mut Vec<Vec<String>>) {
+    let mut path = prefix.to_vec();
+    loop {
+        *rest = rest.trim_start();
+        if let Some(inside) = rest.strip_prefix('{') {
+            *rest = inside;
+            loop {
+                expand(rest, &path, found);
+                *rest = rest.trim_start();
+                match rest.chars().next() {
+                    Some(',') => *rest = &rest[1..],
+                    Some('}') => {
+                        *rest = &rest[1..];
+                        return;
+                    }
+                    _ => return,
+                }
+                if rest.trim_start().starts_with('}') {
+                    *rest = &rest.trim_start()[1..];
+                    return;
+                }
+            }
+        }
+        let end = rest
+            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+            .unwrap_or(rest.len());
+        path.push(rest[..end].to_owned());
+        *rest = &rest[end..];
+        match rest.strip_prefix("::") {
+            Some(after) => *rest = after,
+            None => {
+                if let Some(after) = rest.strip_prefix(" as ") {
+                    *rest = after.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
+                }
+                found.push(path);
+                return;
+            }
+        }
+    }
+}
+
+/// The paths of `use` declarations that begin with a child module, as paths from `self`.
+fn child_paths(code: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    for declaration in code.split(';') {
+        if let Some(at) = declaration.rfind("use ") {
+            let keyword = declaration[..at].trim_end();
+            if keyword.is_empty() || keyword.ends_with(['}', ')', '\n', 'b', ']']) {
+                expand(
+                    &mut &declaration[at + 4..],
+                    &["self".to_owned()],
+                    &mut found,
+                );
+            }
+        }
+    }
+    found
+}
+
+/// The module that a path in the file `from` names: the longest part of it that is a file.
+fn resolve(
+    path: &[String],
+    from: &ModulePath,
+    modules: &BTreeMap<ModulePath, String>,
+) -> Option<ModulePath> {
+    let mut target = match path[0].as_str() {
+        "crate" if from[0] == "cli" => vec!["cli".to_owned()],
+        "crate" | "bankshot" => Vec::new(),
+        _ => from.clone(),
+    };
+    let mut parts = path.iter().skip(1).collect::<Vec<_>>();
+    if path[0] == "super" {
+        target.pop();
+        while parts.first().is_some_and(|part| *part == "super") {
+            target.pop();
+            parts.remove(0);
+        }
+    }
+    if from[0] == "cli" && path[0] == "crate" && parts.first().is_some_and(|p| *p == "cli") {
+        parts.remove(0);
+    }
+    for part in parts {
+        let mut longer = target.clone();
+        longer.push(part.clone());
+        if !modules.contains_key(&longer) {
+            break;
+        }
+        target = longer;
+    }
+    (!target.is_empty()).then_some(target)
+}
+
+/// The other files that each file imports from.
+fn imports(modules: &BTreeMap<ModulePath, String>) -> BTreeMap<ModulePath, BTreeSet<ModulePath>> {
+    modules
+        .iter()
+        .map(|(from, code)| {
+            let children = child_paths(code).into_iter().filter(|path| {
+                let mut child = from.clone();
+                child.extend(path.get(1).cloned());
+                modules.contains_key(&child)
+            });
+            let targets = paths(code)
+                .into_iter()
+                .chain(children)
+                .collect::<Vec<_>>()
+                .iter()
+                .filter_map(|path| resolve(path, from, modules))
+                .filter(|target| target != from)
+                .collect();
+            (from.clone(), targets)
+        })
+        .collect()
+}
+
+#[test]
+fn contract_paths_are_read_with_braces_and_renames() {
+    let found = paths("use crate::{a::B, c::{self, d as e}};\nlet x = super::super::f::g(1);");
+    let text: Vec<String> = found.iter().map(|path| path.join("::")).collect();
+    assert_eq!(
+        text,
+        [
+            "crate::a::B",
+            "crate::c::self",
+            "crate::c::d",
+            "super::super::f::g",
+            "super::f::g"
+        ][..4]
+    );
+}
+
+#[test]
+fn contract_every_layer_imports_only_layers_before_it() {
+    let modules = modules();
+    let place = |layer: &str| {
+        LAYERS
+            .iter()
+            .position(|known| *known == layer)
+            .unwrap_or_else(|| panic!("the layer {layer} is not in the list"))
+    };
+    let mut between = 0;
+    for (from, targets) in imports(&modules) {
+        for target in targets.iter().filter(|target| target[0] != from[0]) {
+            between += 1;
+            assert!(
+                place(&target[0]) < place(&from[0]),
+                "{} imports {}, which comes later",
+                from.join("::"),
+                target.join("::")
+            );
+        }
+    }
+    assert!(modules.len() > 100, "{} files", modules.len());
+    assert!(between > 200, "{between} imports between layers");
+}
+
+#[test]
+fn contract_no_files_import_each_other_in_a_circle() {
+    let modules = modules();
+    let imports = imports(&modules);
+    let mut state: BTreeMap<&ModulePath, bool> = BTreeMap::new();
+    fn visit<'a>(
+        file: &'a ModulePath,
+        imports: &'a BTreeMap<ModulePath, BTreeSet<ModulePath>>,
+        state: &mut BTreeMap<&'a ModulePath, bool>,
+        trail: &mut Vec<&'a ModulePath>,
+    ) {
+        match state.get(file) {
+            Some(true) => return,
+            Some(false) => {
+                let start = trail.iter().position(|known| *known == file).unwrap();
+                let circle: Vec<String> = trail[start..].iter().map(|f| f.join("::")).collect();
+                panic!("a circle of imports: {}", circle.join(" -> "));
+            }
+            None => {}
+        }
+        state.insert(file, false);
+        trail.push(file);
+        for target in &imports[file] {
+            visit(target, imports, state, trail);
+        }
+        trail.pop();
+        state.insert(file, true);
+    }
+    for file in modules.keys() {
+        visit(file, &imports, &mut state, &mut Vec::new());
+    }
+}
