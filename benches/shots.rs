@@ -1,23 +1,51 @@
-//! Shots per second of both integrators on the sample *foul* and from the side, by lanes; one table
-//! and one whole `best`; ratios and agreement side by side; one and two threads:
-//! `cargo bench --bench shots`.
-#![allow(missing_docs, clippy::disallowed_methods)]
+//! Times of both integrators by instruction set, of one table and one whole `best`, the agreement of the
+//! integrators, and the gain of a second thread: `cargo bench --bench shots`.
+//!
+//! Variants that are compared run in turn, for several rounds, so that a machine that becomes slower or faster
+//! affects all of them. The time of a variant is the least of its rounds.
 
-use bankshot::dynamics::{Integrator, Lanes, Release, Room, Simulator, State};
-use bankshot::physics::{FOOT_M, Physics};
-use bankshot::plan::Plan;
-use bankshot::probability::{Silent, Table, best};
-use bankshot::profile::Nominal;
-use bankshot::units::{DEGREE_RAD, REV_RAD};
-use criterion::{Criterion, Throughput};
+use bankshot::best_shot;
+use bankshot::config::parse_profile;
+use bankshot::dynamics::{BatchWorkspace, InstructionSet, Integrator, Release, Simulator};
+use bankshot::model::{BallState, Physics};
+use bankshot::probability::{NominalTable, Silent};
+use bankshot::search_space::TablePlan;
+use bankshot::shooter::Nominal;
+use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Uniform releases 13.75 ft away: speed 22..27 ft/s, pitch 40..65 deg, backspin 0..5 rev/s.
-fn sample(count: usize, court_deg: f64, polar_deg: f64) -> Vec<Release> {
+/// Rounds of each comparison.
+const ROUNDS: u32 = 7;
+/// Shots of a batch of the event-driven integrator.
+const BATCH: usize = 200_000;
+/// Shots of slow variants, the first ones of the same sample.
+const SMALL_BATCH: usize = 20_000;
+/// Shots of the comparison of one and two threads.
+const THREAD_SHOTS: usize = 1_000_000;
+/// The samples: name, court angle and mean polar angle, deg.
+const SAMPLES: [(&str, f64, f64); 3] = [
+    ("free_throw_uniform", 0.0, 0.0),
+    ("side_uniform_direct", 67.5, 67.5),
+    ("side_uniform_bank", 67.5, 62.107),
+];
+
+fn main() {
+    let physics = Physics::paper();
+    for (name, court_deg, polar_deg) in SAMPLES {
+        compare_integrators(&physics, name, &uniform(BATCH, court_deg, polar_deg));
+    }
+    compare_agreement(&physics, &uniform(BATCH, 0.0, 0.0));
+    time_free_throw();
+    compare_threads(&physics, &uniform(THREAD_SHOTS, 0.0, 0.0));
+}
+
+/// Uniform releases 13.75 ft away: speed 22..27 ft/s, pitch 40..65 deg, polar angle within 3 deg of its mean,
+/// backspin 0..5 rev/s.
+fn uniform(count: usize, court_deg: f64, polar_deg: f64) -> Vec<BallState> {
     let mut random = ChaCha12Rng::seed_from_u64(1);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     (0..count)
@@ -32,199 +60,236 @@ fn sample(count: usize, court_deg: f64, polar_deg: f64) -> Vec<Release> {
             rifle_spin_rad_s: 0.0,
             side_spin_rad_s: 0.0,
         })
+        .map(|release| release.state())
         .collect()
 }
 
-fn main() {
-    let mut criterion = Criterion::default().configure_from_args().sample_size(20);
-    let physics = Physics::paper();
-    let with = |integrator| Simulator::with_integrator(&physics, integrator).unwrap();
-    let exact = with(Integrator::EXACT);
-    let paper = with(Integrator::PAPER);
-    let shots = 200_000;
-    let samples = [
-        ("foul", 0.0, 0.0),
-        ("side direct", 67.5, 67.5),
-        ("side bank", 67.5, 62.107),
-    ];
-    for (name, court, polar) in samples {
-        let starts = states(&sample(shots, court, polar));
-        let mut group = criterion.benchmark_group(name);
-        // A part of them, so that a run ends within a second.
-        let few = &starts[..20_000];
-        group.throughput(Throughput::Elements(few.len() as u64));
-        group.bench_function("paper, one at a time", |bencher| {
-            bencher.iter(|| count(black_box(few), |start| paper.verdict_from(*start).made));
-        });
-        group.throughput(Throughput::Elements(shots as u64));
-        for (lanes_name, lanes) in Lanes::available() {
-            let simulator = exact.clone().with_lanes(lanes);
-            let mut room = Room::default();
-            group.bench_function(format!("exact, {lanes_name}"), |bencher| {
-                bencher.iter(|| made(&simulator, black_box(&starts), &mut room));
-            });
+/// A variant of a comparison.
+struct Variant<'a> {
+    name: String,
+    run: Box<dyn FnMut() + 'a>,
+}
+
+impl<'a> Variant<'a> {
+    fn new(name: impl Into<String>, run: impl FnMut() + 'a) -> Self {
+        Self {
+            name: name.into(),
+            run: Box::new(run),
         }
-        group.finish();
     }
-    whole(&mut criterion);
-    let million = states(&sample(1_000_000, 0.0, 0.0));
-    report(
-        &states(&sample(20_000, 0.0, 0.0)),
-        &million[..200_000],
-        &with,
-    );
-    threads(&exact, &million);
+
+    fn seconds(&mut self) -> f64 {
+        let began = Instant::now();
+        (self.run)();
+        began.elapsed().as_secs_f64()
+    }
 }
 
-fn states(releases: &[Release]) -> Vec<State> {
-    releases.iter().map(Release::state).collect()
-}
-
-fn count(starts: &[State], made: impl Fn(&State) -> bool) -> usize {
-    starts.iter().filter(|start| made(start)).count()
-}
-
-/// Made shots, in one batch.
-fn made(simulator: &Simulator, starts: &[State], room: &mut Room) -> usize {
-    let verdicts = simulator.verdicts(starts, room);
-    verdicts.iter().filter(|v| v.made).count()
-}
-
-/// One table and one whole `best` of the free throw.
-fn whole(criterion: &mut Criterion) {
-    let text = include_str!("../configs/free_throw.toml");
-    let profile = bankshot::profile::parse(text, "free_throw.toml").unwrap();
-    let plan = Plan::new(&profile).unwrap();
-    let simulator = Simulator::new(&profile.physics).unwrap();
-    let mut group = criterion.benchmark_group("free throw");
-    group.sample_size(10);
-    group.bench_function("table of the search", |bencher| {
-        bencher.iter(|| Table::build(&profile, &plan, &simulator, &Silent));
-    });
-    let centre = Nominal {
-        speed_m_s: 23.6 * FOOT_M,
-        pitch_rad: 53.5 * DEGREE_RAD,
-        polar_rad: 0.0,
-        backspin_rad_s: 3.0 * REV_RAD,
-        ..Nominal::default()
-    };
-    let window = plan.around(&profile, &centre).unwrap();
-    group.bench_function("table of a window", |bencher| {
-        bencher
-            .iter(|| Table::build(&profile, &window, &simulator, &Silent).probabilities(&profile));
-    });
-    group.bench_function("best", |bencher| {
-        bencher.iter(|| best::find(&profile, &Silent).unwrap())
-    });
-    group.finish();
-}
-
-/// The least time of `runs` runs of each, taken in turn so that a drifting machine hits all alike.
-fn in_turn(runs: u32, tasks: &mut [(&str, Box<dyn FnMut() + '_>)]) -> Vec<f64> {
-    let mut least = vec![f64::INFINITY; tasks.len()];
-    for _ in 0..runs {
-        for (least, (_, task)) in least.iter_mut().zip(tasks.iter_mut()) {
-            let began = Instant::now();
-            task();
-            *least = least.min(began.elapsed().as_secs_f64());
+/// The least time of each variant, s. All variants run once in each round, after one round without measurement.
+fn least_times_s(variants: &mut [Variant<'_>]) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; variants.len()];
+    for round in 0..=ROUNDS {
+        for (least, variant) in least.iter_mut().zip(variants.iter_mut()) {
+            let seconds = variant.seconds();
+            if round > 0 {
+                *least = least.min(seconds);
+            }
         }
     }
     least
 }
 
-/// Rates in batches of `many`, agreement on `few`, and ratios, side by side.
-fn report(few: &[State], many: &[State], with: &dyn Fn(Integrator) -> Simulator) {
-    let truth: Vec<bool> = {
-        let reference = with(Integrator::Exact {
-            steps_per_contact: 1000,
-        });
-        few.iter()
-            .map(|start| reference.verdict_from(*start).made)
-            .collect()
-    };
-    let exact = with(Integrator::EXACT);
-    let mut simulators: Vec<(String, Simulator, &[State])> = Lanes::available()
-        .into_iter()
-        .rev()
-        .map(|(name, lanes)| {
-            let starts = if name == "scalar" { few } else { many };
-            (
-                format!("exact, {name}"),
-                exact.clone().with_lanes(lanes),
-                starts,
-            )
-        })
-        .collect();
-    // At equal agreement: the paper's longest step, the shortest refined until 99.9 % agree.
-    for dt_min_s in [0.000_5, 0.000_1, 0.000_07, 0.000_05] {
-        let paper = Integrator::Paper {
+/// One simulator of a comparison of rates, with the shots that it simulates.
+struct Contender<'a> {
+    name: String,
+    simulator: Simulator,
+    starts: &'a [BallState],
+}
+
+impl<'a> Contender<'a> {
+    fn paper(physics: &Physics, dt_min_s: f64, starts: &'a [BallState]) -> Self {
+        let integrator = Integrator::PaperRk4 {
             dt_max_s: 0.015,
             dt_min_s,
         };
-        let name = format!("paper, 15/{:.2} ms", 1e3 * dt_min_s);
-        simulators.push((name, with(paper), few));
+        Self {
+            name: format!("paper, steps 15 to {:.2} ms", 1e3 * dt_min_s),
+            simulator: Simulator::with_integrator(physics, integrator).unwrap(),
+            starts,
+        }
     }
-    let mut tasks: Vec<(&str, Box<dyn FnMut() + '_>)> = Vec::new();
-    for (name, simulator, starts) in &simulators {
-        let mut room = Room::default();
-        tasks.push((
-            name,
-            Box::new(move || {
-                black_box(made(simulator, starts, &mut room));
-            }),
-        ));
+
+    /// The event-driven integrator on every instruction set of this machine, the best one first.
+    fn event_driven(physics: &Physics, starts: &'a [BallState]) -> Vec<Self> {
+        let simulator = Simulator::new(physics).unwrap();
+        let sets = InstructionSet::available().into_iter().rev();
+        sets.map(|(name, instructions)| Self {
+            name: format!("event-driven, {name}"),
+            simulator: simulator.clone().with_instructions(instructions),
+            starts: if name == "scalar" {
+                &starts[..SMALL_BATCH]
+            } else {
+                starts
+            },
+        })
+        .collect()
     }
-    let times = in_turn(5, &mut tasks);
-    println!(
-        "\nfoul, one core, in batches of {} (lanes) and {}; agreement on {}",
-        many.len(),
-        few.len(),
-        few.len()
-    );
-    let shot_times: Vec<f64> = simulators
+
+    fn variant(&self) -> Variant<'_> {
+        let mut workspace = BatchWorkspace::default();
+        Variant::new(&self.name, move || {
+            black_box(count_made(&self.simulator, self.starts, &mut workspace));
+        })
+    }
+}
+
+/// The number of made shots, in one batch.
+fn count_made(
+    simulator: &Simulator,
+    starts: &[BallState],
+    workspace: &mut BatchWorkspace,
+) -> usize {
+    let verdicts = simulator.verdicts(starts, workspace).unwrap();
+    verdicts.iter().filter(|verdict| verdict.made).count()
+}
+
+/// The least time of a shot of each contender, s.
+fn shot_times_s(contenders: &[Contender<'_>]) -> Vec<f64> {
+    let mut variants: Vec<Variant<'_>> = contenders.iter().map(Contender::variant).collect();
+    let times = least_times_s(&mut variants);
+    let shots = contenders.iter().map(|contender| contender.starts.len());
+    times
         .iter()
-        .zip(&times)
-        .map(|((_, _, starts), time)| time / starts.len() as f64)
-        .collect();
-    for ((name, simulator, _), time) in simulators.iter().zip(&shot_times) {
-        let mut room = Room::default();
-        let verdicts = simulator.verdicts(few, &mut room);
-        let same = verdicts
-            .iter()
-            .zip(&truth)
-            .filter(|(v, made)| v.made == **made);
+        .zip(shots)
+        .map(|(time, shots)| time / shots as f64)
+        .collect()
+}
+
+/// Shots per second of both integrators on one thread, by instruction set.
+fn compare_integrators(physics: &Physics, sample: &str, starts: &[BallState]) {
+    let mut contenders = Contender::event_driven(physics, starts);
+    contenders.push(Contender::paper(physics, 0.0005, &starts[..SMALL_BATCH]));
+    let times = shot_times_s(&contenders);
+    println!("\n{sample}, one thread");
+    for (contender, time) in contenders.iter().zip(&times) {
         println!(
-            "{name:18} {:>9.0} shots/s   {:.3} % agree with tiny steps   {:6.2} times the time of the first",
+            "  {:27} {:>9.0} shots/s {:>8.2} times the first's time (batch of {})",
+            contender.name,
             1.0 / time,
-            100.0 * same.count() as f64 / few.len() as f64,
-            time / shot_times[0]
+            time / times[0],
+            contender.starts.len()
         );
     }
 }
 
-/// Two threads against one on a million shots, in 32 batches.
-fn threads(simulator: &Simulator, starts: &[State]) {
-    let on = |threads: usize| {
+/// Rates and the share of shots on which an integrator agrees with the event-driven one at tiny steps. The
+/// shortest step of the paper's integrator decreases until 99.9 % agree.
+fn compare_agreement(physics: &Physics, starts: &[BallState]) {
+    let few = &starts[..SMALL_BATCH];
+    let tiny_steps = Integrator::EventDriven {
+        steps_per_contact: 1000,
+    };
+    let reference = made(
+        &Simulator::with_integrator(physics, tiny_steps).unwrap(),
+        few,
+    );
+    let mut contenders = Contender::event_driven(physics, starts);
+    for dt_min_s in [0.000_5, 0.000_1, 0.000_07, 0.000_05] {
+        contenders.push(Contender::paper(physics, dt_min_s, few));
+    }
+    let times = shot_times_s(&contenders);
+    println!("\nfree_throw_uniform, one thread; agreement on {SMALL_BATCH} shots");
+    for (contender, time) in contenders.iter().zip(&times) {
+        let found = made(&contender.simulator, few);
+        let same = found.iter().zip(&reference).filter(|(a, b)| a == b).count();
+        println!(
+            "  {:27} {:>9.0} shots/s {:>8.2} times the first's time, {:.3} % agree with tiny steps",
+            contender.name,
+            1.0 / time,
+            time / times[0],
+            100.0 * same as f64 / few.len() as f64
+        );
+    }
+}
+
+/// Whether each shot is made.
+fn made(simulator: &Simulator, starts: &[BallState]) -> Vec<bool> {
+    let mut workspace = BatchWorkspace::default();
+    let verdicts = simulator.verdicts(starts, &mut workspace).unwrap();
+    verdicts.iter().map(|verdict| verdict.made).collect()
+}
+
+/// One table of the search, one table of a window, and one whole `best` of the free throw, on all threads.
+fn time_free_throw() {
+    let text = include_str!("../configs/free_throw.toml");
+    let profile = parse_profile(text, "free_throw.toml").unwrap();
+    let plan = TablePlan::for_search(&profile).unwrap();
+    let centre = Nominal {
+        speed_m_s: 23.6 * FOOT_M,
+        pitch_rad: 53.5 * DEGREE_RAD,
+        backspin_rad_s: 3.0 * REV_RAD,
+        ..Nominal::default()
+    };
+    let window = plan.window(&profile, &centre).unwrap();
+    let mut variants = [
+        Variant::new("table of the search", || {
+            black_box(NominalTable::simulate(&profile, &plan, &Silent));
+        }),
+        Variant::new("table of a window", || {
+            let table = NominalTable::simulate(&profile, &window, &Silent);
+            black_box(table.probabilities(&profile));
+        }),
+        Variant::new("best", || {
+            black_box(best_shot::find(&profile, &Silent).unwrap());
+        }),
+    ];
+    let times = least_times_s(&mut variants);
+    println!(
+        "\nfree_throw.toml, {} threads",
+        rayon::current_num_threads()
+    );
+    for (variant, time) in variants.iter().zip(&times) {
+        println!(
+            "  {:27} {:>9.1} ms {:>8.2} times the first's time",
+            variant.name,
+            1e3 * time,
+            time / times[0]
+        );
+    }
+}
+
+/// Two threads against one, in 32 batches.
+fn compare_threads(physics: &Physics, starts: &[BallState]) {
+    let simulator = Simulator::new(physics).unwrap();
+    let simulate = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
+        let simulator = &simulator;
         move || {
-            pool.install(|| {
-                let made: usize = starts
+            let made: usize = pool.install(|| {
+                starts
                     .par_chunks(starts.len() / 32)
-                    .map_init(Room::default, |room, batch| made(simulator, batch, room))
-                    .sum();
-                black_box(made);
+                    .map_init(BatchWorkspace::default, |workspace, batch| {
+                        count_made(simulator, batch, workspace)
+                    })
+                    .sum()
             });
+            black_box(made);
         }
     };
-    let times = in_turn(4, &mut [("one", Box::new(on(1))), ("two", Box::new(on(2)))]);
-    println!(
-        "\n{} shots: {:.3} s on one thread, {:.3} s on two, ratio {:.2}",
-        starts.len(),
-        times[0],
-        times[1],
-        times[0] / times[1]
-    );
+    let mut variants = [
+        Variant::new("one thread", simulate(1)),
+        Variant::new("two threads", simulate(2)),
+    ];
+    let times = least_times_s(&mut variants);
+    println!("\nfree_throw_uniform, {} shots", starts.len());
+    for (variant, time) in variants.iter().zip(&times) {
+        println!(
+            "  {:27} {time:>9.3} s, one thread takes {:.2} times as long",
+            variant.name,
+            times[0] / time
+        );
+    }
 }

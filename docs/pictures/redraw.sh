@@ -1,6 +1,7 @@
 #!/bin/sh
-# Draws the pictures of docs/tutorial.md again. A test in tests/plots fails if one of them is stale.
-#   docs/pictures/redraw.sh [FOLDER]
+# Draws the pictures of the docs again. Tests in tests/plots fail if one of them is out of date.
+#   docs/pictures/redraw.sh           all of them, into docs/pictures
+#   docs/pictures/redraw.sh FOLDER    only those of docs/tutorial.md, into FOLDER
 set -eu
 cd "$(dirname "$0")/../.."
 bankshot=${BANKSHOT:-target/release/bankshot} folder=${1:-docs/pictures}
@@ -8,5 +9,13 @@ draw() { # NAME SPEED PITCH BACKSPIN
   "$bankshot" trace configs/tutorial.toml --speed "$2" --pitch "$3" --backspin "$4" \
     --swarm 60 --plot "$folder/$1.svg" --quiet >/dev/null
 }
+if [ $# -eq 0 ]; then
+  cargo build --release --bin bankshot
+  cargo run --release --example draw_half_court
+  figures=$(mktemp -d)
+  "$bankshot" figures --out "$figures" --quiet >/dev/null
+  cp "$figures"/*.svg docs/pictures
+  rm -r "$figures"
+fi
 draw tutorial_before '23.48 ft/s' '51.1 deg' '2.05 rev/s'
 draw tutorial_after '23.71 ft/s' '54 deg' '2.6 rev/s'

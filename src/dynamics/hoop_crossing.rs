@@ -1,10 +1,10 @@
 //! How the ball crosses the plane of the hoop: with the contacts, this decides between made and missed.
 //!
-//! A ball is made if it falls through `z = -R` inside the ring, has been above the plane of the hoop, and
+//! A shot is made if it falls through `z = -R` inside the ring, has been above the plane of the hoop, and
 //! its centre never rose through the hoop from below. The last condition is taken literally: a ball that
 //! dips below the plane inside the ring and bounces up through it again is missed, even if it then falls
-//! in (6 of a thousand made shots of the sample *free_throw_uniform*; `docs/model.md` gives the measured
-//! effect).
+//! in (this turns 6 of a thousand shots that would otherwise be made into misses; `docs/model.md` gives the
+//! measured effect).
 
 use crate::math::real::Real;
 use crate::model::BallState;

@@ -45,7 +45,8 @@ impl Integrator {
     };
 
     /// # Errors
-    /// A step that is not positive and finite would never end a shot.
+    /// Zero steps per contact, a shortest step below 1e-9 s, a longest step below the shortest, or a step that
+    /// is not finite: shots would never end.
     pub(crate) fn check(self) -> Result<(), SimulatorError> {
         let refuse = |key, value, allowed| {
             Err(SimulatorError::Integrator {
@@ -159,8 +160,8 @@ impl Simulator {
     /// A simulator with the given integrator.
     ///
     /// # Errors
-    /// The first constant of `physics` that cannot be simulated, or a step of the integrator that is not
-    /// positive and finite.
+    /// The first constant of `physics` that cannot be simulated, or steps of the integrator with which
+    /// shots would never end.
     pub fn with_integrator(
         physics: &Physics,
         integrator: Integrator,
@@ -186,8 +187,8 @@ impl Simulator {
         })
     }
 
-    /// The same simulator with its batches on other vector instructions (by default, the best of the
-    /// machine). No result depends on them.
+    /// The same simulator with other vector instructions for [`Simulator::verdicts`] (by default, the widest
+    /// of the machine). No result depends on them.
     #[must_use]
     pub fn with_instructions(mut self, instructions: InstructionSet) -> Self {
         self.instructions = instructions;

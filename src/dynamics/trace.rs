@@ -75,7 +75,7 @@ pub(crate) struct Recorder {
     samples: Vec<Sample>,
     /// For each solid, the contact in progress.
     open: [Option<OpenContact>; SolidId::COUNT],
-    /// Where the last segment began: time, state, and time of flight since.
+    /// The last known state: its time, the state, and the time of flight since.
     last: (f64, BallState, f64),
 }
 

@@ -264,7 +264,7 @@ impl<R: Real> Matrix2<R> {
     }
 
     /// The solution of `self * x = right`. The matrix is singular only if both contact points coincide;
-    /// then one contact does all, with `own` as its coefficient.
+    /// then each contact is solved as if alone, with the coefficient `own`.
     #[inline(always)]
     fn solve(&self, params: &ModelParams<R>, right: Vec2<R>, own: R) -> Vec2<R> {
         let determinant = self.a * self.d - self.b * self.c;

@@ -27,7 +27,7 @@ pub(super) const SHORTEST_STEP_S: f64 = 1e-9;
 pub(crate) struct SingleContactStep<R: Real> {
     /// Length of the step, s.
     pub(crate) dt: R,
-    /// The ball has left the solid, and nothing was integrated.
+    /// The ball has left the solid; it was moved to zero compression, and no time is counted.
     pub(crate) parted: R::Mask,
 }
 

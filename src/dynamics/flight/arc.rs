@@ -7,7 +7,8 @@ use crate::math::real::Real;
 use crate::model::params::ModelParams;
 use crate::model::{BallState, SolidId};
 
-/// The possible ends of an arc of free flight, as times from its start, s. The earliest one happens.
+/// The possible ends of an arc of free flight, as times from its start, s. The earliest one happens;
+/// `beside_board` is no end, but a time from which the board must be looked at again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightArc<R: Real> {
     /// The centre falls through `z = -R`.
@@ -17,7 +18,7 @@ pub(crate) struct FlightArc<R: Real> {
     /// The ball overlaps the plane of the board beside the rectangle. It may come onto the rectangle or
     /// pass behind the face: [`FlightArc::resolve_beside_board`] says which.
     pub(crate) beside_board: R,
-    /// The search for the ring reached its iteration limit. (Never seen; such a shot is not a miss.)
+    /// The search for the ring reached its iteration limit. (Never seen. Such a shot is unresolved.)
     pub(crate) unresolved: R::Mask,
 }
 

@@ -1,0 +1,120 @@
+//! `best`: its JSON, its folder, and shots that cannot be found.
+
+use super::support::{Answer, best, file_names, small_profile, too_slow_profile, write_file};
+use std::fs;
+use tempfile::TempDir;
+
+#[test]
+fn contract_best_prints_only_json_and_writes_its_folder() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "p.toml", small_profile());
+    let runs = folder.path().join("runs");
+    let output = Answer::of(best(&profile, &runs).args(["--json", "--quiet"])).exits(0);
+    assert!(output.stderr.is_empty());
+    let answer = output.json();
+    for kind in ["direct", "bank"] {
+        for key in [
+            "speed_ft_s",
+            "pitch_deg",
+            "polar_deg",
+            "backspin_rev_s",
+            "probability",
+            "standard_error",
+        ] {
+            assert!(answer[kind][key].is_f64(), "{kind} {key}");
+        }
+        assert!(answer[kind]["standard_error"].as_f64().unwrap() <= 0.01);
+    }
+    let run = runs.join(&file_names(&runs)[0]);
+    assert_eq!(
+        file_names(&run),
+        [
+            "best_shots.csv",
+            "best_shots.json",
+            "curves.csv",
+            "plan.json",
+            "profile.toml",
+            "provenance.json",
+            "sensitivity.csv"
+        ]
+    );
+    let stored = fs::read(run.join("best_shots.json")).unwrap();
+    assert_eq!(stored, output.stdout);
+    let table = fs::read_to_string(run.join("best_shots.csv")).unwrap();
+    assert!(table.starts_with(
+        "kind,speed_ft_s,pitch_deg,polar_deg,backspin_rev_s,side_spin_rev_s,probability"
+    ));
+    assert_eq!(table.lines().count(), 3);
+}
+
+#[test]
+fn contract_best_prints_the_same_with_one_thread_and_has_metric_units() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "p.toml", small_profile());
+    let run = |name: &str, options: &[&str]| {
+        let mut command = best(&profile, &folder.path().join(name));
+        Answer::of(command.args(["--json", "--quiet"]).args(options)).exits(0)
+    };
+    let all_threads = run("all", &[]);
+    let one_thread = run("one", &["--threads", "1"]);
+    assert_eq!(one_thread.stdout, all_threads.stdout);
+    let metric = run("metric", &["--units", "metric"]).prints("\"speed_m_s\"");
+    assert!(!metric.stdout().contains("_ft"));
+}
+
+#[test]
+fn contract_metres_and_feet_give_the_same_answer() {
+    let folder = TempDir::new().unwrap();
+    let metres = small_profile()
+        .replace("\"13.75 ft\"", "\"4.191 m\"")
+        .replace("\"7 ft\"", "\"213.36 cm\"")
+        .replace("\"0.25 ft/s\"", "\"0.0762 m/s\"");
+    let mut answers = Vec::new();
+    for (name, text) in [("a.toml", small_profile()), ("b.toml", metres)] {
+        let profile = write_file(&folder, name, text);
+        let answer = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
+        let text = answer.stdout();
+        let line = text.lines().find(|line| line.contains("makes within"));
+        let line = line.expect("the sensitivity says within what range a shot is made");
+        assert!(line.contains(" ft/s wide, pitch "), "{line}");
+        answers.push(answer.stdout);
+    }
+    assert_eq!(answers[0], answers[1]);
+}
+
+#[test]
+fn contract_best_says_why_a_location_has_no_shot_and_writes_nothing() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "p.toml", too_slow_profile());
+    let out = folder.path().join("out");
+    for options in [&["--json"][..], &[]] {
+        Answer::of(best(&profile, &out).args(options))
+            .exits(2)
+            .says("no release within the limits reaches the hoop");
+        assert!(!out.exists());
+    }
+}
+
+#[test]
+fn contract_a_shooter_without_spin_or_error_of_spin_gets_an_answer() {
+    let folder = TempDir::new().unwrap();
+    let text = small_profile()
+        .replace("\"3 rev/s\"", "\"0 rev/s\"")
+        .replace("\"0.3 rev/s\"", "\"0 rev/s\"");
+    let profile = write_file(&folder, "p.toml", text);
+    let answer = Answer::of(best(&profile, folder.path()).args(["--json", "--quiet"])).json();
+    assert!(answer["direct"]["probability"].as_f64().unwrap() > 0.5);
+    assert_eq!(answer["direct"]["backspin_rev_s"], 0.0);
+}
+
+#[test]
+fn contract_names_of_shooters_never_become_paths() {
+    let folder = TempDir::new().unwrap();
+    let text = small_profile().replace("college guard", "../../<script> é");
+    let profile = write_file(&folder, "p.toml", text);
+    let out = folder.path().join("runs");
+    Answer::of(best(&profile, &out).arg("--quiet")).exits(0);
+    let names = file_names(&out);
+    assert_eq!(names.len(), 1);
+    assert!(names[0].starts_with("script-"), "{names:?}");
+}

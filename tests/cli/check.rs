@@ -1,0 +1,206 @@
+//! `check` and `plan`: shipped profiles are valid, and every error of a profile is named.
+
+use super::support::{Answer, FREE_THROW, bankshot, best, file_names, write_file};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn check(path: &Path) -> Answer {
+    Answer::of(bankshot().arg("check").arg(path))
+}
+
+#[test]
+fn contract_check_and_plan_accept_the_shipped_profiles() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs");
+    let mut checked = 0;
+    for folder in [root.clone(), root.join("paper")] {
+        let names = file_names(&folder);
+        for name in names.iter().filter(|name| name.ends_with(".toml")) {
+            check(&folder.join(name)).exits(0).prints(": valid (");
+            checked += 1;
+        }
+    }
+    assert!(checked >= 10);
+    let arguments = ["plan", "configs/free_throw.toml", "--wide-sample", "20000"];
+    Answer::of(bankshot().args(arguments))
+        .exits(0)
+        .prints("870912 in each window")
+        .prints("; 0 of those were made");
+}
+
+/// What is replaced in the profile of the free throw, and words that the message must have.
+const ERRORS: [(&str, &str, &[&str]); 17] = [
+    (
+        "c10 = \"0.25 ft/s\"",
+        "c10 = \"0.25\"",
+        &["shooter.errors.c10", "no unit", "ft/s"],
+    ),
+    (
+        "c10 = \"0.25 ft/s\"",
+        "c10 = 0.25",
+        &["shooter.errors.c10", "no unit"],
+    ),
+    (
+        "c10 = \"0.25 ft/s\"",
+        "c10 = \"0.25 deg\"",
+        &["shooter.errors.c10", "deg", "ft/s"],
+    ),
+    (
+        "c10 = \"0.25 ft/s\"",
+        "c10 = \"nan ft/s\"",
+        &["shooter.errors.c10", "finite"],
+    ),
+    (
+        "c10 = \"0.25 ft/s\"",
+        "c10 = \"inf ft/s\"",
+        &["shooter.errors.c10", "finite"],
+    ),
+    (
+        "c10 = \"0.25 ft/s\"",
+        "c10 = \"-0.25 ft/s\"",
+        &["shooter.errors.c10", "0 or more"],
+    ),
+    (
+        "c10 = \"0.25 ft/s\"",
+        "",
+        &["shooter.errors.c10", "missing"],
+    ),
+    ("c11 = 0.0", "c11 = nan", &["shooter.errors.c11", "finite"]),
+    ("c11 = 0.0", "c11 = -1.0", &["c10 + c11 v"]),
+    (
+        "c11 = 0.0",
+        "c19 = 0.0",
+        &["shooter.errors.c19", "not a key"],
+    ),
+    ("[location]", "[loction]", &["loction", "not a key"]),
+    (
+        "distance = \"13.75 ft\"",
+        "distance = \"1.1 ft\"",
+        &["inside the ring's reach"],
+    ),
+    (
+        "angle = \"0 deg\"",
+        "angle = \"150 deg\"",
+        &["behind the board"],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"moon\"",
+        &["physics.preset", "paper"],
+    ),
+    (
+        "preset = \"paper\"",
+        "friction = -1.0",
+        &["physics.friction", "0 or more"],
+    ),
+    (
+        "preset = \"paper\"",
+        "restitution = 1.5",
+        &["physics.restitution", "at most 1"],
+    ),
+    ("preset = \"paper\"", "preset = \"paper", &["not TOML"]),
+];
+
+#[test]
+fn contract_errors_of_a_profile_name_the_key_the_value_and_what_is_allowed() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("never");
+    for (from, to, words) in ERRORS {
+        assert!(FREE_THROW.contains(from), "{from}");
+        let profile = write_file(&folder, "bad.toml", FREE_THROW.replace(from, to));
+        for answer in [check(&profile), Answer::of(&mut best(&profile, &out))] {
+            let mut answer = answer.exits(2);
+            assert!(answer.stdout.is_empty(), "{answer:?}");
+            for word in words {
+                answer = answer.says(word);
+            }
+        }
+    }
+    assert!(!out.exists(), "nothing is written for a refused profile");
+}
+
+#[test]
+fn contract_all_errors_of_a_profile_are_reported_at_once_with_their_lines() {
+    let folder = TempDir::new().unwrap();
+    let text = FREE_THROW
+        .replace("\"7 ft\"", "\"7\"")
+        .replace("c20 = \"1.2 deg\"", "c20 = \"-1.2 deg\"")
+        .replace("c40 = \"0.3 rev/s\"", "c40 = \"0.3 furlong\"")
+        .replace("\"13.75 ft\"", "\"x ft\"");
+    let line_of = |key: &str| {
+        let line = text.lines().position(|line| line.starts_with(key)).unwrap();
+        format!("bad.toml:{}:", line + 1)
+    };
+    let profile = write_file(&folder, "bad.toml", &text);
+    let mut answer = check(&profile).exits(2);
+    for (name, key) in [
+        ("release_height", "release_height"),
+        ("c20", "c20"),
+        ("c40", "c40"),
+        ("location.distance", "distance"),
+    ] {
+        answer = answer.says(name).says(&line_of(key));
+    }
+}
+
+#[test]
+fn contract_unreadable_profiles_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let latin = write_file(&folder, "latin.toml", b"[shooter]\nname = \"Jos\xe9\"\n");
+    check(&latin).exits(2).says("UTF-8");
+    check(folder.path()).exits(2).says("not a file");
+    let missing = folder.path().join("none.toml");
+    check(&missing).exits(2).says("No such file");
+    let huge = folder.path().join("huge.toml");
+    fs::File::create(&huge).unwrap().set_len(20 << 20).unwrap();
+    check(&huge).exits(2).says("at most");
+    Answer::of(bankshot().arg("best")).exits(2);
+    Answer::of(bankshot().arg("nonsense")).exits(2);
+}
+
+#[test]
+fn contract_grids_that_are_too_large_or_not_whole_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for grid in [
+        "speed = 40\npitch = 65536\npolar = 65536\nbackspin = 65536",
+        "speed = 0",
+        "pitch = -3",
+        "polar = 1e3",
+    ] {
+        let text = format!("{FREE_THROW}\n[grid]\n{grid}\n");
+        let profile = write_file(&folder, "bad.toml", text);
+        check(&profile).exits(2).says("grid");
+    }
+}
+
+#[test]
+fn contract_implausible_errors_are_refused() {
+    let folder = TempDir::new().unwrap();
+    for (from, to) in [
+        ("\"0.25 ft/s\"", "\"1e300 ft/s\""),
+        ("\"0.3 rev/s\"", "\"1e300 rev/s\""),
+        ("c11 = 0.0", "c11 = 9"),
+    ] {
+        let profile = write_file(&folder, "p.toml", FREE_THROW.replace(from, to));
+        check(&profile).exits(2);
+    }
+}
+
+#[test]
+fn contract_impossible_correlations_are_refused_with_their_file() {
+    const NINE: &str = include_str!("../../configs/nine_errors.toml");
+    let line = "speed_pitch = -0.25            # from -1 to 1; any pair of the nine";
+    assert!(NINE.contains(line));
+    let folder = TempDir::new().unwrap();
+    for (text, reason) in [
+        ("speed_pitch = 1.5", "from -1 to 1"),
+        ("pitch_speed = 0.5", "not a key here"),
+        (
+            "speed_pitch = 0.9\nspeed_polar = 0.9\npitch_polar = -0.9",
+            "not positive semi-definite",
+        ),
+    ] {
+        let profile = write_file(&folder, "p.toml", NINE.replace(line, text));
+        check(&profile).exits(2).says(reason).says("p.toml");
+    }
+}

@@ -1,0 +1,10 @@
+//! The program from outside: answers, files, bad input and exit codes.
+#![cfg(feature = "app")]
+
+mod best;
+mod check;
+mod outputs;
+mod probability;
+mod simulate;
+mod support;
+mod trace;

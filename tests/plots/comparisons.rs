@@ -1,0 +1,69 @@
+//! `compare`: maps of a sweep, and of two sweeps.
+
+use super::support::{SMALL_SWEEP, SweepRun, bankshot, be_refused, printed, succeed, write_report};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// `bankshot compare` of a sweep, perhaps with another, into a folder.
+fn compare(sweep: &SweepRun, other: Option<&Path>, plots: &Path) -> Command {
+    let mut command = bankshot();
+    command.arg("compare").arg(sweep.results());
+    command.arg("--out").arg(plots);
+    if let Some(other) = other {
+        command.arg("--against").arg(other);
+    }
+    command
+}
+
+#[test]
+fn contract_compare_draws_the_maps_of_a_sweep_with_the_same_bytes_every_time() {
+    let sweep = SweepRun::new(SMALL_SWEEP);
+    let plots = sweep.path("plots");
+    succeed(&mut compare(&sweep, None, &plots));
+    for name in [
+        "bank_and_direct",
+        "best_p",
+        "best_kind",
+        "best_pitch",
+        "best_spin",
+    ] {
+        for extension in ["svg", "png"] {
+            let file = plots.join(format!("{name}.{extension}"));
+            assert!(file.exists(), "{}", file.display());
+        }
+    }
+    let png = || fs::read(plots.join("bank_and_direct.png")).unwrap();
+    let first = png();
+    succeed(&mut compare(&sweep, None, &plots));
+    assert_eq!(png(), first);
+    assert!(write_report(&plots).exists());
+}
+
+#[test]
+fn contract_compare_writes_to_the_folder_of_the_sweep_by_default() {
+    let sweep = SweepRun::new(SMALL_SWEEP);
+    succeed(bankshot().arg("compare").arg(sweep.results()));
+    assert!(sweep.results().join("plots/bank_and_direct.svg").exists());
+}
+
+#[test]
+fn contract_compare_draws_the_difference_of_two_sweeps() {
+    let sweep = SweepRun::new(SMALL_SWEEP);
+    let plots = sweep.path("plots");
+    // A steadier shooter from the same places.
+    let steadier = SweepRun::new(&SMALL_SWEEP.replace("0.25 ft/s", "0.15 ft/s"));
+    let output = succeed(&mut compare(&sweep, Some(&steadier.results()), &plots));
+    let text = printed(&output);
+    assert!(text.contains("minus shooter (small): +"), "{text}");
+    assert!(plots.join("against.png").exists());
+    assert!(write_report(&plots).exists());
+}
+
+#[test]
+fn contract_a_sweep_is_not_compared_with_a_profile_and_other_folders_have_no_report() {
+    let sweep = SweepRun::new(SMALL_SWEEP);
+    let profile = Path::new("configs/elite.toml");
+    be_refused(&mut compare(&sweep, Some(profile), &sweep.path("plots")));
+    be_refused(bankshot().arg("report").arg(sweep.folder()));
+}
