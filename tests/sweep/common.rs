@@ -12,7 +12,7 @@ pub(crate) const JOBS: usize = 12;
 /// Computed spots of the small sweep.
 pub(crate) const SPOTS: usize = 6;
 
-pub(crate) const SWEEP: &str = include_str!("small_sweep.toml");
+pub(crate) const SWEEP: &str = include_str!("../small_sweep.toml");
 
 /// Ends a test that hangs. No test expects anything to happen sooner.
 const HANG_LIMIT: Duration = Duration::from_secs(120);
