@@ -19,7 +19,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 /// Rounds of each comparison.
-const ROUNDS: u32 = 7;
+const ROUNDS: u32 = 5;
 /// Shots of a batch of the event-driven integrator.
 const BATCH: usize = 200_000;
 /// Shots of slow variants, the first ones of the same sample.

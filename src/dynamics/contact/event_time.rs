@@ -146,7 +146,7 @@ mod tests {
             };
             state.position_m.x = params.board.touch_x + gap;
             let gap = state.position_m.x - params.board.touch_x;
-            let approach = params.board.approach(&params, &state, 0.0, longest);
+            let approach = params.board.approach(&params.ball, &state, 0.0, longest);
             let touch = time_to_touch(&params, &approach, &state, Vec3::new(curve, 0.0, 0.0)).time();
             if root <= longest {
                 prop_assert!((touch - root).abs() <= 1e-9 * root);
