@@ -136,7 +136,9 @@ fn semi_definite_factor(matrix: &Matrix) -> Option<Matrix> {
         }
         for i in k..N {
             let rest = reduced(i, &factor);
-            factor[(i, k)] = if pivot > ZERO_PIVOT {
+            factor[(i, k)] = if pivot > ZERO_PIVOT && i == k {
+                pivot.sqrt()
+            } else if pivot > ZERO_PIVOT {
                 rest / pivot.sqrt()
             } else if rest.abs() <= ZERO_PIVOT.sqrt() {
                 0.0
