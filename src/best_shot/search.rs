@@ -103,7 +103,6 @@ pub struct BestShots {
 
 impl BestShots {
     /// The best shot of each kind.
-    #[must_use]
     pub fn by_kind(&self) -> [(ShotKind, &Result<BestShot, NoShot>); 2] {
         [
             (ShotKind::Direct, &self.direct),

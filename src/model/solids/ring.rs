@@ -38,7 +38,7 @@ pub(crate) struct RingFrame<R> {
 impl<R: Real> RingFrame<R> {
     /// Components along (u_n, u_phi, u_theta) of a vector in space.
     #[inline(always)]
-    fn from_space(self, v: Vec3<R>) -> ContactVector<R> {
+    fn to_frame(self, v: Vec3<R>) -> ContactVector<R> {
         let outward = v.x * self.cos_theta + v.y * self.sin_theta;
         ContactVector::new(
             v.z * self.sin_phi - outward * self.cos_phi,
@@ -138,8 +138,8 @@ impl<R: Real> Solid<R> for Ring<R> {
         let kinematics = ContactKinematics {
             compression: ball.radius - lever,
             lever,
-            velocity: frame.from_space(state.velocity_m_s),
-            spin: frame.from_space(state.spin_rad_s),
+            velocity: frame.to_frame(state.velocity_m_s),
+            spin: frame.to_frame(state.spin_rad_s),
             gravity: ContactVector::new(
                 -ball.gravity * frame.sin_phi,
                 -ball.gravity * frame.cos_phi,
