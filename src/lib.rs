@@ -40,48 +40,34 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-/// Numbers, vectors and distributions.
 pub mod math;
 
-/// Units of measurement.
 pub mod units;
 
-/// Physical constants, geometry of the solids, state of the ball, lines of the court.
 pub mod model;
 
-/// The ball in flight and in contact.
 pub mod dynamics;
 
-/// Release errors, location, and the checked profile.
 pub mod shooter;
 
-/// Configuration files in TOML.
 pub mod config;
 
-/// The releases that are worth simulating.
 pub mod search_space;
 
-/// The probability of making a shot.
 pub mod probability;
 
-/// Aim, sensitivity, misses, and maps of releases.
 pub mod analysis;
 
-/// The best direct and the best bank shot.
 pub mod best_shot;
 
-/// Tables, JSON, CSV and files.
 #[cfg(feature = "app")]
 pub mod output;
 
-/// Best shots at every spot of a region, on disk.
 #[cfg(feature = "app")]
 pub mod sweep;
 
-/// Plots as SVG and PNG.
 #[cfg(feature = "app")]
 pub mod plots;
 
-/// Reports as HTML pages.
 #[cfg(feature = "app")]
 pub mod report;

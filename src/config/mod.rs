@@ -13,5 +13,7 @@ pub use diagnostics::{ConfigError, Diagnostic};
 pub use location_list::parse_locations;
 pub use physics_table::parse_physics;
 pub use profile_file::{MAX_FILE_BYTES, parse_profile};
+#[cfg(feature = "app")]
 pub(crate) use profile_file::{ReadSettings, read_settings, read_settings_of};
+#[cfg(feature = "app")]
 pub(crate) use toml_reader::parse_toml;

@@ -214,6 +214,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
         }
     }
 
+    #[cfg(feature = "app")]
     /// A list of quantities in SI units, if it is given.
     pub(crate) fn quantities(
         &mut self,

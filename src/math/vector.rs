@@ -1,4 +1,4 @@
-//! Vectors: nalgebra's, over any [`Real`].
+//! Vectors: nalgebra's, over any `Real`.
 //!
 //! nalgebra's operators and constructors serve the SIMD lanes as they are. Its products and norms ask for a
 //! zero without a value at hand, which a SIMD number cannot give. [`RealVector`] has those under the
@@ -12,7 +12,7 @@ pub type Vec3<R> = nalgebra::Vector3<R>;
 /// A vector of two components.
 pub type Vec2<R> = nalgebra::Vector2<R>;
 
-/// Products and norms of vectors over any [`Real`].
+/// Products and norms of vectors over any `Real`.
 pub trait RealVector<R: Real>: Copy {
     /// `value` in every component.
     fn splat(value: R) -> Self;
