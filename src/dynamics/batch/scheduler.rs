@@ -450,15 +450,15 @@ mod tests {
         let (params, limits) = (&simulator.params, &simulator.limits);
         let starts: Vec<_> = (0..3000u32)
             .map(|i| {
-                let part = |n: u32| f64::from((i * n) % 3000) / 3000.0;
+                let fraction = |n: u32| f64::from((i * n) % 3000) / 3000.0;
                 Release {
                     distance_m: 13.75 * FOOT_M,
                     court_angle_rad: 0.0,
                     height_above_hoop_m: -3.0 * FOOT_M,
-                    speed_m_s: (22.0 + 5.0 * part(7)) * FOOT_M,
-                    pitch_rad: (40.0 + 25.0 * part(13)) * DEGREE_RAD,
-                    polar_rad: (6.0 * part(11) - 3.0) * DEGREE_RAD,
-                    backspin_rad_s: 30.0 * part(17),
+                    speed_m_s: (22.0 + 5.0 * fraction(7)) * FOOT_M,
+                    pitch_rad: (40.0 + 25.0 * fraction(13)) * DEGREE_RAD,
+                    polar_rad: (6.0 * fraction(11) - 3.0) * DEGREE_RAD,
+                    backspin_rad_s: 30.0 * fraction(17),
                     rifle_spin_rad_s: 0.0,
                     side_spin_rad_s: 0.0,
                 }
