@@ -1,7 +1,7 @@
 //! The pattern search that climbs from a start to a local optimum.
 
 use super::shot_kind::ShotKind;
-use crate::analysis::aim::centre_speed_m_s;
+use crate::analysis::aim_point::centre_speed_m_s;
 use crate::probability::Progress;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile};

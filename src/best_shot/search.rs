@@ -9,7 +9,7 @@
 
 use super::climb::Climb;
 use super::shot_kind::ShotKind;
-use crate::analysis::aim::aim_past_centre_m;
+use crate::analysis::aim_point::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, Sensitivity, SensitivityTopics};
 use crate::dynamics::Outcome;

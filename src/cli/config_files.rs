@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use bankshot::config::{MAX_FILE_BYTES, parse_profile};
 use bankshot::shooter::Profile;
-use bankshot::sweep::sweep_file::{SourceTexts, SweepConfig, named_files, parse_sweep};
+use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
 

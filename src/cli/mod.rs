@@ -1,32 +1,22 @@
 //! The command line: parses options, calls the library, prints answers. Only this module prints.
 
 mod args;
-mod best;
-mod check;
-mod compare;
+mod commands;
 mod config_files;
 mod failure;
-mod figures;
 mod nominal_options;
-mod plan;
 mod plot_files;
-mod probability;
 mod progress_bars;
-mod report;
 mod run_folder;
 mod signals;
-mod simulate;
-mod sweep;
-mod sweep_plan;
-mod sweep_status;
-mod sweep_summary;
 mod terminal;
-mod trace;
-mod trace_text;
 mod value_parsers;
 
 use args::{Arguments, Command};
 use clap::{CommandFactory, Parser};
+use commands::{
+    best, check, compare, figures, plan, probability, report, simulate, sweep, sweep_status, trace,
+};
 use failure::{Failure, code};
 use std::process::ExitCode;
 

@@ -1,7 +1,7 @@
 //! Configuration files: from TOML to checked settings, with every error at its line.
 
 mod diagnostics;
-mod location_list;
+mod locations_csv;
 mod location_table;
 mod physics_table;
 mod profile_file;
@@ -10,7 +10,7 @@ mod shooter_tables;
 pub(crate) mod toml_reader;
 
 pub use diagnostics::{ConfigError, Diagnostic};
-pub use location_list::parse_locations;
+pub use locations_csv::parse_locations;
 pub use physics_table::parse_physics;
 pub use profile_file::{MAX_FILE_BYTES, parse_profile};
 #[cfg(feature = "app")]

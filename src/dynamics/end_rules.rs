@@ -3,7 +3,7 @@
 use super::outcome::Ending;
 use crate::math::real::Real;
 use crate::model::BallState;
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
 
 /// Limits that belong to a run and not to the equations.

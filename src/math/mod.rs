@@ -6,5 +6,5 @@ mod operators;
 pub(crate) mod real;
 pub(crate) mod simd;
 pub mod sobol;
-pub(crate) mod unrolled;
+pub(crate) mod simd_unrolled;
 pub mod vector;

@@ -3,7 +3,7 @@
 pub(crate) mod ball_params;
 mod ball_state;
 pub mod court;
-pub(crate) mod params;
+pub(crate) mod model_params;
 mod physics;
 mod restitution;
 pub(crate) mod solids;

@@ -1,22 +1,22 @@
 //! The probability of making a shot (Eqs. 20-28 of the paper).
 //!
 //! [`NominalTable`] gives P of all nominal shots of a plan from one table of shots (Eq. 25). [`Sampler`]
-//! integrates one nominal shot with scrambled Sobol points. [`monte_carlo`] and [`eq25_grids`] are
+//! integrates one nominal shot with scrambled Sobol points. [`monte_carlo`] and [`grid_integration`] are
 //! independent methods to check them against.
 //!
 //! An *unresolved* shot (the numerics gave up) counts neither as made nor as missed. P is the number of made
 //! shots over that of all shots, and the interval of P is widened upwards by the share of unresolved shots.
 
 mod counts;
-pub mod eq25_grids;
+pub mod grid_integration;
 mod estimate;
 pub mod monte_carlo;
-mod nominal_table;
+mod nominal_probability_table;
 mod progress;
 mod sobol_estimate;
-mod table_weights;
+mod gaussian_cell_weights;
 
 pub use estimate::{Estimate, MadeShares};
-pub use nominal_table::{MAX_BATCH_BYTES, NominalProbabilities, NominalTable};
+pub use nominal_probability_table::{MAX_BATCH_BYTES, NominalProbabilities, NominalTable};
 pub use progress::{Progress, Silent};
 pub use sobol_estimate::{MAX_SHOTS, MIN_SHOTS, REPLICATES, Sampler};

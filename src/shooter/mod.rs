@@ -2,7 +2,7 @@
 
 mod correlation;
 mod dispersion;
-mod identity;
+mod identity_hash;
 mod location;
 mod nominal;
 mod profile;
@@ -13,7 +13,7 @@ mod setting_error;
 
 pub use correlation::Correlation;
 pub use dispersion::ReleaseDispersion;
-pub use identity::{IdentityError, identity_hash};
+pub use identity_hash::{IdentityError, identity_hash};
 pub use location::{Location, LocationError};
 pub use nominal::{Nominal, NominalOverrides};
 pub use profile::{OutputSettings, Profile, ProfileError, ProfileSettings, Shooter};

@@ -1,7 +1,7 @@
 //! The checked profile: shooter, location, physics, search and output.
 
 use super::dispersion::{MAX_SPEED_M_S, MAX_SPIN_RAD_S, ReleaseDispersion};
-use super::identity::{IdentityError, identity_hash};
+use super::identity_hash::{IdentityError, identity_hash};
 use super::location::{Location, LocationError};
 use super::nominal::{Nominal, NominalOverrides};
 use super::release_variable::NominalVariable;

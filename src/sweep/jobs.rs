@@ -2,8 +2,8 @@
 //!
 //! A spot on the right is the mirror image of one on the left, so only one of the two is computed.
 
-use super::region::CourtSpot;
-use super::sweep_file::SweepConfig;
+use super::court_region::CourtSpot;
+use super::sweep_toml::SweepConfig;
 use crate::best_shot::ShotKind;
 
 /// One shard of several: every `count`-th spot, starting at the `index`-th.

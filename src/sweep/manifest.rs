@@ -1,6 +1,6 @@
 //! The manifest of a sweep's folder: which sweep it holds, and which program computes it.
 
-use super::sweep_file::{SourceTexts, SweepConfig};
+use super::sweep_toml::{SourceTexts, SweepConfig};
 use crate::shooter::{IdentityError, identity_hash};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -1,7 +1,7 @@
 //! The result of one job: a row of typed cells in SI units.
 
 use super::columns::{self, IntegerColumn, RealColumn, TextColumn};
-use super::region::CourtSpot;
+use super::court_region::CourtSpot;
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::{BestShot, Limit, NoShot, ShotKind};
 use crate::shooter::Profile;

@@ -5,7 +5,7 @@
 use super::columns::{self, ColumnType};
 use super::jobs::Jobs;
 use super::result_row::{Cell, ResultRow};
-use super::sweep_file::SweepConfig;
+use super::sweep_toml::SweepConfig;
 use crate::output::json_record::{Record, number, object, provenance};
 use crate::units::UnitSystem;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};

@@ -11,7 +11,7 @@ use super::jobs::{Jobs, Shard};
 use super::result_row::{JobStatus, ResultRow};
 use super::result_store::{ResultStore, StoreError};
 use super::shard_lock::ShardLock;
-use super::sweep_file::SweepConfig;
+use super::sweep_toml::SweepConfig;
 use super::sweep_folder::SweepFolder;
 use crate::best_shot::{self, BestShotError, NoShot};
 use crate::probability::{Progress, Silent};

@@ -12,7 +12,7 @@ use super::manifest::{self, Manifest, ManifestFile};
 use super::result_row::{JobStatus, ResultRow};
 use super::result_store;
 use super::shard_lock::{ShardLock, lock_file, open_lock};
-use super::sweep_file::{SourceTexts, SweepConfig, parse_sweep};
+use super::sweep_toml::{SourceTexts, SweepConfig, parse_sweep};
 use crate::output::atomic_file;
 use std::collections::BTreeMap;
 use std::fs::{self, File};

@@ -2,7 +2,7 @@
 
 use bankshot::sweep::columns::{self, ColumnType};
 use bankshot::sweep::result_row::{Cell, ResultRow};
-use bankshot::sweep::sweep_file::{SourceTexts, SweepConfig, parse_sweep};
+use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, parse_sweep};
 use std::collections::BTreeMap;
 use std::fs;
 

@@ -4,7 +4,7 @@
 
 use crate::common::{at, load, nominal};
 use bankshot::model::BallState;
-use bankshot::probability::{Estimate, Sampler, Silent, eq25_grids, monte_carlo};
+use bankshot::probability::{Estimate, Sampler, Silent, grid_integration, monte_carlo};
 use bankshot::search_space::TablePlan;
 use bankshot::shooter::{
     Correlation, Nominal, Profile, ReleaseDispersion, ReleaseDistribution, ReleaseVariable,
@@ -76,7 +76,7 @@ fn val_grid_monte_carlo_and_sobol_agree_on_six_shots() {
         let plan = TablePlan::for_search(&profile).unwrap();
         let sobol = Sampler::new(&profile).estimate(&shot, 0.0006, 3, &Silent);
         let plain = monte_carlo::estimate(&profile, &shot, 200_000, 4, &Silent);
-        let shifted = eq25_grids::shifted_grids(&profile, &plan, &shot, 20, 5, &Silent);
+        let shifted = grid_integration::shifted_grids(&profile, &plan, &shot, 20, 5, &Silent);
         let values = [
             with_error(&sobol),
             with_error(&plain),
@@ -173,7 +173,7 @@ fn val_without_errors_every_method_gives_the_outcome_of_the_one_shot() {
         let shot = nominal(speed_ft_s, 52.0, 0.0, 0.0);
         let sobol = Sampler::new(&profile).estimate(&shot, 0.001, 1, &Silent);
         let plain = monte_carlo::estimate(&profile, &shot, 1000, 1, &Silent);
-        let shifted = eq25_grids::shifted_grids(&profile, &plan, &shot, 20, 1, &Silent);
+        let shifted = grid_integration::shifted_grids(&profile, &plan, &shot, 20, 1, &Silent);
         for found in [sobol, plain, shifted] {
             assert_eq!((found.probability, found.standard_error), (p, 0.0));
         }
@@ -208,8 +208,8 @@ fn val_one_common_grid_aliases_and_shifted_grids_do_not() {
     let shot = nominal(23.6, 53.5, 0.0, 3.0);
     let plan = TablePlan::for_search(&profile).unwrap();
     let sobol = Sampler::new(&profile).estimate(&shot, 0.0005, 1, &Silent);
-    let common = eq25_grids::common_grid(&profile, &plan, &shot, 37, &Silent);
-    let shifted = eq25_grids::shifted_grids(&profile, &plan, &shot, 20, 1, &Silent);
+    let common = grid_integration::common_grid(&profile, &plan, &shot, 37, &Silent);
+    let shifted = grid_integration::shifted_grids(&profile, &plan, &shot, 20, 1, &Silent);
     println!(
         "Sobol {:.4}, common grid {:.4}, shifted grids {:.4}",
         sobol.probability, common.probability, shifted.probability

@@ -4,10 +4,10 @@
 //! false alarm for 1 of 150,000 choices of seeds.
 
 use crate::common::{at, grid, load, nominal, with_search};
-use bankshot::analysis::aim::centre_speed_m_s;
+use bankshot::analysis::aim_point::centre_speed_m_s;
 use bankshot::analysis::sensitivity::SensitivityTopics;
 use bankshot::best_shot::{self, BestShot, Limit, ShotKind};
-use bankshot::probability::{Estimate, Sampler, Silent, eq25_grids, monte_carlo};
+use bankshot::probability::{Estimate, Sampler, Silent, grid_integration, monte_carlo};
 use bankshot::search_space::TablePlan;
 use bankshot::shooter::{NominalVariable, Profile};
 use bankshot::units::{DEGREE_RAD, FOOT_M, INCH_M};
@@ -258,7 +258,7 @@ fn campaign_published() {
     println!("## Methods: 23.6 ft/s, 53.5 deg, 3 rev/s, free throw");
     let sobol = Sampler::new(&profile).estimate(&shot, 0.0003, 1, &Silent);
     let plain = monte_carlo::estimate(&profile, &shot, 1_000_000, 1, &Silent);
-    let shifted = eq25_grids::shifted_grids(&profile, &plan, &shot, 24, 1, &Silent);
+    let shifted = grid_integration::shifted_grids(&profile, &plan, &shot, 24, 1, &Silent);
     for (name, found) in [
         ("sobol", sobol),
         ("monte-carlo", plain),
@@ -273,7 +273,7 @@ fn campaign_published() {
     }
     let mut worst = 0.0_f64;
     for n in 36..=44 {
-        let sum = eq25_grids::common_grid(&profile, &plan, &shot, n, &Silent);
+        let sum = grid_integration::common_grid(&profile, &plan, &shot, n, &Silent);
         let off = sum.probability - sobol.probability;
         worst = worst.max(off.abs());
         println!(

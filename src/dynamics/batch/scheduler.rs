@@ -20,8 +20,8 @@ use crate::dynamics::integrators::event_driven::{
 use crate::dynamics::outcome::Ending;
 use crate::math::real::{LaneBits, SimdReal};
 use crate::math::simd::F64x8;
-use crate::math::unrolled::Unrolled;
-use crate::model::params::ModelParams;
+use crate::math::simd_unrolled::Unrolled;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::{Approach, Solid};
 use crate::model::{BallState, SolidId};
 use fearless_simd::{Level, Simd};

@@ -5,7 +5,7 @@ use crate::dynamics::integrators::event_driven::{
     self, ContactState, ShotProgress, solids_pressed_at_start,
 };
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache (some

@@ -8,7 +8,7 @@ use super::normal_force::{NormalForce, ZERO_FORCE_M_S2, has_parted};
 use super::single::SHORTEST_STEP_S;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Material, Solid};
 use crate::model::{BallState, StateDerivative};
 

@@ -3,7 +3,7 @@
 use crate::math::real::Real;
 use crate::math::vector::Vec3;
 use crate::model::BallState;
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::Approach;
 
 /// A step that ends a roll or a force goes this factor beyond the predicted time, so that the next step

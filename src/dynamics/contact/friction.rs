@@ -3,7 +3,7 @@
 use super::event_time::{EventTime, OVERSHOOT, first_root};
 use super::normal_force::NormalForce;
 use crate::math::real::Real;
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 
 /// Slip speed that counts as zero, m/s.
 const ZERO_SLIP_M_S: f64 = 1e-9;

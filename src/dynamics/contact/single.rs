@@ -13,7 +13,7 @@ use super::friction::{FrictionBalance, FrictionState, SLIP_DIRECTION_LOST, zero_
 use super::normal_force::{NormalForce, PARTING_STEP_S, has_parted};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Solid};
 use crate::model::{BallState, StateDerivative};
 

@@ -1,10 +1,10 @@
 //! The first touch of the board: the centre reaches the plane `x = R - a`, linear in time.
 
-use super::parabola::{falling_time, rising_time};
+use super::height_crossing::{falling_time, rising_time};
 use super::ring_search::MIN_JUMP_S;
 use crate::math::real::Real;
 use crate::model::BallState;
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::Solid;
 
 /// Times at which the ball touches the board, and at which it reaches the plane of the board beside it.

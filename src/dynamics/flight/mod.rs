@@ -1,8 +1,8 @@
 //! Free flight: parabolas, and the first touch on them.
 
-mod arc;
+mod flight_events;
 mod board_touch;
-pub(crate) mod parabola;
+pub(crate) mod height_crossing;
 mod ring_search;
 
-pub(crate) use arc::FlightArc;
+pub(crate) use flight_events::FlightArc;

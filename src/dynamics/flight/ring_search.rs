@@ -10,10 +10,10 @@
 //! is bounded from below by some `-M`. Then the step `2 F/(sqrt(F'^2 + 2 M F) - F')` never passes a root:
 //! grazes are found, however short. Where M = 0 (most shots) it is Newton's step.
 
-use super::parabola::{falling_time, rising_time};
+use super::height_crossing::{falling_time, rising_time};
 use crate::math::real::{Mask, Real};
 use crate::model::BallState;
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 
 /// F at which an approaching ball touches the ring, as a fraction of R^2.
 const TOUCH_TOLERANCE: f64 = 1e-10;

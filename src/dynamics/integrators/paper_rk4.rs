@@ -8,12 +8,12 @@
 //! the ring's friction, friction only while N > 0, and no contact from behind the board.
 
 use crate::dynamics::end_rules::{ContactEnd, RunLimits, fell_below_ring, flight_ending};
-use crate::dynamics::flight::parabola::falling_time;
+use crate::dynamics::flight::height_crossing::falling_time;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::vector::{RealVector, Vec3};
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 use crate::model::solids::{ContactFrame, ContactVector, Solid};
 use crate::model::{BallState, SolidId, StateDerivative};
 

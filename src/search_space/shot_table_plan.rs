@@ -1,6 +1,6 @@
 //! What a table of shots will simulate, and for which nominal shots.
 
-use super::bracket::Bracket;
+use super::release_bracket::Bracket;
 use super::nominal_grid::NominalGrid;
 use crate::math::grid::{CellAxis, Linspace};
 use crate::math::normal_distribution;

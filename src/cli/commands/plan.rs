@@ -1,17 +1,17 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
-use super::args::PlanOptions;
-use super::config_files::{load_profile, read_text};
-use super::failure::Failure;
+use crate::cli::args::PlanOptions;
+use crate::cli::config_files::{load_profile, read_text};
+use crate::cli::failure::Failure;
 use super::sweep_plan;
-use super::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::dynamics::BatchWorkspace;
 use bankshot::math::grid::CellAxis;
 use bankshot::output::json_record::{number, object, provenance};
 use bankshot::probability::MAX_BATCH_BYTES;
 use bankshot::search_space::{TablePlan, WideSample, sample_wide};
 use bankshot::shooter::{Nominal, Profile};
-use bankshot::sweep::sweep_file::is_sweep;
+use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::units::{DEGREE_RAD, REV_RAD};
 use std::time::Instant;
 

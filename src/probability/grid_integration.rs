@@ -6,7 +6,7 @@
 
 use super::estimate::{Estimate, standard_error_of_mean};
 use super::progress::Progress;
-use super::table_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
+use super::gaussian_cell_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
 use crate::dynamics::{BatchWorkspace, ReleaseDirection};
 use crate::math::grid::CellAxis;
 use crate::search_space::TablePlan;

@@ -1,7 +1,7 @@
 //! `bankshot figures`: the paper's Figs. 7 to 15.
 
-use super::failure::Failure;
-use super::plot_files;
+use crate::cli::failure::Failure;
+use crate::cli::plot_files;
 use bankshot::plots::paper_figures;
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! `bankshot plan` of a sweep: jobs, time, memory and disk.
 
-use super::config_files::load_sweep;
-use super::failure::Failure;
-use super::progress_bars::ProgressBars;
-use super::terminal::print_answer;
+use crate::cli::config_files::load_sweep;
+use crate::cli::failure::Failure;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::print_answer;
 use bankshot::output::json_record::{number, object, provenance};
 use bankshot::probability::MAX_BATCH_BYTES;
 use bankshot::search_space::{PlanError, TablePlan};

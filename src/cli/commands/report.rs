@@ -1,11 +1,11 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
-use super::args::FolderOptions;
-use super::config_files::read_text;
-use super::failure::{Failure, code};
-use super::progress_bars::ProgressBars;
+use crate::cli::args::FolderOptions;
+use crate::cli::config_files::read_text;
+use crate::cli::failure::{Failure, code};
+use crate::cli::progress_bars::ProgressBars;
 use super::sweep_summary;
-use super::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
 use bankshot::report::ReportError;
 use bankshot::report::best_shot_page::best_shot_page;

@@ -1,13 +1,13 @@
 //! `bankshot sweep` and `bankshot merge`: compute the jobs, and write the tables.
 
-use super::args::{MergeOptions, SweepOptions};
-use super::config_files::load_sweep;
-use super::failure::{Failure, code};
-use super::progress_bars::ProgressBars;
-use super::run_folder;
-use super::signals;
+use crate::cli::args::{MergeOptions, SweepOptions};
+use crate::cli::config_files::load_sweep;
+use crate::cli::failure::{Failure, code};
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::run_folder;
+use crate::cli::signals;
 use super::sweep_summary::{highlights, job_summary, missing_shards};
-use super::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
 use bankshot::sweep::jobs::{Jobs, Shard};
 use bankshot::sweep::result_row::{JobStatus, ResultRow};

@@ -1,11 +1,11 @@
 //! `bankshot best`: load, plan, search, write.
 
-use super::args::BestOptions;
-use super::config_files::load_profile;
-use super::failure::Failure;
-use super::progress_bars::ProgressBars;
-use super::run_folder;
-use super::terminal::{print_answer, print_remark};
+use crate::cli::args::BestOptions;
+use crate::cli::config_files::load_profile;
+use crate::cli::failure::Failure;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::run_folder;
+use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot;
 use bankshot::output::best_shot_json::best_shots_json;
 use bankshot::output::best_shot_text::{best_shots_table, sensitivity_text};

@@ -1,6 +1,6 @@
 //! Summaries of a sweep's results as text.
 
-use super::failure::code;
+use crate::cli::failure::code;
 use bankshot::sweep::jobs::Jobs;
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
 use bankshot::sweep::{SweepConfig, columns};

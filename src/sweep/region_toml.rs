@@ -1,6 +1,6 @@
 //! The keys of a sweep that give its region.
 
-use super::region::Region;
+use super::court_region::Region;
 use crate::config::Diagnostic;
 use crate::config::toml_reader::TableReader;
 use crate::units::Dimension;

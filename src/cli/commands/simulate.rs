@@ -1,15 +1,15 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
-use super::args::{IntegratorName, SimulateOptions};
-use super::config_files::read_text;
-use super::failure::{Failure, code};
-use super::progress_bars::ProgressBars;
-use super::terminal::print_remark;
+use crate::cli::args::{IntegratorName, SimulateOptions};
+use crate::cli::config_files::read_text;
+use crate::cli::failure::{Failure, code};
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::print_remark;
 use bankshot::config::parse_physics;
 use bankshot::dynamics::{Integrator, Simulator};
 use bankshot::model::Physics;
 use bankshot::output::atomic_file::AtomicFile;
-use bankshot::output::release_csv::{OUTCOME_COLUMNS, ReleaseColumns, RowError, outcome_cells};
+use bankshot::output::simulation_csv::{OUTCOME_COLUMNS, ReleaseColumns, RowError, outcome_cells};
 use bankshot::probability::Progress;
 use csv::{ByteRecord, Reader, Writer};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! A sweep as a TOML file: from its text to a checked [`SweepConfig`].
 
-use super::region::{CourtSpot, MAX_SPOTS, Region};
-use super::region_table::read_region;
+use super::court_region::{CourtSpot, MAX_SPOTS, Region};
+use super::region_toml::read_region;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::ShotKind;
 use crate::config::toml_reader::TableReader;

@@ -1,7 +1,7 @@
 //! When a parabola reaches a height.
 
 use crate::math::real::Real;
-use crate::model::params::ModelParams;
+use crate::model::model_params::ModelParams;
 
 /// Time at which the centre falls through the height `level`. For a ball that never gets there, the time
 /// of its highest point.

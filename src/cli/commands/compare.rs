@@ -1,13 +1,13 @@
 //! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two shooters.
 
-use super::args::CompareOptions;
-use super::config_files::{load_profile, load_sweep, read_text};
-use super::failure::{Failure, code};
-use super::plot_files;
-use super::progress_bars::ProgressBars;
-use super::run_folder;
+use crate::cli::args::CompareOptions;
+use crate::cli::config_files::{load_profile, load_sweep, read_text};
+use crate::cli::failure::{Failure, code};
+use crate::cli::plot_files;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::run_folder;
 use super::sweep_summary;
-use super::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot::{self, BestShots};
 use bankshot::output::atomic_file;
 use bankshot::plots::plot::Plot;
@@ -20,7 +20,7 @@ use bankshot::shooter::Profile;
 use bankshot::sweep::SweepConfig;
 use bankshot::sweep::jobs::Jobs;
 use bankshot::sweep::result_row::ResultRow;
-use bankshot::sweep::sweep_file::is_sweep;
+use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::sweep::sweep_folder::SweepFolder;
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,11 +1,11 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use super::args::CheckOptions;
-use super::config_files::{load_profile, load_sweep, read_text};
-use super::failure::Failure;
-use super::terminal::print_answer;
+use crate::cli::args::CheckOptions;
+use crate::cli::config_files::{load_profile, load_sweep, read_text};
+use crate::cli::failure::Failure;
+use crate::cli::terminal::print_answer;
 use bankshot::search_space::TablePlan;
-use bankshot::sweep::sweep_file::is_sweep;
+use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::units::DEGREE_RAD;
 
 pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {

@@ -5,7 +5,7 @@
 //! the cell, times the width of the cell.
 
 use super::progress::Progress;
-use super::table_weights::{
+use super::gaussian_cell_weights::{
     Gaussian, WeightMatrix, add_weighted, polar_shift, speed_shift, spin_shift, weight,
     weight_matrix,
 };

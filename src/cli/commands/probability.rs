@@ -1,15 +1,15 @@
 //! `bankshot probability`: P of one nominal shot under up to nine errors.
 
-use super::args::{Method, ProbabilityOptions};
-use super::config_files::load_profile;
-use super::failure::{Failure, code};
-use super::progress_bars::ProgressBars;
-use super::terminal::{print_answer, print_remark};
+use crate::cli::args::{Method, ProbabilityOptions};
+use crate::cli::config_files::load_profile;
+use crate::cli::failure::{Failure, code};
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::{print_answer, print_remark};
 use super::trace;
 use bankshot::analysis::miss_breakdown::classify_misses;
 use bankshot::dynamics::Release;
 use bankshot::output::probability_answer::{ProbabilityAnswer, answer_json, answer_text};
-use bankshot::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, eq25_grids, monte_carlo};
+use bankshot::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo};
 use bankshot::search_space::TablePlan;
 use bankshot::shooter::{Nominal, Profile};
 
@@ -115,12 +115,12 @@ fn estimate(
         Method::Grid => {
             let plan = TablePlan::for_search(profile)?;
             let n = options.grid.unwrap_or(SHIFTED_GRID_VALUES);
-            eq25_grids::shifted_grids(profile, &plan, nominal, n, seed, &bars)
+            grid_integration::shifted_grids(profile, &plan, nominal, n, seed, &bars)
         }
         Method::PaperGrid => {
             let plan = TablePlan::for_search(profile)?;
             let n = options.grid.unwrap_or(PAPER_GRID_VALUES);
-            let sum = eq25_grids::common_grid(profile, &plan, nominal, n, &bars);
+            let sum = grid_integration::common_grid(profile, &plan, nominal, n, &bars);
             Estimate {
                 probability: sum.probability,
                 // The method gives no error.

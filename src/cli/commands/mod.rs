@@ -1,0 +1,16 @@
+//! The commands, one file each, and the text that some of them share.
+
+pub(super) mod best;
+pub(super) mod check;
+pub(super) mod compare;
+pub(super) mod figures;
+pub(super) mod plan;
+pub(super) mod probability;
+pub(super) mod report;
+pub(super) mod simulate;
+pub(super) mod sweep;
+mod sweep_plan;
+pub(super) mod sweep_status;
+mod sweep_summary;
+pub(super) mod trace;
+mod trace_text;
