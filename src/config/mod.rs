@@ -1,8 +1,8 @@
 //! Configuration files: from TOML to checked settings, with every error at its line.
 
 mod diagnostics;
-mod locations_csv;
 mod location_table;
+mod locations_csv;
 mod physics_table;
 mod profile_file;
 mod search_tables;

@@ -6,9 +6,9 @@ use crate::model::BallState;
 use crate::model::model_params::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
 
-/// Limits that belong to a run and not to the equations.
+/// Limits of a simulation that are no part of the equations.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RunLimits {
+pub(crate) struct ShotLimits {
     /// Longest step in contact, s.
     pub(crate) longest_step_s: f64,
     /// A shot that takes longer ends, s.
@@ -19,78 +19,79 @@ pub(crate) struct RunLimits {
 
 /// Whether a step in contact ends the shot, and how; lane by lane.
 #[derive(Clone, Copy)]
-pub(crate) struct ContactEnd<R: Real> {
-    behind_board: R::Mask,
-    fell: R::Mask,
-    late: R::Mask,
+pub(crate) struct ContactEnd<T: Real> {
+    behind_board: T::Mask,
+    fell: T::Mask,
+    too_late: T::Mask,
 }
 
-impl<R: Real> ContactEnd<R> {
+impl<T: Real> ContactEnd<T> {
     /// After a step in contact to `state` at `time_s` after the release.
     #[inline(always)]
     pub(crate) fn new(
-        params: &ModelParams<R>,
-        state: &BallState<R>,
-        time_s: R,
+        params: &ModelParams<T>,
+        state: &BallState<T>,
+        time_s: T,
         time_limit_s: f64,
     ) -> Self {
         Self {
             behind_board: state.position_m.x.lt(params.board.face_x),
             fell: fell_below_ring(params, state),
-            late: params.splat(time_limit_s).lt(time_s),
+            too_late: params.splat(time_limit_s).lt(time_s),
         }
     }
 
     /// Whether the shot has ended.
     #[inline(always)]
-    pub(crate) fn any(&self) -> R::Mask {
-        self.behind_board | self.fell | self.late
+    pub(crate) fn any(&self) -> T::Mask {
+        self.behind_board | self.fell | self.too_late
     }
 
-    /// One number for each mask, in the order of [`ContactEnd::ending`].
+    /// One number for each mask, in the order of [`ContactEnd::first_ending`].
     #[inline(always)]
-    pub(crate) fn map<T>(&self, number: impl Fn(R::Mask) -> T) -> [T; 3] {
+    pub(crate) fn map<Value>(&self, number: impl Fn(T::Mask) -> Value) -> [Value; 3] {
         [
             number(self.behind_board),
             number(self.fell),
-            number(self.late),
+            number(self.too_late),
         ]
     }
 }
 
 impl ContactEnd<f64> {
-    /// How the shot ended, if it did. If several rules apply, the first one counts.
+    /// How the shot ended, if it did, from the values of [`ContactEnd::map`]. If several rules apply, the
+    /// first one counts.
     #[inline(always)]
-    pub(crate) fn ending([behind_board, fell, late]: [bool; 3]) -> Option<Ending> {
+    pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<Ending> {
         if behind_board {
             Some(Ending::BehindBoard)
         } else if fell {
             Some(Ending::Fell)
-        } else if late {
+        } else if too_late {
             Some(Ending::TimeLimit)
         } else {
             None
         }
     }
 
-    /// The same for the scalar form.
-    pub(crate) fn resolve(self) -> Option<Ending> {
-        Self::ending(self.map(|rule| rule))
+    /// How the shot ended, if it did.
+    pub(crate) fn ending(self) -> Option<Ending> {
+        Self::first_ending(self.map(|rule| rule))
     }
 }
 
 /// Whether the centre is below `z = -R` and falls: nothing can touch the ball any more.
 #[inline(always)]
-pub(crate) fn fell_below_ring<R: Real>(params: &ModelParams<R>, state: &BallState<R>) -> R::Mask {
+pub(crate) fn fell_below_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     state.position_m.z.lt(-params.ball.radius) & state.velocity_m_s.z.is_negative()
 }
 
-/// Whether a flight that ended at `z = -R` had risen above it: `state` is its end. A flight that never
-/// rises so high ends at its highest point.
+/// Whether a flight that ended at `state`, without a touch, had risen above `z = -R`. A flight that does
+/// ends there; one that never rises so high ends at its highest point.
 #[inline(always)]
-pub(crate) fn rose_to_ring<R: Real>(params: &ModelParams<R>, state: &BallState<R>) -> R::Mask {
-    let level = params.splat(-1.0) * params.ball.radius - TOUCH_GAP_M;
-    level.lt(state.position_m.z)
+pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
+    let height = params.splat(-1.0) * params.ball.radius - TOUCH_GAP_M;
+    height.lt(state.position_m.z)
 }
 
 /// How a flight ended that reached neither a solid nor the time limit.
@@ -104,7 +105,7 @@ pub(crate) fn flight_ending(rose: bool) -> Ending {
 
 /// Whether a ball that has rolled on two solids for `rolling_time_s` is lodged.
 #[inline(always)]
-pub(crate) fn is_lodged<R: Real>(rolling_time_s: R, lodged_after_s: f64) -> R::Mask {
+pub(crate) fn is_lodged<T: Real>(rolling_time_s: T, lodged_after_s: f64) -> T::Mask {
     if lodged_after_s > 0.0 {
         rolling_time_s.splat(lodged_after_s).le(rolling_time_s)
     } else {

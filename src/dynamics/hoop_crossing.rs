@@ -12,44 +12,45 @@ use crate::model::model_params::ModelParams;
 
 /// The crossings of the plane of the hoop so far.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct HoopCrossing<R: Real = f64> {
+pub(crate) struct HoopCrossing<T: Real = f64> {
     /// The centre has been above the plane of the hoop.
-    pub(crate) above: R::Mask,
+    pub(crate) has_been_above: T::Mask,
     /// The centre has risen through the hoop from below.
-    pub(crate) rose_through: R::Mask,
+    pub(crate) rose_through: T::Mask,
 }
 
-impl<R: Real> HoopCrossing<R> {
+impl<T: Real> HoopCrossing<T> {
     /// At the release.
     #[inline(always)]
-    pub(crate) fn at_release(params: &ModelParams<R>, state: &BallState<R>) -> Self {
+    pub(crate) fn at_release(params: &ModelParams<T>, state: &BallState<T>) -> Self {
         Self {
-            above: params.zero().le(state.position_m.z),
+            has_been_above: params.zero().le(state.position_m.z),
             rose_through: params.splat_mask(false),
         }
     }
 
     /// Updates the crossings after flight for `dt` from `start`.
     #[inline(always)]
-    pub(crate) fn after_flight(&mut self, params: &ModelParams<R>, start: &BallState<R>, dt: R) {
+    pub(crate) fn after_flight(&mut self, params: &ModelParams<T>, start: &BallState<T>, dt: T) {
         let (p, v) = (start.position_m, start.velocity_m_s);
-        let square = v.z.squared() + params.ball.gravity * p.z * 2.0;
-        let t = (v.z - square.positive_part().sqrt()) * params.ball.per_gravity;
-        let rises = p.z.is_negative() & params.zero().le(square) & v.z.is_positive() & t.lt(dt);
+        let discriminant = v.z.squared() + params.ball.gravity * p.z * 2.0;
+        let t = (v.z - discriminant.positive_part().sqrt()) * params.ball.inverse_gravity;
+        let rises =
+            p.z.is_negative() & params.zero().le(discriminant) & v.z.is_positive() & t.lt(dt);
         let distance_squared = (p.x + v.x * t).squared() + (p.y + v.y * t).squared();
         let inside = distance_squared.lt(params.ring.radius.squared());
         self.rose_through = self.rose_through | (rises & inside);
-        self.above = self.above | rises;
+        self.has_been_above = self.has_been_above | rises;
     }
 
     /// Updates the crossings after a step in contact, in the lanes that made one.
     #[inline(always)]
     pub(crate) fn after_step(
         &mut self,
-        params: &ModelParams<R>,
-        before: &BallState<R>,
-        after: &BallState<R>,
-        stepped: R::Mask,
+        params: &ModelParams<T>,
+        before: &BallState<T>,
+        after: &BallState<T>,
+        stepped: T::Mask,
     ) {
         let rises =
             before.position_m.z.is_negative() & params.zero().le(after.position_m.z) & stepped;
@@ -57,13 +58,13 @@ impl<R: Real> HoopCrossing<R> {
             .axis_distance_squared()
             .lt(params.ring.radius.squared());
         self.rose_through = self.rose_through | (rises & inside);
-        self.above = self.above | rises;
+        self.has_been_above = self.has_been_above | rises;
     }
 
     /// Whether a ball that has fallen through `z = -R` at `state` is made.
     #[inline(always)]
-    pub(crate) fn is_made(&self, params: &ModelParams<R>, state: &BallState<R>) -> R::Mask {
-        self.above
+    pub(crate) fn is_made(&self, params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
+        self.has_been_above
             & !self.rose_through
             & state
                 .axis_distance_squared()

@@ -1,4 +1,8 @@
 //! How a shot ended: made or missed, in what way, and what it touched.
+//!
+//! The types build on each other. An [`Ending`] says why the simulation stopped. A [`Verdict`] adds made or
+//! missed, and the contacts: all that a probability needs, and all that a batch computes. An [`Outcome`] adds
+//! what people ask about one shot: its [`OutcomeKind`] (swish, long, in-and-out ...), its entry and its apex.
 
 use crate::model::SolidId;
 use serde::Serialize;
@@ -131,7 +135,7 @@ pub enum OutcomeKind {
     Long,
     /// Missed to the left or right by more than short or long.
     Wide,
-    /// Missed: the ball went behind the board.
+    /// Missed: the ball went behind the board ([`Ending::BehindBoard`]), over it or past its edge.
     OverBoard,
     /// Missed: the ball came to rest on ring and board, or was still in play at the time limit.
     Lodged,
@@ -209,7 +213,7 @@ impl fmt::Display for OutcomeKind {
 pub struct Entry {
     /// Angle of the path below the horizontal, rad (0 to pi/2).
     pub angle_rad: f64,
-    /// Position of the centre relative to the hoop's centre: x (away from the board) and y, m.
+    /// Position of the ball's centre relative to the hoop's: x (away from the board) and y, m.
     pub offset_m: (f64, f64),
 }
 

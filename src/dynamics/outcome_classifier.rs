@@ -112,9 +112,9 @@ impl Observer for OutcomeClassifier {
         }
         let end = start.after_flight(&params.ball, dt);
         self.apex_m = self.apex_m.max(end.position_m.z);
-        let square = v.z * v.z + 2.0 * params.ball.gravity * p.z;
-        if square >= 0.0 {
-            let t = (v.z + square.sqrt()) / params.ball.gravity;
+        let discriminant = v.z * v.z + 2.0 * params.ball.gravity * p.z;
+        if discriminant >= 0.0 {
+            let t = (v.z + discriminant.sqrt()) / params.ball.gravity;
             let crossing = (p.x + v.x * t, p.y + v.y * t);
             let is_first_flight = self.aim_m.is_none() && self.first_contact.is_none();
             if is_first_flight || self.awaits_flight_off_board {

@@ -1,8 +1,8 @@
 //! The interface to the dynamics: physics, integrator and releases in, outcomes out.
 
 use super::batch::{self, BatchWorkspace, InstructionSet};
-use super::end_rules::RunLimits;
-use super::flight::FlightArc;
+use super::end_rules::ShotLimits;
+use super::flight::FlightEvents;
 use super::integrators::event_driven;
 use super::integrators::paper_rk4::{self, StepRange};
 use super::observer::Observer;
@@ -144,7 +144,7 @@ pub struct Simulator {
     physics: Physics,
     integrator: Integrator,
     pub(super) params: ModelParams,
-    pub(super) limits: RunLimits,
+    pub(super) limits: ShotLimits,
     instructions: InstructionSet,
 }
 
@@ -178,7 +178,7 @@ impl Simulator {
             physics: physics.clone(),
             integrator,
             params: ModelParams::new(physics),
-            limits: RunLimits {
+            limits: ShotLimits {
                 longest_step_s: physics.contact_time_s() / steps,
                 time_limit_s: physics.time_limit_s,
                 lodged_after_s: physics.lodged_after_s,
@@ -287,7 +287,7 @@ impl Simulator {
     /// What the ball touches first in flight, if anything.
     #[must_use]
     pub fn first_touch(&self, release: &Release) -> Option<SolidId> {
-        FlightArc::new(&self.params, &release.state()).first_touch()
+        FlightEvents::new(&self.params, &release.state()).first_touch()
     }
 
     /// As [`Simulator::simulate_state`], for a state that is known to be finite.

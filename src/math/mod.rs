@@ -5,6 +5,6 @@ pub mod normal_distribution;
 mod operators;
 pub(crate) mod real;
 pub(crate) mod simd;
-pub mod sobol;
 pub(crate) mod simd_unrolled;
+pub mod sobol;
 pub mod vector;

@@ -3,15 +3,15 @@
 use super::operators::elementwise_operators;
 use super::real::{LaneBits, Mask, Real, SimdReal};
 
-/// Twice as many lanes as `R`.
+/// Twice as many lanes as `T`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Unrolled<R>(R, R);
+pub(crate) struct Unrolled<T>(T, T);
 
 /// Twice as many truth values as `M`.
 #[derive(Clone, Copy)]
 pub(crate) struct UnrolledMask<M>(M, M);
 
-elementwise_operators!(number [R: Real] Unrolled<R> { 0 1 });
+elementwise_operators!(number [T: Real] Unrolled<T> { 0 1 });
 elementwise_operators!(mask [M: Mask] UnrolledMask<M> { 0 1 });
 
 impl<M: Mask> Mask for UnrolledMask<M> {
@@ -25,8 +25,8 @@ impl<M: Mask> Mask for UnrolledMask<M> {
     }
 }
 
-impl<R: Real> Real for Unrolled<R> {
-    type Mask = UnrolledMask<R::Mask>;
+impl<T: Real> Real for Unrolled<T> {
+    type Mask = UnrolledMask<T::Mask>;
 
     #[inline(always)]
     fn splat(self, value: f64) -> Self {
@@ -61,34 +61,34 @@ impl<R: Real> Real for Unrolled<R> {
     }
 }
 
-impl<R: SimdReal> SimdReal for Unrolled<R> {
-    type Simd = R::Simd;
+impl<T: SimdReal> SimdReal for Unrolled<T> {
+    type Simd = T::Simd;
 
-    const LANES: usize = 2 * R::LANES;
+    const LANES: usize = 2 * T::LANES;
 
     #[inline(always)]
-    fn broadcast(simd: R::Simd, value: f64) -> Self {
-        Self(R::broadcast(simd, value), R::broadcast(simd, value))
+    fn broadcast(simd: T::Simd, value: f64) -> Self {
+        Self(T::broadcast(simd, value), T::broadcast(simd, value))
     }
     #[inline(always)]
-    fn load(simd: R::Simd, values: &[f64]) -> Self {
-        Self(R::load(simd, values), R::load(simd, &values[R::LANES..]))
+    fn load(simd: T::Simd, values: &[f64]) -> Self {
+        Self(T::load(simd, values), T::load(simd, &values[T::LANES..]))
     }
     #[inline(always)]
     fn store(self, values: &mut [f64]) {
         self.0.store(values);
-        self.1.store(&mut values[R::LANES..]);
+        self.1.store(&mut values[T::LANES..]);
     }
     #[inline(always)]
-    fn mask_from_bits(simd: R::Simd, bits: LaneBits) -> Self::Mask {
+    fn mask_from_bits(simd: T::Simd, bits: LaneBits) -> Self::Mask {
         UnrolledMask(
-            R::mask_from_bits(simd, bits),
-            R::mask_from_bits(simd, bits >> R::LANES),
+            T::mask_from_bits(simd, bits),
+            T::mask_from_bits(simd, bits >> T::LANES),
         )
     }
     #[inline(always)]
     fn mask_to_bits(mask: Self::Mask) -> LaneBits {
-        R::mask_to_bits(mask.0) | R::mask_to_bits(mask.1) << R::LANES
+        T::mask_to_bits(mask.0) | T::mask_to_bits(mask.1) << T::LANES
     }
 }
 

@@ -4,51 +4,51 @@ use crate::math::real::Real;
 
 /// The parameters of a ball in free motion.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BallParams<R = f64> {
+pub(crate) struct BallParams<T = f64> {
     /// Radius R of the ball, m.
-    pub(crate) radius: R,
+    pub(crate) radius: T,
     /// m/I, 1/m^2.
-    pub(crate) mass_over_inertia: R,
+    pub(crate) mass_over_inertia: T,
     /// g, m/s^2.
-    pub(crate) gravity: R,
-    pub(crate) half_gravity: R,
+    pub(crate) gravity: T,
+    pub(crate) half_gravity: T,
     /// 1/g, s^2/m.
-    pub(crate) per_gravity: R,
+    pub(crate) inverse_gravity: T,
     /// Time of an event that will not happen, s.
-    pub(crate) never: R,
+    pub(crate) never_s: T,
 }
 
 impl BallParams {
     #[inline(always)]
-    pub(super) fn map<R: Real>(&self, splat: &impl Fn(f64) -> R) -> BallParams<R> {
+    pub(super) fn map<T: Real>(&self, splat: &impl Fn(f64) -> T) -> BallParams<T> {
         BallParams {
             radius: splat(self.radius),
             mass_over_inertia: splat(self.mass_over_inertia),
             gravity: splat(self.gravity),
             half_gravity: splat(self.half_gravity),
-            per_gravity: splat(self.per_gravity),
-            never: splat(self.never),
+            inverse_gravity: splat(self.inverse_gravity),
+            never_s: splat(self.never_s),
         }
     }
 }
 
-impl<R: Real> BallParams<R> {
+impl<T: Real> BallParams<T> {
     /// `value` in every lane.
     #[inline(always)]
-    pub(crate) fn splat(&self, value: f64) -> R {
+    pub(crate) fn splat(&self, value: f64) -> T {
         self.gravity.splat(value)
     }
     #[inline(always)]
-    pub(crate) fn zero(&self) -> R {
+    pub(crate) fn zero(&self) -> T {
         self.gravity.zero()
     }
     #[inline(always)]
-    pub(crate) fn one(&self) -> R {
+    pub(crate) fn one(&self) -> T {
         self.gravity.one()
     }
     /// `value` in every lane of a mask.
     #[inline(always)]
-    pub(crate) fn splat_mask(&self, value: bool) -> R::Mask {
+    pub(crate) fn splat_mask(&self, value: bool) -> T::Mask {
         self.gravity.splat_mask(value)
     }
 }

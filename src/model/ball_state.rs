@@ -8,24 +8,24 @@ use crate::math::vector::{RealVector, Vec3};
 ///
 /// Origin at the centre of the hoop, x from the board towards midcourt, z up, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallState<R: Real = f64> {
+pub struct BallState<T: Real = f64> {
     /// Position of the centre, m.
-    pub position_m: Vec3<R>,
+    pub position_m: Vec3<T>,
     /// Velocity of the centre, m/s.
-    pub velocity_m_s: Vec3<R>,
+    pub velocity_m_s: Vec3<T>,
     /// Angular velocity, rad/s.
-    pub spin_rad_s: Vec3<R>,
+    pub spin_rad_s: Vec3<T>,
 }
 
 /// The time derivative of a [`BallState`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StateDerivative<R: Real = f64> {
-    pub(crate) velocity_m_s: Vec3<R>,
-    pub(crate) acceleration_m_s2: Vec3<R>,
-    pub(crate) angular_acceleration_rad_s2: Vec3<R>,
+pub(crate) struct StateDerivative<T: Real = f64> {
+    pub(crate) velocity_m_s: Vec3<T>,
+    pub(crate) acceleration_m_s2: Vec3<T>,
+    pub(crate) angular_acceleration_rad_s2: Vec3<T>,
 }
 
-impl<R: Real> StateDerivative<R> {
+impl<T: Real> StateDerivative<T> {
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         Self {
@@ -37,10 +37,10 @@ impl<R: Real> StateDerivative<R> {
     }
 }
 
-impl<R: Real> BallState<R> {
+impl<T: Real> BallState<T> {
     /// The state after an Euler step of `dt`.
     #[inline(always)]
-    pub(crate) fn euler_step(&self, derivative: &StateDerivative<R>, dt: R) -> Self {
+    pub(crate) fn euler_step(&self, derivative: &StateDerivative<T>, dt: T) -> Self {
         Self {
             position_m: self.position_m.add_scaled(derivative.velocity_m_s, dt),
             velocity_m_s: self
@@ -54,7 +54,7 @@ impl<R: Real> BallState<R> {
 
     /// The state after a classical Runge-Kutta step of `dt` with the derivatives of its four stages.
     #[inline(always)]
-    pub(crate) fn runge_kutta_step(&self, stages: [&StateDerivative<R>; 4], dt: R) -> Self {
+    pub(crate) fn runge_kutta_step(&self, stages: [&StateDerivative<T>; 4], dt: T) -> Self {
         let [k1, k2, k3, k4] = stages;
         let ends = k1.plus(k4);
         let middle = k2.plus(k3);
@@ -63,7 +63,7 @@ impl<R: Real> BallState<R> {
 
     /// The state after `dt` of free flight.
     #[inline(always)]
-    pub(crate) fn after_flight(&self, ball: &BallParams<R>, dt: R) -> Self {
+    pub(crate) fn after_flight(&self, ball: &BallParams<T>, dt: T) -> Self {
         let p = self.position_m.add_scaled(self.velocity_m_s, dt);
         let v = self.velocity_m_s;
         Self {
@@ -75,7 +75,7 @@ impl<R: Real> BallState<R> {
 
     /// `self` where `condition` holds, `other` elsewhere.
     #[inline(always)]
-    pub(crate) fn select(self, condition: R::Mask, other: Self) -> Self {
+    pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {
         Self {
             position_m: self.position_m.select(condition, other.position_m),
             velocity_m_s: self.velocity_m_s.select(condition, other.velocity_m_s),
@@ -85,7 +85,7 @@ impl<R: Real> BallState<R> {
 
     /// Square of the distance of the centre from the hoop's axis, the paper's D_theta^2.
     #[inline(always)]
-    pub(crate) fn axis_distance_squared(&self) -> R {
+    pub(crate) fn axis_distance_squared(&self) -> T {
         self.position_m.x.squared() + self.position_m.y.squared()
     }
 }

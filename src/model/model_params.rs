@@ -8,10 +8,10 @@ use crate::math::real::Real;
 
 /// The parameters of the equations of motion.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ModelParams<R = f64> {
-    pub(crate) ball: BallParams<R>,
-    pub(crate) board: Board<R>,
-    pub(crate) ring: Ring<R>,
+pub(crate) struct ModelParams<T = f64> {
+    pub(crate) ball: BallParams<T>,
+    pub(crate) board: Board<T>,
+    pub(crate) ring: Ring<T>,
 }
 
 impl ModelParams {
@@ -24,7 +24,7 @@ impl ModelParams {
             stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
             damping: physics.damping_kg_s / physics.ball_mass_kg,
             relaxation_time: physics.damping_kg_s / physics.stiffness_n_m,
-            friction: physics.friction,
+            friction_coefficient: physics.friction,
         };
         Self {
             ball: BallParams {
@@ -32,8 +32,8 @@ impl ModelParams {
                 mass_over_inertia: 1.0 / inertia,
                 gravity: physics.gravity_m_s2,
                 half_gravity: 0.5 * physics.gravity_m_s2,
-                per_gravity: 1.0 / physics.gravity_m_s2,
-                never: 1e9,
+                inverse_gravity: 1.0 / physics.gravity_m_s2,
+                never_s: 1e9,
             },
             board: Board {
                 touch_x: radius - physics.board_distance_m,
@@ -52,7 +52,7 @@ impl ModelParams {
 
     /// The same parameters in every lane; `splat` makes the lanes.
     #[inline(always)]
-    pub(crate) fn map<R: Real>(&self, splat: impl Fn(f64) -> R) -> ModelParams<R> {
+    pub(crate) fn map<T: Real>(&self, splat: impl Fn(f64) -> T) -> ModelParams<T> {
         ModelParams {
             ball: self.ball.map(&splat),
             board: self.board.map(&splat),
@@ -61,23 +61,23 @@ impl ModelParams {
     }
 }
 
-impl<R: Real> ModelParams<R> {
+impl<T: Real> ModelParams<T> {
     /// `value` in every lane.
     #[inline(always)]
-    pub(crate) fn splat(&self, value: f64) -> R {
+    pub(crate) fn splat(&self, value: f64) -> T {
         self.ball.splat(value)
     }
     #[inline(always)]
-    pub(crate) fn zero(&self) -> R {
+    pub(crate) fn zero(&self) -> T {
         self.ball.zero()
     }
     #[inline(always)]
-    pub(crate) fn one(&self) -> R {
+    pub(crate) fn one(&self) -> T {
         self.ball.one()
     }
     /// `value` in every lane of a mask.
     #[inline(always)]
-    pub(crate) fn splat_mask(&self, value: bool) -> R::Mask {
+    pub(crate) fn splat_mask(&self, value: bool) -> T::Mask {
         self.ball.splat_mask(value)
     }
 }

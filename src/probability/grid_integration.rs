@@ -5,8 +5,8 @@
 //! 25 can be integrated like this.
 
 use super::estimate::{Estimate, standard_error_of_mean};
-use super::progress::Progress;
 use super::gaussian_cell_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
+use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseDirection};
 use crate::math::grid::CellAxis;
 use crate::search_space::TablePlan;

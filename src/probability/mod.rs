@@ -8,13 +8,13 @@
 //! shots over that of all shots, and the interval of P is widened upwards by the share of unresolved shots.
 
 mod counts;
-pub mod grid_integration;
 mod estimate;
+mod gaussian_cell_weights;
+pub mod grid_integration;
 pub mod monte_carlo;
 mod nominal_probability_table;
 mod progress;
 mod sobol_estimate;
-mod gaussian_cell_weights;
 
 pub use estimate::{Estimate, MadeShares};
 pub use nominal_probability_table::{MAX_BATCH_BYTES, NominalProbabilities, NominalTable};

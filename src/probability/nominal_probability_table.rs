@@ -4,11 +4,11 @@
 //! 25 factors into small matrices, one axis after the other: entry (nominal, cell) is the normal density in
 //! the cell, times the width of the cell.
 
-use super::progress::Progress;
 use super::gaussian_cell_weights::{
     Gaussian, WeightMatrix, add_weighted, polar_shift, speed_shift, spin_shift, weight,
     weight_matrix,
 };
+use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseDirection, Verdict};
 use crate::math::grid::CellAxis;
 use crate::model::BallState;

@@ -4,12 +4,12 @@
 //! ranges of pitch and backspin come from what the shooter can intend, widened by [`MARGIN_SIGMAS`]
 //! standard deviations of the errors. [`TablePlan::mass_outside`] bounds the probability beyond them.
 
-mod release_bracket;
 mod nominal_grid;
+mod release_bracket;
 mod shot_table_plan;
 mod wide_sample;
 
-pub use release_bracket::Bracket;
 pub use nominal_grid::NominalGrid;
+pub use release_bracket::Bracket;
 pub use shot_table_plan::{MARGIN_SIGMAS, PlanError, TablePlan};
 pub use wide_sample::{WideSample, sample_wide};

@@ -6,21 +6,21 @@
 //! is killed, the same command continues.
 
 pub mod columns;
+mod court_region;
 mod folder_error;
 pub mod inventory;
 pub mod jobs;
 mod manifest;
-mod court_region;
 mod region_toml;
 pub mod result_row;
 pub mod result_store;
 pub mod result_tables;
 pub mod run;
 mod shard_lock;
-pub mod sweep_toml;
 pub mod sweep_folder;
+pub mod sweep_toml;
 
-pub use folder_error::SweepFolderError;
 pub use court_region::{CourtSpot, MAX_SPOTS, Region};
+pub use folder_error::SweepFolderError;
 pub use shard_lock::{ShardLock, is_locked};
 pub use sweep_toml::{Compute, SourceTexts, SweepConfig};

@@ -1,12 +1,12 @@
 //! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two shooters.
 
+use super::sweep_summary;
 use crate::cli::args::CompareOptions;
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use super::sweep_summary;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot::{self, BestShots};
 use bankshot::output::atomic_file;
@@ -20,8 +20,8 @@ use bankshot::shooter::Profile;
 use bankshot::sweep::SweepConfig;
 use bankshot::sweep::jobs::Jobs;
 use bankshot::sweep::result_row::ResultRow;
-use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::sweep::sweep_folder::SweepFolder;
+use bankshot::sweep::sweep_toml::is_sweep;
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
+use super::sweep_plan;
 use crate::cli::args::PlanOptions;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::Failure;
-use super::sweep_plan;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::dynamics::BatchWorkspace;
 use bankshot::math::grid::CellAxis;

@@ -1,15 +1,17 @@
 //! `bankshot probability`: P of one nominal shot under up to nine errors.
 
+use super::trace;
 use crate::cli::args::{Method, ProbabilityOptions};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
-use super::trace;
 use bankshot::analysis::miss_breakdown::classify_misses;
 use bankshot::dynamics::Release;
 use bankshot::output::probability_answer::{ProbabilityAnswer, answer_json, answer_text};
-use bankshot::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo};
+use bankshot::probability::{
+    Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo,
+};
 use bankshot::search_space::TablePlan;
 use bankshot::shooter::{Nominal, Profile};
 

@@ -1,10 +1,10 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
+use super::sweep_summary;
 use crate::cli::args::FolderOptions;
 use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
-use super::sweep_summary;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
 use bankshot::report::ReportError;

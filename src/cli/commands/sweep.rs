@@ -1,12 +1,12 @@
 //! `bankshot sweep` and `bankshot merge`: compute the jobs, and write the tables.
 
+use super::sweep_summary::{highlights, job_summary, missing_shards};
 use crate::cli::args::{MergeOptions, SweepOptions};
 use crate::cli::config_files::load_sweep;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::signals;
-use super::sweep_summary::{highlights, job_summary, missing_shards};
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
 use bankshot::sweep::jobs::{Jobs, Shard};

@@ -1,11 +1,11 @@
 //! `bankshot trace`: one shot with its events, its trajectory and a plot.
 
+use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
 use crate::cli::args::TraceOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files::PNG_SCALE;
 use crate::cli::terminal::{print_answer, print_bytes, print_remark};
-use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
 use bankshot::dynamics::{Release, Trace};
 use bankshot::output::atomic_file;
 use bankshot::plots::rasterise::to_png;

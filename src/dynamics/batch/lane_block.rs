@@ -27,20 +27,20 @@ pub(super) struct LaneBlock {
 /// The Boolean values of each lane. A local copy stays in registers.
 #[derive(Clone, Copy, Default)]
 struct LaneFlags {
-    above: LaneBits,
+    has_been_above: LaneBits,
     rose_through: LaneBits,
     rolling: [LaneBits; SolidId::COUNT],
-    exceeded: [LaneBits; SolidId::COUNT],
+    rolling_failed: [LaneBits; SolidId::COUNT],
     /// The lane has a shot.
     occupied: LaneBits,
 }
 
 /// The shots as SIMD numbers.
 #[derive(Clone, Copy)]
-pub(super) struct LaneShots<R: SimdReal> {
-    pub(super) state: BallState<R>,
-    pub(super) crossing: HoopCrossing<R>,
-    pub(super) time_s: R,
+pub(super) struct LaneShots<T: SimdReal> {
+    pub(super) state: BallState<T>,
+    pub(super) crossing: HoopCrossing<T>,
+    pub(super) time_s: T,
 }
 
 /// The lanes whose bits are set, in order.
@@ -121,7 +121,11 @@ impl LaneBlock {
         }
         self.times_s[lane] = shot.time_s;
         self.slots[lane] = slot;
-        set_bit(&mut flags.above, lane, shot.crossing.above);
+        set_bit(
+            &mut flags.has_been_above,
+            lane,
+            shot.crossing.has_been_above,
+        );
         set_bit(&mut flags.rose_through, lane, shot.crossing.rose_through);
         set_bit(&mut flags.occupied, lane, true);
     }
@@ -133,7 +137,11 @@ impl LaneBlock {
         for lane in lanes_in(lanes & flags.occupied) {
             let mut set = |solid: SolidId, friction: &FrictionState| {
                 set_bit(&mut flags.rolling[solid.index()], lane, friction.rolling);
-                set_bit(&mut flags.exceeded[solid.index()], lane, friction.exceeded);
+                set_bit(
+                    &mut flags.rolling_failed[solid.index()],
+                    lane,
+                    friction.rolling_failed,
+                );
                 self.zero_slips[solid.index()][lane] = friction.zero_slip;
             };
             match &slots[self.slots[lane] as usize].contact {
@@ -170,7 +178,7 @@ impl LaneBlock {
         };
         shot.time_s = self.times_s[lane];
         shot.crossing = HoopCrossing {
-            above: bit(self.flags.above, lane),
+            has_been_above: bit(self.flags.has_been_above, lane),
             rose_through: bit(self.flags.rose_through, lane),
         };
         set_bit(&mut self.flags.occupied, lane, false);
@@ -181,7 +189,7 @@ impl LaneBlock {
     pub(super) fn friction(&self, solid: SolidId, lane: usize) -> FrictionState {
         FrictionState {
             rolling: bit(self.flags.rolling[solid.index()], lane),
-            exceeded: bit(self.flags.exceeded[solid.index()], lane),
+            rolling_failed: bit(self.flags.rolling_failed[solid.index()], lane),
             zero_slip: self.zero_slips[solid.index()][lane],
         }
     }
@@ -192,8 +200,8 @@ impl LaneBlock {
     }
 
     #[inline(always)]
-    pub(super) fn load<R: SimdReal>(&self, simd: R::Simd) -> LaneShots<R> {
-        let row = |i: usize| R::load(simd, &self.state[i]);
+    pub(super) fn load<T: SimdReal>(&self, simd: T::Simd) -> LaneShots<T> {
+        let row = |i: usize| T::load(simd, &self.state[i]);
         let vector = |i: usize| Vec3::new(row(i), row(i + 1), row(i + 2));
         LaneShots {
             state: BallState {
@@ -202,15 +210,15 @@ impl LaneBlock {
                 spin_rad_s: vector(6),
             },
             crossing: HoopCrossing {
-                above: R::mask_from_bits(simd, self.flags.above),
-                rose_through: R::mask_from_bits(simd, self.flags.rose_through),
+                has_been_above: T::mask_from_bits(simd, self.flags.has_been_above),
+                rose_through: T::mask_from_bits(simd, self.flags.rose_through),
             },
-            time_s: R::load(simd, &self.times_s),
+            time_s: T::load(simd, &self.times_s),
         }
     }
 
     #[inline(always)]
-    pub(super) fn store<R: SimdReal>(&mut self, shots: &LaneShots<R>) {
+    pub(super) fn store<T: SimdReal>(&mut self, shots: &LaneShots<T>) {
         let BallState {
             position_m: p,
             velocity_m_s: v,
@@ -220,58 +228,58 @@ impl LaneBlock {
         for (row, value) in self.state.iter_mut().zip(values) {
             value.store(row);
         }
-        self.flags.above = R::mask_to_bits(shots.crossing.above);
-        self.flags.rose_through = R::mask_to_bits(shots.crossing.rose_through);
+        self.flags.has_been_above = T::mask_to_bits(shots.crossing.has_been_above);
+        self.flags.rose_through = T::mask_to_bits(shots.crossing.rose_through);
         shots.time_s.store(&mut self.times_s);
     }
 
     #[inline(always)]
-    pub(super) fn load_friction<R: SimdReal>(
+    pub(super) fn load_friction<T: SimdReal>(
         &self,
-        simd: R::Simd,
+        simd: T::Simd,
         solid: SolidId,
-    ) -> FrictionState<R> {
+    ) -> FrictionState<T> {
         FrictionState {
-            rolling: R::mask_from_bits(simd, self.flags.rolling[solid.index()]),
-            exceeded: R::mask_from_bits(simd, self.flags.exceeded[solid.index()]),
-            zero_slip: R::load(simd, &self.zero_slips[solid.index()]),
+            rolling: T::mask_from_bits(simd, self.flags.rolling[solid.index()]),
+            rolling_failed: T::mask_from_bits(simd, self.flags.rolling_failed[solid.index()]),
+            zero_slip: T::load(simd, &self.zero_slips[solid.index()]),
         }
     }
 
     #[inline(always)]
-    pub(super) fn store_friction<R: SimdReal>(
+    pub(super) fn store_friction<T: SimdReal>(
         &mut self,
         solid: SolidId,
-        friction: &FrictionState<R>,
+        friction: &FrictionState<T>,
     ) {
-        self.flags.rolling[solid.index()] = R::mask_to_bits(friction.rolling);
-        self.flags.exceeded[solid.index()] = R::mask_to_bits(friction.exceeded);
+        self.flags.rolling[solid.index()] = T::mask_to_bits(friction.rolling);
+        self.flags.rolling_failed[solid.index()] = T::mask_to_bits(friction.rolling_failed);
         friction
             .zero_slip
             .store(&mut self.zero_slips[solid.index()]);
     }
 
     #[inline(always)]
-    pub(super) fn load_rolling_times<R: SimdReal>(&self, simd: R::Simd) -> R {
-        R::load(simd, &self.rolling_times_s)
+    pub(super) fn load_rolling_times<T: SimdReal>(&self, simd: T::Simd) -> T {
+        T::load(simd, &self.rolling_times_s)
     }
 
     #[inline(always)]
-    pub(super) fn store_rolling_times<R: SimdReal>(&mut self, rolling_times_s: R) {
+    pub(super) fn store_rolling_times<T: SimdReal>(&mut self, rolling_times_s: T) {
         rolling_times_s.store(&mut self.rolling_times_s);
     }
 }
 
-impl<R: SimdReal> LaneShots<R> {
+impl<T: SimdReal> LaneShots<T> {
     /// Updates time and hoop crossing after a step of `dt` from `before`; returns the shots that end.
     #[inline(always)]
     pub(super) fn after_step(
         &mut self,
-        params: &ModelParams<R>,
-        before: &BallState<R>,
-        dt: R,
+        params: &ModelParams<T>,
+        before: &BallState<T>,
+        dt: T,
         time_limit_s: f64,
-    ) -> ContactEnd<R> {
+    ) -> ContactEnd<T> {
         self.time_s = self.time_s + dt;
         self.crossing
             .after_step(params, before, &self.state, dt.is_positive());

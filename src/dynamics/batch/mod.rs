@@ -1,8 +1,14 @@
 //! Many shots at once in SIMD lanes, with the same bits as one at a time.
 
+mod board_phase;
+mod double_contact_phase;
+mod flight_phase;
 mod instruction_set;
 mod lane_block;
+mod ring_phase;
+mod running_batch;
 mod scheduler;
+mod single_contact_phase;
 mod workspace;
 
 pub use instruction_set::InstructionSet;

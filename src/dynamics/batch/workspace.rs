@@ -1,6 +1,6 @@
 //! The memory of a batch: the shots in progress, and the queues in which they wait.
 
-use crate::dynamics::end_rules::RunLimits;
+use crate::dynamics::end_rules::ShotLimits;
 use crate::dynamics::integrators::event_driven::{
     self, ContactState, ShotProgress, solids_pressed_at_start,
 };
@@ -81,7 +81,7 @@ impl BatchWorkspace {
     pub(super) fn start_shots(
         &mut self,
         params: &ModelParams,
-        limits: &RunLimits,
+        limits: &ShotLimits,
         starts: &[BallState],
     ) {
         while let Some(start) = starts.get(self.started) {

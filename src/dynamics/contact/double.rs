@@ -3,7 +3,7 @@
 //! The mechanics are those of the single contact, with both forces in one balance. Where both contacts
 //! roll, their frictions are coupled: four linear equations keep both slips at zero.
 
-use super::friction::{FrictionBalance, FrictionState, SLIP_DIRECTION_LOST, zero_slip_after};
+use super::friction::{DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, zero_slip_after};
 use super::normal_force::{NormalForce, ZERO_FORCE_M_S2, has_parted};
 use super::single::SHORTEST_STEP_S;
 use crate::math::real::{Mask, Real};
@@ -36,13 +36,13 @@ macro_rules! for_both {
 }
 
 /// The result of one step.
-pub(crate) struct DoubleContactStep<R: Real> {
+pub(crate) struct DoubleContactStep<T: Real> {
     /// Length of the step, s.
-    pub(crate) dt: R,
+    pub(crate) dt: T,
     /// The ball has left the first, the second solid; nothing was integrated.
-    pub(crate) parted: [R::Mask; 2],
+    pub(crate) parted: [T::Mask; 2],
     /// Impulses of both contacts per unit of mass, m/s.
-    pub(crate) impulses: [Vec3<R>; 2],
+    pub(crate) impulses: [Vec3<T>; 2],
 }
 
 /// Least slip speed that counts as zero after a step meant to end the slip, m/s. The force of the other
@@ -50,22 +50,22 @@ pub(crate) struct DoubleContactStep<R: Real> {
 const SLIP_ENDED_M_S: f64 = 1e-3;
 
 /// A linear and an angular acceleration of the ball.
-type Response<R> = (Vec3<R>, Vec3<R>);
+type Response<T> = (Vec3<T>, Vec3<T>);
 
 /// Two contacts of one state.
-struct ContactPair<R> {
-    kinematics: [ContactKinematics<R>; 2],
-    materials: [Material<R>; 2],
+struct ContactPair<T> {
+    kinematics: [ContactKinematics<T>; 2],
+    materials: [Material<T>; 2],
     /// The directions (n, 1, 2) of each contact in space.
-    axes: [[Vec3<R>; 3]; 2],
+    axes: [[Vec3<T>; 3]; 2],
     /// Lever over the moment of inertia (per unit of mass).
-    lever_over_inertia: [R; 2],
+    lever_over_inertia: [T; 2],
     /// Normal accelerations.
-    normals: [R; 2],
+    normals: [T; 2],
 }
 
 #[inline(always)]
-fn axes_of<R: Real, F: ContactFrame<R>>(params: &ModelParams<R>, frame: F) -> [Vec3<R>; 3] {
+fn axes_of<T: Real, F: ContactFrame<T>>(params: &ModelParams<T>, frame: F) -> [Vec3<T>; 3] {
     let (zero, one) = (params.zero(), params.one());
     [
         frame.to_space(ContactVector::new(one, zero, zero)),
@@ -74,12 +74,12 @@ fn axes_of<R: Real, F: ContactFrame<R>>(params: &ModelParams<R>, frame: F) -> [V
     ]
 }
 
-impl<R: Real> ContactPair<R> {
+impl<T: Real> ContactPair<T> {
     #[inline(always)]
-    fn new<A: Solid<R>, B: Solid<R>>(
-        params: &ModelParams<R>,
+    fn new<A: Solid<T>, B: Solid<T>>(
+        params: &ModelParams<T>,
         (first, second): (&A, &B),
-        state: &BallState<R>,
+        state: &BallState<T>,
     ) -> Self {
         let (first_kinematics, first_frame) = first.contact(&params.ball, state);
         let (second_kinematics, second_frame) = second.contact(&params.ball, state);
@@ -96,7 +96,7 @@ impl<R: Real> ContactPair<R> {
 
     /// The slip rate at a contact from an acceleration of the ball.
     #[inline(always)]
-    fn slip_rate(&self, contact: usize, (linear, angular): Response<R>) -> Vec2<R> {
+    fn slip_rate(&self, contact: usize, (linear, angular): Response<T>) -> Vec2<T> {
         let [_, tangent_1, tangent_2] = self.axes[contact];
         let lever = self.kinematics[contact].lever;
         Vec2::new(
@@ -107,51 +107,52 @@ impl<R: Real> ContactPair<R> {
 
     /// The acceleration of the ball from (n, 1, 2) accelerations at a contact.
     #[inline(always)]
-    fn response(&self, contact: usize, force: ContactVector<R>) -> Response<R> {
+    fn response(&self, contact: usize, force: ContactVector<T>) -> Response<T> {
         let [normal, tangent_1, tangent_2] = self.axes[contact];
-        let twist = self.lever_over_inertia[contact];
+        let lever_over_inertia = self.lever_over_inertia[contact];
         let tangent = force.tangent;
         (
             (normal * force.normal)
                 .add_scaled(tangent_1, tangent.x)
                 .add_scaled(tangent_2, tangent.y),
-            (tangent_1 * (twist * tangent.y)).add_scaled(tangent_2, -(twist * tangent.x)),
+            (tangent_1 * (lever_over_inertia * tangent.y))
+                .add_scaled(tangent_2, -(lever_over_inertia * tangent.x)),
         )
     }
 
     /// The slip rate at a contact from the force of the other contact.
     #[inline(always)]
-    fn slip_rate_from_other(&self, contact: usize, other: ContactVector<R>) -> Vec2<R> {
+    fn slip_rate_from_other(&self, contact: usize, other: ContactVector<T>) -> Vec2<T> {
         self.slip_rate(contact, self.response(1 - contact, other))
     }
 
     /// The slip rate at a contact without friction there: from motion, gravity and the other contact.
     #[inline(always)]
-    fn frictionless_slip_rate(&self, contact: usize, other: ContactVector<R>) -> Vec2<R> {
+    fn frictionless_slip_rate(&self, contact: usize, other: ContactVector<T>) -> Vec2<T> {
         self.kinematics[contact].frictionless_slip_rate()
             + self.slip_rate_from_other(contact, other)
     }
 
     /// The normal force of a contact alone.
     #[inline(always)]
-    fn normal_only(&self, params: &ModelParams<R>, contact: usize) -> ContactVector<R> {
+    fn normal_only(&self, params: &ModelParams<T>, contact: usize) -> ContactVector<T> {
         ContactVector::new(self.normals[contact], params.zero(), params.zero())
     }
 
     /// The greatest friction of a contact.
     #[inline(always)]
-    fn friction_limit(&self, contact: usize) -> R {
-        self.materials[contact].friction * self.normals[contact].positive_part()
+    fn friction_limit(&self, contact: usize) -> T {
+        self.materials[contact].friction_coefficient * self.normals[contact].positive_part()
     }
 
     /// The friction of both contacts; `sliding` is that of contacts that slide.
     #[inline(always)]
     fn frictions(
         &self,
-        params: &ModelParams<R>,
-        rolling: [R::Mask; 2],
-        sliding: [Vec2<R>; 2],
-    ) -> [Vec2<R>; 2] {
+        params: &ModelParams<T>,
+        rolling: [T::Mask; 2],
+        sliding: [Vec2<T>; 2],
+    ) -> [Vec2<T>; 2] {
         if !(rolling[FIRST] | rolling[SECOND]).any() {
             return sliding;
         }
@@ -162,46 +163,51 @@ impl<R: Real> ContactPair<R> {
         self.solve(params, rolling, wanted)
     }
 
-    /// The tangential accelerations at both contacts that change the slips of the `held` contacts at the
-    /// `wanted` rates. Those of the other contacts are `wanted` themselves.
+    /// The tangential accelerations `a` at both contacts that change the slips of the `held` contacts at the
+    /// `wanted` rates `w`. Those of the other contacts are `wanted` themselves.
     ///
-    /// The tangential acceleration at a contact changes the slip there equally in both directions
-    /// (1 + lever^2 m/I), so the four equations reduce to two.
+    /// The tangential acceleration at a contact changes the slip there equally in both directions, by the
+    /// slip compliance `s = 1 + lever^2 m/I`, and the slip at the other contact by a coupling matrix `C`:
+    ///
+    /// ```text
+    /// s_1 a_1 + C_12 a_2 = w_1        (s_2 - C_21 C_12/s_1) a_2 = w_2 - C_21 w_1/s_1
+    /// C_21 a_1 + s_2 a_2 = w_2   so   a_1 = (w_1 - C_12 a_2)/s_1
+    /// ```
     #[inline(always)]
     fn solve(
         &self,
-        params: &ModelParams<R>,
-        held: [R::Mask; 2],
-        wanted: [Vec2<R>; 2],
-    ) -> [Vec2<R>; 2] {
-        let [first, second] = wanted;
-        let [own_first, own_second] = for_both!(i => {
-            let own = self.kinematics[i].slip_compliance(&params.ball);
-            own.select(held[i], params.one())
+        params: &ModelParams<T>,
+        held: [T::Mask; 2],
+        wanted: [Vec2<T>; 2],
+    ) -> [Vec2<T>; 2] {
+        let [w_1, w_2] = wanted;
+        let [s_1, s_2] = for_both!(i => {
+            let compliance = self.kinematics[i].slip_compliance(&params.ball);
+            compliance.select(held[i], params.one())
         });
-        let [on_first, on_second] = for_both!(i => self.coupling(params, i, held[i]));
-        let per_first = params.one() / own_first;
-        let back = on_second.times(Vec2::new(first.x * per_first, first.y * per_first));
-        let right = Vec2::new(second.x - back.x, second.y - back.y);
-        let round = on_second.product_scaled(&on_first, per_first);
+        let [c_12, c_21] = for_both!(i => self.coupling(params, i, held[i]));
+        let inverse_s_1 = params.one() / s_1;
+        let from_first = c_21.times(Vec2::new(w_1.x * inverse_s_1, w_1.y * inverse_s_1));
+        let right_side = Vec2::new(w_2.x - from_first.x, w_2.y - from_first.y);
+        let product = c_21.product_scaled(&c_12, inverse_s_1);
         let matrix = Matrix2 {
-            a: own_second - round.a,
-            b: -round.b,
-            c: -round.c,
-            d: own_second - round.d,
+            a: s_2 - product.a,
+            b: -product.b,
+            c: -product.c,
+            d: s_2 - product.d,
         };
-        let second = matrix.solve(params, right, own_second);
-        let other = on_first.times(second);
-        let first = Vec2::new(
-            (first.x - other.x) * per_first,
-            (first.y - other.y) * per_first,
+        let a_2 = matrix.solve(params, right_side, s_2);
+        let from_second = c_12.times(a_2);
+        let a_1 = Vec2::new(
+            (w_1.x - from_second.x) * inverse_s_1,
+            (w_1.y - from_second.y) * inverse_s_1,
         );
-        [first, second]
+        [a_1, a_2]
     }
 
     /// The slip rates at a contact for unit tangential accelerations at the other one, where `held`.
     #[inline(always)]
-    fn coupling(&self, params: &ModelParams<R>, contact: usize, held: R::Mask) -> Matrix2<R> {
+    fn coupling(&self, params: &ModelParams<T>, contact: usize, held: T::Mask) -> Matrix2<T> {
         let (zero, one) = (params.zero(), params.one());
         let first = self.slip_rate_from_other(contact, ContactVector::new(zero, one, zero));
         let second = self.slip_rate_from_other(contact, ContactVector::new(zero, zero, one));
@@ -217,10 +223,10 @@ impl<R: Real> ContactPair<R> {
     #[inline(always)]
     fn derivative(
         &self,
-        params: &ModelParams<R>,
-        state: &BallState<R>,
-        frictions: [Vec2<R>; 2],
-    ) -> (StateDerivative<R>, [Vec3<R>; 2]) {
+        params: &ModelParams<T>,
+        state: &BallState<T>,
+        frictions: [Vec2<T>; 2],
+    ) -> (StateDerivative<T>, [Vec3<T>; 2]) {
         let [first, second] = for_both!(i => {
             let force = ContactVector {
                 normal: self.normals[i],
@@ -239,67 +245,67 @@ impl<R: Real> ContactPair<R> {
 }
 
 /// A 2 x 2 matrix, row by row.
-struct Matrix2<R> {
-    a: R,
-    b: R,
-    c: R,
-    d: R,
+struct Matrix2<T> {
+    a: T,
+    b: T,
+    c: T,
+    d: T,
 }
 
-impl<R: Real> Matrix2<R> {
+impl<T: Real> Matrix2<T> {
     #[inline(always)]
-    fn times(&self, v: Vec2<R>) -> Vec2<R> {
+    fn times(&self, v: Vec2<T>) -> Vec2<T> {
         Vec2::new(self.a * v.x + self.b * v.y, self.c * v.x + self.d * v.y)
     }
 
-    /// The product `self * right * factor`.
+    /// The product `self * other * factor`.
     #[inline(always)]
-    fn product_scaled(&self, right: &Self, factor: R) -> Self {
+    fn product_scaled(&self, other: &Self, factor: T) -> Self {
         Self {
-            a: (self.a * right.a + self.b * right.c) * factor,
-            b: (self.a * right.b + self.b * right.d) * factor,
-            c: (self.c * right.a + self.d * right.c) * factor,
-            d: (self.c * right.b + self.d * right.d) * factor,
+            a: (self.a * other.a + self.b * other.c) * factor,
+            b: (self.a * other.b + self.b * other.d) * factor,
+            c: (self.c * other.a + self.d * other.c) * factor,
+            d: (self.c * other.b + self.d * other.d) * factor,
         }
     }
 
-    /// The solution of `self * x = right`. The matrix is singular only if both contact points coincide;
-    /// then each contact is solved as if alone, with the coefficient `own`.
+    /// The solution x of `self * x = right_side`. The matrix is singular only if both contact points
+    /// coincide; then x is `right_side / compliance`, as if the contact were alone.
     #[inline(always)]
-    fn solve(&self, params: &ModelParams<R>, right: Vec2<R>, own: R) -> Vec2<R> {
+    fn solve(&self, params: &ModelParams<T>, right_side: Vec2<T>, compliance: T) -> Vec2<T> {
         let determinant = self.a * self.d - self.b * self.c;
         let regular = determinant.abs().is_positive();
-        let per = params.one() / determinant.select(regular, own);
+        let inverse = params.one() / determinant.select(regular, compliance);
         let numerator = Vec2::new(
-            self.d * right.x - self.b * right.y,
-            self.a * right.y - self.c * right.x,
+            self.d * right_side.x - self.b * right_side.y,
+            self.a * right_side.y - self.c * right_side.x,
         );
-        let numerator = numerator.select(regular, right);
-        Vec2::new(numerator.x * per, numerator.y * per)
+        let numerator = numerator.select(regular, right_side);
+        Vec2::new(numerator.x * inverse, numerator.y * inverse)
     }
 }
 
 /// Friction of the size `limit` against a direction of slip.
 #[inline(always)]
-fn friction_against<R: Real>(limit: R, direction: Vec2<R>) -> Vec2<R> {
+fn friction_against<T: Real>(limit: T, direction: Vec2<T>) -> Vec2<T> {
     Vec2::new(-(limit * direction.x), -(limit * direction.y))
 }
 
 /// Advances a ball in contact with two solids by one step of at most `longest`.
 #[inline(always)]
-pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
-    params: &ModelParams<R>,
+pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
     solids: (&A, &B),
-    state: &mut BallState<R>,
-    friction: &mut [FrictionState<R>; 2],
-    longest: R,
-) -> DoubleContactStep<R> {
+    state: &mut BallState<T>,
+    friction: &mut [FrictionState<T>; 2],
+    longest: T,
+) -> DoubleContactStep<T> {
     let start = *state;
     let mut pair = ContactPair::new(params, solids, state);
     let parted = for_both!(i => has_parted(&pair.kinematics[i]));
-    let over = parted[FIRST] | parted[SECOND];
+    let any_parted = parted[FIRST] | parted[SECOND];
     let no_impulse = Vec3::splat(params.zero());
-    if over.all() {
+    if any_parted.all() {
         return DoubleContactStep {
             dt: params.zero(),
             parted,
@@ -322,15 +328,15 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
     let slips = for_both!(i => pair.kinematics[i].slip());
     let slip_speeds = for_both!(i => params.zero().select(stuck[i], slips[i].norm()));
     let limits = for_both!(i => pair.friction_limit(i));
-    let mut rolling = for_both!(i => stuck[i] & !friction[i].exceeded);
-    let mut insufficient = [params.splat_mask(false); 2];
+    let mut rolling = for_both!(i => stuck[i] & !friction[i].rolling_failed);
+    let mut fails_now = [params.splat_mask(false); 2];
     // For a contact that does not roll: the direction of its slip, or in which it would slip.
     let directions = for_both!(i => {
         let slip_rate = pair.frictionless_slip_rate(i, pair.normal_only(params, 1 - i));
-        let driving = slip_rate.select(stuck[i], slips[i]);
-        let size = driving.norm();
-        let per_size = params.one() / size.select(size.is_positive(), params.one());
-        Vec2::new(driving.x * per_size, driving.y * per_size)
+        let slip_or_slip_rate = slip_rate.select(stuck[i], slips[i]);
+        let size = slip_or_slip_rate.norm();
+        let inverse_size = params.one() / size.select(size.is_positive(), params.one());
+        Vec2::new(slip_or_slip_rate.x * inverse_size, slip_or_slip_rate.y * inverse_size)
     });
     let sliding = for_both!(i => friction_against(limits[i], directions[i]));
     let mut frictions = pair.frictions(params, rolling, sliding);
@@ -338,7 +344,7 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
     loop {
         let [first, second] = for_both!(i => {
             let excess = frictions[i].norm() - limits[i];
-            excess.select(rolling[i], -params.ball.never)
+            excess.select(rolling[i], -params.ball.never_s)
         });
         let fails = [
             second.le(first) & first.is_positive(),
@@ -349,7 +355,7 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
         }
         for i in [FIRST, SECOND] {
             rolling[i] = rolling[i] & !fails[i];
-            insufficient[i] = insufficient[i] | fails[i];
+            fails_now[i] = fails_now[i] | fails[i];
         }
         frictions = pair.frictions(params, rolling, sliding);
     }
@@ -377,11 +383,11 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
             slip: slip_speeds[i],
             slip_rate: slip_rate.dot(directions[i]) - limits[i] * slip_compliance,
             slip_compliance,
-            reserve: Real::max(limits[i] - frictions[i].norm(), params.splat(ZERO_FORCE_M_S2)),
+            friction_reserve: Real::max(limits[i] - frictions[i].norm(), params.splat(ZERO_FORCE_M_S2)),
             // With two contacts this is hard to predict; the rate of the limit is not.
-            d_need_d_compression_acceleration: params.zero(),
+            d_required_d_compression_acceleration: params.zero(),
         };
-        balance.time_to_change(params, pair.materials[i].friction, &forces[i], rolling[i])
+        balance.time_to_change(params, pair.materials[i].friction_coefficient, &forces[i], rolling[i])
     });
     let next_event = end.min(changes[FIRST]).min(changes[SECOND]);
     let dt = Real::max(next_event.time(), params.splat(SHORTEST_STEP_S));
@@ -390,7 +396,7 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
     let mode = FrictionMode {
         rolling,
         directions,
-        thresholds: for_both!(i => slip_speeds[i] * SLIP_DIRECTION_LOST),
+        thresholds: for_both!(i => slip_speeds[i] * DIRECTION_SLIP_FRACTION),
     };
     let half = dt * 0.5;
     let (k2, force_2) = stage(params, solids, &state.euler_step(&k1, half), mode);
@@ -406,17 +412,19 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
             .add_scaled(force_4[i], sixth);
         let ends_slip = changes[i].le(next_event) & !rolling[i];
         let loading = forces[i].rate.is_positive();
-        let exceeded = (friction[i].exceeded | insufficient[i]) & !loading;
+        let rolling_failed = (friction[i].rolling_failed | fails_now[i]) & !loading;
         let zero_slip = zero_slip_after(ends_slip, slip_speeds[i], SLIP_ENDED_M_S);
         friction[i] = FrictionState {
-            rolling: friction[i].rolling.select(over, rolling[i]),
-            exceeded: friction[i].exceeded.select(over, exceeded),
-            zero_slip: friction[i].zero_slip.select(over, zero_slip),
+            rolling: friction[i].rolling.select(any_parted, rolling[i]),
+            rolling_failed: friction[i]
+                .rolling_failed
+                .select(any_parted, rolling_failed),
+            zero_slip: friction[i].zero_slip.select(any_parted, zero_slip),
         };
     }
-    *state = start.select(over, next);
+    *state = start.select(any_parted, next);
     DoubleContactStep {
-        dt: params.zero().select(over, dt),
+        dt: params.zero().select(any_parted, dt),
         parted,
         impulses,
     }
@@ -424,36 +432,36 @@ pub(crate) fn step<R: Real, A: Solid<R>, B: Solid<R>>(
 
 /// How friction acts at both contacts throughout a step.
 #[derive(Clone, Copy)]
-struct FrictionMode<R: Real> {
-    rolling: [R::Mask; 2],
+struct FrictionMode<T: Real> {
+    rolling: [T::Mask; 2],
     /// Directions of the slips at the start of the step.
-    directions: [Vec2<R>; 2],
+    directions: [Vec2<T>; 2],
     /// Slips along these directions below which they are used.
-    thresholds: [R; 2],
+    thresholds: [T; 2],
 }
 
 /// The derivative at one stage of a step, and the linear acceleration from each contact.
 #[inline(always)]
-fn stage<R: Real, A: Solid<R>, B: Solid<R>>(
-    params: &ModelParams<R>,
+fn stage<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
     solids: (&A, &B),
-    state: &BallState<R>,
-    mode: FrictionMode<R>,
-) -> (StateDerivative<R>, [Vec3<R>; 2]) {
+    state: &BallState<T>,
+    mode: FrictionMode<T>,
+) -> (StateDerivative<T>, [Vec3<T>; 2]) {
     let pair = ContactPair::new(params, solids, state);
     let sliding = for_both!(i => {
         let limit = pair.friction_limit(i);
         let (slip, initial) = (pair.kinematics[i].slip(), mode.directions[i]);
-        let clear = mode.thresholds[i].lt(slip.dot(initial));
-        let per = params.one() / slip.norm().select(clear, params.one());
-        friction_against(limit, Vec2::new(slip.x * per, slip.y * per).select(clear, initial))
+        let has_direction = mode.thresholds[i].lt(slip.dot(initial));
+        let inverse = params.one() / slip.norm().select(has_direction, params.one());
+        friction_against(limit, Vec2::new(slip.x * inverse, slip.y * inverse).select(has_direction, initial))
     });
     pair.derivative(params, state, pair.frictions(params, mode.rolling, sliding))
 }
 
 /// For how long the ball has rolled on both solids without a break, after a step of `dt`, s.
 #[inline(always)]
-pub(crate) fn rolling_time<R: Real>(friction: &[FrictionState<R>; 2], before: R, dt: R) -> R {
+pub(crate) fn rolling_time<T: Real>(friction: &[FrictionState<T>; 2], before: T, dt: T) -> T {
     (before + dt).select(
         friction[FIRST].rolling & friction[SECOND].rolling,
         dt.zero(),
@@ -462,22 +470,22 @@ pub(crate) fn rolling_time<R: Real>(friction: &[FrictionState<R>; 2], before: R,
 
 /// Removes the slips of the stuck contacts together; returns the impulses per unit of mass.
 #[inline(always)]
-fn remove_slips<R: Real, A: Solid<R>, B: Solid<R>>(
-    params: &ModelParams<R>,
+fn remove_slips<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
     solids: (&A, &B),
-    state: &mut BallState<R>,
-    pair: &mut ContactPair<R>,
-    stuck: [R::Mask; 2],
-) -> [Vec3<R>; 2] {
+    state: &mut BallState<T>,
+    pair: &mut ContactPair<T>,
+    stuck: [T::Mask; 2],
+) -> [Vec3<T>; 2] {
     let zero = params.zero();
     let wanted = for_both!(i => (-pair.kinematics[i].slip()).select(stuck[i], Vec2::splat(zero)));
-    let kicks = pair.solve(params, stuck, wanted);
+    let slip_impulses = pair.solve(params, stuck, wanted);
     let impulses = for_both!(i => {
-        let kick = ContactVector {
+        let impulse = ContactVector {
             normal: zero,
-            tangent: kicks[i],
+            tangent: slip_impulses[i],
         };
-        let (linear, angular) = pair.response(i, kick);
+        let (linear, angular) = pair.response(i, impulse);
         state.velocity_m_s = state.velocity_m_s.add_scaled(linear, params.one());
         state.spin_rad_s = state.spin_rad_s.add_scaled(angular, params.one());
         linear
@@ -526,7 +534,7 @@ mod tests {
     }
 
     #[test]
-    fn prop_a_singular_matrix_leaves_the_work_to_one_contact() {
+    fn prop_a_singular_matrix_treats_the_contact_as_if_alone() {
         let params = ModelParams::new(&Physics::paper());
         let [a, b, c, d] = [1.0, 2.0, 2.0, 4.0];
         assert_eq!(

@@ -13,16 +13,16 @@ pub(crate) const OVERSHOOT: f64 = 1.03;
 /// The time until an event, as a fraction. The earliest of several events is found without a division,
 /// which costs as much as a dozen multiplications.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct EventTime<R> {
-    pub(super) numerator: R,
+pub(crate) struct EventTime<T> {
+    pub(super) numerator: T,
     /// Positive.
-    pub(super) denominator: R,
+    pub(super) denominator: T,
 }
 
-impl<R: Real> EventTime<R> {
+impl<T: Real> EventTime<T> {
     /// After `time`.
     #[inline(always)]
-    fn after(time: R) -> Self {
+    fn after(time: T) -> Self {
         Self {
             numerator: time,
             denominator: time.one(),
@@ -31,13 +31,13 @@ impl<R: Real> EventTime<R> {
 
     /// Never.
     #[inline(always)]
-    pub(crate) fn never(params: &ModelParams<R>) -> Self {
-        Self::after(params.ball.never)
+    pub(crate) fn never(params: &ModelParams<T>) -> Self {
+        Self::after(params.ball.never_s)
     }
 
     /// `self` where `condition` holds, `other` elsewhere.
     #[inline(always)]
-    pub(crate) fn select(self, condition: R::Mask, other: Self) -> Self {
+    pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {
         Self {
             numerator: self.numerator.select(condition, other.numerator),
             denominator: self.denominator.select(condition, other.denominator),
@@ -46,7 +46,7 @@ impl<R: Real> EventTime<R> {
 
     /// `self <= other`.
     #[inline(always)]
-    pub(crate) fn le(self, other: Self) -> R::Mask {
+    pub(crate) fn le(self, other: Self) -> T::Mask {
         (self.numerator * other.denominator).le(other.numerator * self.denominator)
     }
 
@@ -58,14 +58,14 @@ impl<R: Real> EventTime<R> {
 
     /// The event, or `longest` if that is earlier.
     #[inline(always)]
-    pub(crate) fn at_most(self, longest: R) -> Self {
+    pub(crate) fn at_most(self, longest: T) -> Self {
         let earlier = self.numerator.le(longest * self.denominator);
         self.select(earlier, Self::after(longest))
     }
 
     /// The event at `factor` times its time.
     #[inline(always)]
-    pub(super) fn scaled(self, factor: R) -> Self {
+    pub(super) fn scaled(self, factor: T) -> Self {
         Self {
             numerator: self.numerator * factor,
             denominator: self.denominator,
@@ -74,14 +74,14 @@ impl<R: Real> EventTime<R> {
 
     /// The time.
     #[inline(always)]
-    pub(crate) fn time(self) -> R {
+    pub(crate) fn time(self) -> T {
         self.numerator / self.denominator
     }
 }
 
 /// The smallest positive zero of `c0 + c1 t + c2 t^2/2` with `c0 > 0`.
 #[inline(always)]
-pub(crate) fn first_root<R: Real>(params: &ModelParams<R>, c0: R, c1: R, c2: R) -> EventTime<R> {
+pub(crate) fn first_root<T: Real>(params: &ModelParams<T>, c0: T, c1: T, c2: T) -> EventTime<T> {
     let discriminant = c1.squared() - c0 * c2 * 2.0;
     let slope = discriminant.positive_part().sqrt() - c1;
     let exists = discriminant.zero().le(discriminant) & slope.is_positive();
@@ -92,17 +92,19 @@ pub(crate) fn first_root<R: Real>(params: &ModelParams<R>, c0: R, c1: R, c2: R) 
     root.select(exists, EventTime::never(params))
 }
 
-/// Time until an approaching ball touches the solid, if that can happen within the step.
+/// Time until a ball touches a solid that it approaches, if that can happen within the step.
 #[inline(always)]
-pub(crate) fn time_to_touch<R: Real>(
-    params: &ModelParams<R>,
-    approach: &impl Approach<R>,
-    state: &BallState<R>,
-    acceleration: Vec3<R>,
-) -> EventTime<R> {
+pub(crate) fn time_to_touch<T: Real>(
+    params: &ModelParams<T>,
+    approach: &impl Approach<T>,
+    state: &BallState<T>,
+    acceleration: Vec3<T>,
+) -> EventTime<T> {
     let never = EventTime::never(params);
     match approach.closing_gap(state, acceleration) {
-        Some(gap) => first_root(params, gap.gap, gap.rate, gap.curve).select(gap.relevant, never),
+        Some(gap) => {
+            first_root(params, gap.gap, gap.rate, gap.second_derivative).select(gap.relevant, never)
+        }
         None => never,
     }
 }
@@ -153,7 +155,7 @@ mod tests {
             } else {
                 prop_assert!(touch > longest * (1.0 - 1e-9));
             }
-            if root < params.ball.never {
+            if root < params.ball.never_s {
                 let scale = gap + (rate * root).abs() + (curve * root * root).abs();
                 prop_assert!((gap + rate * root + 0.5 * curve * root * root).abs() < 1e-9 * scale);
             }

@@ -12,28 +12,28 @@ const ZERO_SLIP_M_S: f64 = 1e-9;
 const SLIP_REMAINDER: f64 = 0.2;
 /// In a step that ends the slip, a stage with less than this fraction of the initial slip keeps the
 /// initial direction: at zero slip the sliding law has none.
-pub(crate) const SLIP_DIRECTION_LOST: f64 = 0.1;
+pub(crate) const DIRECTION_SLIP_FRACTION: f64 = 0.1;
 
 /// How friction acts at a contact. It is carried from step to step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FrictionState<R: Real = f64> {
+pub(crate) struct FrictionState<T: Real = f64> {
     /// The ball rolls: the slip is zero and stays zero.
-    pub(crate) rolling: R::Mask,
+    pub(crate) rolling: T::Mask,
     /// Rolling needed more than mu N. The ball slides until N grows again; otherwise it would switch
     /// between the two in tiny steps.
-    pub(crate) exceeded: R::Mask,
+    pub(crate) rolling_failed: T::Mask,
     /// Slip speed that counts as zero: what a step meant to end at zero slip may leave, m/s.
-    pub(crate) zero_slip: R,
+    pub(crate) zero_slip: T,
 }
 
-impl<R: Real> FrictionState<R> {
+impl<T: Real> FrictionState<T> {
     /// A contact that has just begun.
     #[inline(always)]
-    pub(crate) fn new(params: &ModelParams<R>) -> Self {
+    pub(crate) fn new(params: &ModelParams<T>) -> Self {
         let no = params.splat_mask(false);
         Self {
             rolling: no,
-            exceeded: no,
+            rolling_failed: no,
             zero_slip: params.splat(ZERO_SLIP_M_S),
         }
     }
@@ -42,41 +42,42 @@ impl<R: Real> FrictionState<R> {
 /// Slip speed that counts as zero after a step from the slip `speed`. It is larger where the step was
 /// meant to end the slip: [`SLIP_REMAINDER`] of it, and at least `at_least` m/s.
 #[inline(always)]
-pub(crate) fn zero_slip_after<R: Real>(ends_slip: R::Mask, speed: R, at_least: f64) -> R {
+pub(crate) fn zero_slip_after<T: Real>(ends_slip: T::Mask, speed: T, at_least: f64) -> T {
     let remainder = Real::max(speed * SLIP_REMAINDER, speed.splat(at_least));
     remainder.select(ends_slip, speed.splat(ZERO_SLIP_M_S))
 }
 
 /// The quantities that decide when friction changes between sliding and rolling.
-pub(crate) struct FrictionBalance<R> {
+pub(crate) struct FrictionBalance<T> {
     /// Slip speed.
-    pub(crate) slip: R,
+    pub(crate) slip: T,
     /// Rate of the slip speed while the ball slides.
-    pub(crate) slip_rate: R,
+    pub(crate) slip_rate: T,
     /// Rate of the slip for a unit of friction per unit of mass.
-    pub(crate) slip_compliance: R,
+    pub(crate) slip_compliance: T,
     /// mu N less the friction that rolling needs.
-    pub(crate) reserve: R,
+    pub(crate) friction_reserve: T,
     /// Derivative of the friction that rolling needs with respect to u''. (Its other changes are slow.)
-    pub(crate) d_need_d_compression_acceleration: R,
+    pub(crate) d_required_d_compression_acceleration: T,
 }
 
-impl<R: Real> FrictionBalance<R> {
+impl<T: Real> FrictionBalance<T> {
     /// Time until friction changes: the slip reaches zero, or rolling needs more than mu N.
     #[inline(always)]
     pub(crate) fn time_to_change(
         &self,
-        params: &ModelParams<R>,
-        friction: R,
-        force: &NormalForce<R>,
-        rolling: R::Mask,
-    ) -> EventTime<R> {
+        params: &ModelParams<T>,
+        friction: T,
+        force: &NormalForce<T>,
+        rolling: T::Mask,
+    ) -> EventTime<T> {
         let limit_rate = friction * force.rate;
-        let slip_curve = -(limit_rate * self.slip_compliance);
-        let need_rate = self.d_need_d_compression_acceleration * force.compression_acceleration;
-        let c0 = self.reserve.select(rolling, self.slip);
-        let c1 = (limit_rate - need_rate).select(rolling, self.slip_rate);
-        let c2 = (friction * force.curve).select(rolling, slip_curve);
+        let slip_second_derivative = -(limit_rate * self.slip_compliance);
+        let required_rate =
+            self.d_required_d_compression_acceleration * force.compression_acceleration;
+        let c0 = self.friction_reserve.select(rolling, self.slip);
+        let c1 = (limit_rate - required_rate).select(rolling, self.slip_rate);
+        let c2 = (friction * force.second_derivative).select(rolling, slip_second_derivative);
         let possible = c0.is_positive() | rolling;
         first_root(params, c0, c1, c2)
             .scaled(params.splat(OVERSHOOT).select(rolling, params.one()))

@@ -17,35 +17,36 @@ const FAST_M_S: f64 = 0.1;
 pub(crate) const PARTING_STEP_S: f64 = PARTED_FAST_M / FAST_M_S;
 
 /// The normal force of a contact per unit of mass, and its derivatives in time.
-pub(crate) struct NormalForce<R> {
+pub(crate) struct NormalForce<T> {
     /// N, m/s^2.
-    pub(crate) value: R,
+    pub(crate) value: T,
     /// N'.
-    pub(crate) rate: R,
+    pub(crate) rate: T,
     /// N''.
-    pub(crate) curve: R,
+    pub(crate) second_derivative: T,
     /// u''.
-    pub(crate) compression_acceleration: R,
+    pub(crate) compression_acceleration: T,
 }
 
-impl<R: Real> NormalForce<R> {
+impl<T: Real> NormalForce<T> {
     /// `acceleration` is that of the centre along the normal, with all forces and the turning of the
     /// frame.
     #[inline(always)]
     pub(crate) fn new(
-        material: &Material<R>,
-        kinematics: &ContactKinematics<R>,
-        value: R,
-        acceleration: R,
+        material: &Material<T>,
+        kinematics: &ContactKinematics<T>,
+        value: T,
+        acceleration: T,
     ) -> Self {
         let compression_acceleration = -acceleration;
         let rate = material.damping * compression_acceleration
             - material.stiffness * kinematics.velocity.normal;
-        let curve = material.stiffness * compression_acceleration - material.damping * rate;
+        let second_derivative =
+            material.stiffness * compression_acceleration - material.damping * rate;
         Self {
             value,
             rate,
-            curve,
+            second_derivative,
             compression_acceleration,
         }
     }
@@ -55,10 +56,10 @@ impl<R: Real> NormalForce<R> {
     #[inline(always)]
     pub(crate) fn time_to_end(
         &self,
-        params: &ModelParams<R>,
-        material: &Material<R>,
-        kinematics: &ContactKinematics<R>,
-    ) -> EventTime<R> {
+        params: &ModelParams<T>,
+        material: &Material<T>,
+        kinematics: &ContactKinematics<T>,
+    ) -> EventTime<T> {
         let pressing = params.splat(ZERO_FORCE_M_S2).lt(self.value);
         let (u, du, ddu) = (
             kinematics.compression.positive_part(),
@@ -66,22 +67,22 @@ impl<R: Real> NormalForce<R> {
             self.compression_acceleration,
         );
         // Does N + N' t + N'' t^2/2 have a zero ahead?
-        let real = (self.value * self.curve * 2.0).le(self.rate.squared());
-        let falls = self.rate.is_negative() | self.curve.is_negative();
+        let real = (self.value * self.second_derivative * 2.0).le(self.rate.squared());
+        let falls = self.rate.is_negative() | self.second_derivative.is_negative();
         let force_ends = pressing & real & falls;
         let end = first_root(
             params,
             self.value.select(force_ends, u),
             self.rate.select(force_ends, du),
-            self.curve.select(force_ends, ddu),
+            self.second_derivative.select(force_ends, ddu),
         );
         let time = end.time();
-        let found = time.lt(params.ball.never) & !force_ends;
+        let found = time.lt(params.ball.never_s) & !force_ends;
         // Where the compression ends: one Newton step on its Taylor polynomial, with u''' = -N' and
         // u'''' = -N''.
         let t = time.select(found, params.zero());
         let d3 = -self.rate;
-        let d4 = -self.curve;
+        let d4 = -self.second_derivative;
         let value = u + t * (du + t * (ddu * 0.5 + t * (d3 * (1.0 / 6.0) + t * d4 * (1.0 / 24.0))));
         let slope = du + t * (ddu + t * (d3 * 0.5 + t * d4 * (1.0 / 6.0)));
         let refined = EventTime {
@@ -106,7 +107,7 @@ impl<R: Real> NormalForce<R> {
 /// Whether the ball has left the solid: it moves away, and the compression is gone but for what the
 /// parting step makes up.
 #[inline(always)]
-pub(crate) fn has_parted<R: Real>(kinematics: &ContactKinematics<R>) -> R::Mask {
+pub(crate) fn has_parted<T: Real>(kinematics: &ContactKinematics<T>) -> T::Mask {
     let v = kinematics.velocity.normal;
     let fast = v.splat(FAST_M_S).lt(v);
     let threshold = v.splat(PARTED_FAST_M).select(fast, v.splat(PARTED_M));

@@ -9,7 +9,7 @@
 //! paper's Appendix 2 approaches it by chattering): the friction that keeps the slip at zero.
 
 use super::event_time::EventTime;
-use super::friction::{FrictionBalance, FrictionState, SLIP_DIRECTION_LOST, zero_slip_after};
+use super::friction::{DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, zero_slip_after};
 use super::normal_force::{NormalForce, PARTING_STEP_S, has_parted};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
@@ -24,21 +24,21 @@ const SLIP_ENDED_M_S: f64 = 2e-4;
 pub(super) const SHORTEST_STEP_S: f64 = 1e-9;
 
 /// The result of one step.
-pub(crate) struct SingleContactStep<R: Real> {
+pub(crate) struct SingleContactStep<T: Real> {
     /// Length of the step, s.
-    pub(crate) dt: R,
+    pub(crate) dt: T,
     /// The ball has left the solid; it was moved to zero compression, and no time is counted.
-    pub(crate) parted: R::Mask,
+    pub(crate) parted: T::Mask,
 }
 
 /// The derivative of the state under a normal and friction acceleration given along (n, 1, 2).
 #[inline(always)]
-fn derivative<R: Real, F: ContactFrame<R>>(
-    params: &ModelParams<R>,
-    state: &BallState<R>,
-    (kinematics, frame): (&ContactKinematics<R>, F),
-    contact: ContactVector<R>,
-) -> StateDerivative<R> {
+fn derivative<T: Real, F: ContactFrame<T>>(
+    params: &ModelParams<T>,
+    state: &BallState<T>,
+    (kinematics, frame): (&ContactKinematics<T>, F),
+    contact: ContactVector<T>,
+) -> StateDerivative<T> {
     let a = frame.to_space(contact);
     let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
     let torque = Vec2::new(
@@ -54,33 +54,33 @@ fn derivative<R: Real, F: ContactFrame<R>>(
 
 /// The direction that counts as that of the slip within one step.
 #[derive(Clone, Copy)]
-struct SlipDirection<R> {
-    initial: Vec2<R>,
+struct SlipDirection<T> {
+    initial: Vec2<T>,
     /// Slip along the initial direction below which that direction is used.
-    threshold: R,
+    threshold: T,
 }
 
 /// The derivative at one stage of a step, in the mode that holds for the whole step.
 #[inline(always)]
-fn stage<R: Real, S: Solid<R>>(
-    params: &ModelParams<R>,
+fn stage<T: Real, S: Solid<T>>(
+    params: &ModelParams<T>,
     solid: &S,
-    state: &BallState<R>,
-    rolling: R::Mask,
-    direction: SlipDirection<R>,
-) -> StateDerivative<R> {
+    state: &BallState<T>,
+    rolling: T::Mask,
+    direction: SlipDirection<T>,
+) -> StateDerivative<T> {
     let (kinematics, frame) = solid.contact(&params.ball, state);
     let normal = kinematics.normal_acceleration(solid.material());
-    let limit = solid.material().friction * normal.positive_part();
+    let limit = solid.material().friction_coefficient * normal.positive_part();
     let (slip, initial) = (kinematics.slip(), direction.initial);
-    let clear = direction.threshold.lt(slip.dot(initial));
+    let has_direction = direction.threshold.lt(slip.dot(initial));
     // Friction as a fraction, for a single division. Sliding: mu N slip/|slip|. Rolling: the slip rate to
     // cancel over the slip rate that a unit of friction makes.
     let mut numerator = Vec2::new(
-        limit * slip.x.select(clear, initial.x),
-        limit * slip.y.select(clear, initial.y),
+        limit * slip.x.select(has_direction, initial.x),
+        limit * slip.y.select(has_direction, initial.y),
     );
-    let mut denominator = slip.norm().select(clear, params.one());
+    let mut denominator = slip.norm().select(has_direction, params.one());
     if rolling.any() {
         numerator = kinematics
             .frictionless_slip_rate()
@@ -99,12 +99,12 @@ fn stage<R: Real, S: Solid<R>>(
 
 /// Removes the slip by friction's own impulse. The angular momentum about the contact point is kept.
 #[inline(always)]
-fn remove_slip<R: Real, F: ContactFrame<R>>(
-    params: &ModelParams<R>,
-    state: &mut BallState<R>,
-    (kinematics, frame): (&mut ContactKinematics<R>, F),
-    impulse_per_slip: R,
-    stuck: R::Mask,
+fn remove_slip<T: Real, F: ContactFrame<T>>(
+    params: &ModelParams<T>,
+    state: &mut BallState<T>,
+    (kinematics, frame): (&mut ContactKinematics<T>, F),
+    impulse_per_slip: T,
+    stuck: T::Mask,
 ) {
     let zero = params.zero();
     let slip = kinematics.slip();
@@ -113,17 +113,17 @@ fn remove_slip<R: Real, F: ContactFrame<R>>(
         (-(impulse_per_slip * slip.y)).select(stuck, zero),
     );
     let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
-    let turn = Vec2::new(
+    let angular_impulse = Vec2::new(
         lever_over_inertia * impulse.y,
         -(lever_over_inertia * impulse.x),
     );
     kinematics.velocity.tangent = kinematics.velocity.tangent + impulse;
-    kinematics.spin.tangent = kinematics.spin.tangent + turn;
+    kinematics.spin.tangent = kinematics.spin.tangent + angular_impulse;
     let one = params.one();
-    let dv = frame.tangent_to_space(impulse);
-    let dw = frame.tangent_to_space(turn);
-    state.velocity_m_s = state.velocity_m_s.add_scaled(dv, one);
-    state.spin_rad_s = state.spin_rad_s.add_scaled(dw, one);
+    let delta_velocity = frame.tangent_to_space(impulse);
+    let delta_spin = frame.tangent_to_space(angular_impulse);
+    state.velocity_m_s = state.velocity_m_s.add_scaled(delta_velocity, one);
+    state.spin_rad_s = state.spin_rad_s.add_scaled(delta_spin, one);
 }
 
 /// Advances the ball in contact with `solid` by one step of at most `longest`, or finds that it has
@@ -132,14 +132,14 @@ fn remove_slip<R: Real, F: ContactFrame<R>>(
 /// `time_to_other` gives, for the state and the acceleration of the ball, the time until something outside this contact
 /// (a touch of another solid) must end the step.
 #[inline(always)]
-pub(crate) fn step<R: Real, S: Solid<R>>(
-    params: &ModelParams<R>,
+pub(crate) fn step<T: Real, S: Solid<T>>(
+    params: &ModelParams<T>,
     solid: &S,
-    state: &mut BallState<R>,
-    friction: &mut FrictionState<R>,
-    longest: R,
-    time_to_other: impl FnOnce(&BallState<R>, Vec3<R>) -> EventTime<R>,
-) -> SingleContactStep<R> {
+    state: &mut BallState<T>,
+    friction: &mut FrictionState<T>,
+    longest: T,
+    time_to_other: impl FnOnce(&BallState<T>, Vec3<T>) -> EventTime<T>,
+) -> SingleContactStep<T> {
     let material = solid.material();
     let (mut kinematics, frame) = solid.contact(&params.ball, state);
     let parted = has_parted(&kinematics);
@@ -168,27 +168,27 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
         );
     }
     let normal = kinematics.normal_acceleration(material);
-    let limit = material.friction * normal.positive_part();
+    let limit = material.friction_coefficient * normal.positive_part();
     let normal_acceleration = normal + kinematics.gravity.normal + kinematics.frame_acceleration();
     let force = NormalForce::new(material, &kinematics, normal, normal_acceleration);
 
     // 2. The direction of the slip (or the direction in which a stuck ball would slip), and friction.
     let slip_rate = kinematics.frictionless_slip_rate();
     let driving = slip_rate.select(stuck, slip);
-    let driving_size = driving.norm();
-    let per_size = params.one() / driving_size.select(driving_size.is_positive(), params.one());
-    let direction = Vec2::new(driving.x * per_size, driving.y * per_size);
-    let need = impulse_per_slip * driving_size;
-    let suffices = need.le(limit);
+    let driving_rate = driving.norm();
+    let inverse_size = params.one() / driving_rate.select(driving_rate.is_positive(), params.one());
+    let direction = Vec2::new(driving.x * inverse_size, driving.y * inverse_size);
+    let required_friction = impulse_per_slip * driving_rate;
+    let suffices = required_friction.le(limit);
     let loading = force.rate.is_positive();
-    let exceeded = (friction.exceeded | (stuck & !suffices)) & !loading;
-    let rolling = stuck & suffices & !exceeded;
-    let slip_speed = params.zero().select(stuck, driving_size);
+    let rolling_failed = (friction.rolling_failed | (stuck & !suffices)) & !loading;
+    let rolling = stuck & suffices & !rolling_failed;
+    let slip_speed = params.zero().select(stuck, driving_rate);
     let stage_direction = SlipDirection {
         initial: direction,
-        threshold: slip_speed * SLIP_DIRECTION_LOST,
+        threshold: slip_speed * DIRECTION_SLIP_FRACTION,
     };
-    let friction_size = -need.select(rolling, limit);
+    let friction_size = -required_friction.select(rolling, limit);
 
     // 3. The step ends at the first event.
     let end_of_force = force.time_to_end(params, material, &kinematics);
@@ -196,11 +196,11 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
         slip: slip_speed,
         slip_rate: slip_rate.dot(direction) - limit * slip_compliance,
         slip_compliance,
-        reserve: limit - need,
-        d_need_d_compression_acceleration: impulse_per_slip
+        friction_reserve: limit - required_friction,
+        d_required_d_compression_acceleration: impulse_per_slip
             * kinematics.d_slip_rate_d_compression_rate(direction),
     };
-    let change = balance.time_to_change(params, material.friction, &force, rolling);
+    let change = balance.time_to_change(params, material.friction_coefficient, &force, rolling);
     let contact = ContactVector {
         normal,
         tangent: Vec2::new(friction_size * direction.x, friction_size * direction.y),
@@ -243,7 +243,7 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
     *state = state.select(parted, next);
     *friction = FrictionState {
         rolling,
-        exceeded,
+        rolling_failed,
         zero_slip: zero_slip_after(ends_slip, slip_speed, SLIP_ENDED_M_S),
     };
     SingleContactStep {
@@ -254,12 +254,12 @@ pub(crate) fn step<R: Real, S: Solid<R>>(
 
 /// Moves a ball that has parted to zero compression, forwards or backwards.
 #[inline(always)]
-fn finish_parting<R: Real, S: Solid<R>>(
-    params: &ModelParams<R>,
+fn finish_parting<T: Real, S: Solid<T>>(
+    params: &ModelParams<T>,
     solid: &S,
-    state: &mut BallState<R>,
-    (kinematics, frame): (&ContactKinematics<R>, S::Frame),
-    parted: R::Mask,
+    state: &mut BallState<T>,
+    (kinematics, frame): (&ContactKinematics<T>, S::Frame),
+    parted: T::Mask,
 ) {
     let most = params.splat(PARTING_STEP_S);
     let dt = kinematics.compression / kinematics.velocity.normal.select(parted, params.one());

@@ -9,11 +9,11 @@ use crate::model::solids::Solid;
 
 /// Times at which the ball touches the board, and at which it reaches the plane of the board beside it.
 #[inline(always)]
-pub(super) fn board_times<R: Real>(
-    params: &ModelParams<R>,
-    state: &BallState<R>,
-    end: R,
-) -> (R, R) {
+pub(super) fn board_times<T: Real>(
+    params: &ModelParams<T>,
+    state: &BallState<T>,
+    end: T,
+) -> (T, T) {
     let board = &params.board;
     let (p, v) = (state.position_m, state.velocity_m_s);
     let approaching = v.x.is_negative();
@@ -27,8 +27,8 @@ pub(super) fn board_times<R: Real>(
         y.abs().lt(board.half_width) & board.bottom_z.lt(z) & z.lt(board.top_z) & !overlapping;
     let arrives = approaching & t.lt(end);
     (
-        t.select(arrives & on_rectangle, params.ball.never),
-        t.select(arrives & !on_rectangle, params.ball.never),
+        t.select(arrives & on_rectangle, params.ball.never_s),
+        t.select(arrives & !on_rectangle, params.ball.never_s),
     )
 }
 
@@ -52,6 +52,6 @@ pub(super) fn entry_from_beside(params: &ModelParams, state: &BallState, from: f
     .into_iter()
     .map(|t| t + PAST_S)
     .filter(|&t| t > from && t < face && board.faces(&state.after_flight(&params.ball, t)))
-    .fold(params.ball.never, f64::min);
+    .fold(params.ball.never_s, f64::min);
     (enters, face)
 }

@@ -10,27 +10,27 @@ use crate::model::{BallState, SolidId};
 /// The possible ends of an arc of free flight, as times from its start, s. The earliest one happens;
 /// `beside_board` is no end, but a time from which the board must be looked at again.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FlightArc<R: Real> {
+pub(crate) struct FlightEvents<T: Real> {
     /// The centre falls through `z = -R`.
-    pub(crate) below_ring: R,
+    pub(crate) below_ring: T,
     /// The ball touches a solid; by [`SolidId::index`].
-    pub(crate) touch: [R; SolidId::COUNT],
+    pub(crate) touch: [T; SolidId::COUNT],
     /// The ball overlaps the plane of the board beside the rectangle. It may come onto the rectangle or
-    /// pass behind the face: [`FlightArc::resolve_beside_board`] says which.
-    pub(crate) beside_board: R,
+    /// pass behind the face: [`FlightEvents::resolve_beside_board`] says which.
+    pub(crate) beside_board: T,
     /// The search for the ring reached its iteration limit. (Never seen. Such a shot is unresolved.)
-    pub(crate) unresolved: R::Mask,
+    pub(crate) unresolved: T::Mask,
 }
 
-impl<R: Real> FlightArc<R> {
+impl<T: Real> FlightEvents<T> {
     /// The ends of the arc that starts at `state`.
     #[inline(always)]
-    pub(crate) fn new(params: &ModelParams<R>, state: &BallState<R>) -> Self {
+    pub(crate) fn new(params: &ModelParams<T>, state: &BallState<T>) -> Self {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
         let below_ring = falling_time(params, z, vz, -params.ball.radius).positive_part();
         let (board, beside_board) = board_times(params, state, below_ring);
-        let horizon = Real::min(Real::min(below_ring, board), beside_board);
-        let (ring, unresolved) = ring_time(params, state, horizon);
+        let search_end = Real::min(Real::min(below_ring, board), beside_board);
+        let (ring, unresolved) = ring_time(params, state, search_end);
         Self {
             below_ring,
             touch: [board, ring],
@@ -41,13 +41,13 @@ impl<R: Real> FlightArc<R> {
 
     /// Time at which the ball touches a solid.
     #[inline(always)]
-    pub(crate) fn touch_of(&self, solid: SolidId) -> R {
+    pub(crate) fn touch_of(&self, solid: SolidId) -> T {
         self.touch[solid.index()]
     }
 
     /// Time of the first touch of any solid, or of the fall below the ring if that is earlier.
     #[inline(always)]
-    pub(crate) fn first_end(&self) -> R {
+    pub(crate) fn first_end(&self) -> T {
         let mut first = self.below_ring;
         for touch in self.touch {
             first = Real::min(first, touch);
@@ -56,7 +56,7 @@ impl<R: Real> FlightArc<R> {
     }
 }
 
-impl FlightArc<f64> {
+impl FlightEvents<f64> {
     /// What the ball touches first, if anything.
     pub(crate) fn first_touch(&self) -> Option<SolidId> {
         let until = self.below_ring.min(self.beside_board);
@@ -75,12 +75,12 @@ impl FlightArc<f64> {
     /// come beside the board first).
     pub(crate) fn resolve_beside_board(&mut self, params: &ModelParams, state: &BallState) -> f64 {
         if self.beside_board >= self.first_end() {
-            return params.ball.never;
+            return params.ball.never_s;
         }
         let (enters, behind) = entry_from_beside(params, state, self.beside_board);
         self.touch[SolidId::Board.index()] = enters;
-        let horizon = self.below_ring.min(enters).min(behind);
-        (self.touch[SolidId::Ring.index()], self.unresolved) = ring_time(params, state, horizon);
+        let search_end = self.below_ring.min(enters).min(behind);
+        (self.touch[SolidId::Ring.index()], self.unresolved) = ring_time(params, state, search_end);
         behind
     }
 }

@@ -1,8 +1,8 @@
 //! Free flight: parabolas, and the first touch on them.
 
-mod flight_events;
 mod board_touch;
+mod flight_events;
 pub(crate) mod height_crossing;
 mod ring_search;
 
-pub(crate) use flight_events::FlightArc;
+pub(crate) use flight_events::FlightEvents;

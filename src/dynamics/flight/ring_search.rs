@@ -23,29 +23,29 @@ pub(super) const MIN_JUMP_S: f64 = 1e-9;
 const MAX_ITERATIONS: u32 = 200;
 
 /// The horizontal motion of an arc: `D^2 = |p|^2 + 2 (p.v) t + |v|^2 t^2`.
-struct HorizontalMotion<R: Real> {
-    speed_squared: R,
+struct HorizontalMotion<T: Real> {
+    speed_squared: T,
     /// p.v.
-    dot: R,
+    dot: T,
     /// x v_y - y v_x.
-    moment: R,
-    distance_squared: R,
+    moment: T,
+    distance_squared: T,
     /// The ball moves straight up or down.
-    still: R::Mask,
-    per_speed_squared: R,
+    is_vertical: T::Mask,
+    inverse_speed_squared: T,
     /// Square of the least distance from the axis, and its time.
-    closest_squared: R,
-    closest_time: R,
+    closest_squared: T,
+    closest_time: T,
 }
 
-impl<R: Real> HorizontalMotion<R> {
+impl<T: Real> HorizontalMotion<T> {
     #[inline(always)]
-    fn new(params: &ModelParams<R>, state: &BallState<R>) -> Self {
+    fn new(params: &ModelParams<T>, state: &BallState<T>) -> Self {
         let (p, v) = (state.position_m, state.velocity_m_s);
         let (zero, one) = (params.zero(), params.one());
         let speed_squared = v.x.squared() + v.y.squared();
-        let still = speed_squared.le(params.splat(1e-12));
-        let per_speed_squared = one / one.select(still, speed_squared);
+        let is_vertical = speed_squared.le(params.splat(1e-12));
+        let inverse_speed_squared = one / one.select(is_vertical, speed_squared);
         let dot = p.x * v.x + p.y * v.y;
         let moment = p.x * v.y - p.y * v.x;
         Self {
@@ -53,48 +53,48 @@ impl<R: Real> HorizontalMotion<R> {
             dot,
             moment,
             distance_squared: p.x.squared() + p.y.squared(),
-            still,
-            per_speed_squared,
-            closest_squared: zero.select(still, moment.squared() * per_speed_squared),
-            closest_time: -(dot * per_speed_squared),
+            is_vertical,
+            inverse_speed_squared,
+            closest_squared: zero.select(is_vertical, moment.squared() * inverse_speed_squared),
+            closest_time: -(dot * inverse_speed_squared),
         }
     }
 
     /// Square of half the time that the ball spends within `radius` of the axis; negative if it never
     /// comes so near.
     #[inline(always)]
-    fn half_chord_squared(&self, radius: R) -> R {
-        (radius.squared() - self.closest_squared) * self.per_speed_squared
+    fn half_chord_squared(&self, radius: T) -> T {
+        (radius.squared() - self.closest_squared) * self.inverse_speed_squared
     }
 
     #[inline(always)]
-    fn distance(&self, t: R) -> R {
+    fn distance(&self, t: T) -> T {
         ((self.speed_squared * t + self.dot * 2.0) * t + self.distance_squared).sqrt()
     }
 }
 
 /// The parts of an arc in which no touch is possible, and the bound on F'' elsewhere.
-struct SearchBounds<R> {
+struct SearchBounds<T> {
     /// The centre falls through z = R.
-    falls_to_top: R,
+    falls_to_top: T,
     /// The centre rises through z = -R.
-    rises_to_bottom: R,
+    rises_to_bottom: T,
     /// The centre rises through z = R.
-    rises_to_top: R,
+    rises_to_top: T,
     /// The centre enters and leaves the circle of radius R_H - R.
-    inner_enter: R,
-    inner_leave: R,
+    inner_enter: T,
+    inner_leave: T,
     /// The part of -F''/2 that comes from the curvature of the ring.
-    curvature_bound: R,
+    curvature_bound: T,
 }
 
-impl<R: Real> SearchBounds<R> {
+impl<T: Real> SearchBounds<T> {
     #[inline(always)]
     fn new(
-        params: &ModelParams<R>,
-        motion: &HorizontalMotion<R>,
-        (z, vz): (R, R),
-        falls_to_top: R,
+        params: &ModelParams<T>,
+        motion: &HorizontalMotion<T>,
+        (z, vz): (T, T),
+        falls_to_top: T,
     ) -> Self {
         let (ring_radius, ball_radius) = (params.ring.radius, params.ball.radius);
         let inner = ring_radius - ball_radius;
@@ -105,22 +105,22 @@ impl<R: Real> SearchBounds<R> {
             rises_to_bottom: rising_time(params, z, vz, -ball_radius),
             rises_to_top: rising_time(params, z, vz, ball_radius),
             inner_enter: (motion.closest_time - half_chord)
-                .select(!motion.still, -params.ball.never),
+                .select(!motion.is_vertical, -params.ball.never_s),
             inner_leave: (motion.closest_time + half_chord)
-                .select(!motion.still, params.ball.never),
+                .select(!motion.is_vertical, params.ball.never_s),
             curvature_bound: ring_radius * motion.moment.squared() / (nearest * nearest.sqrt()),
         }
     }
 }
 
-/// Time of the first touch of the ring before `horizon` (else never), and whether the search reached its
+/// Time of the first touch of the ring before `search_end` (else never), and whether the search reached its
 /// iteration limit.
 #[inline(always)]
-pub(super) fn ring_time<R: Real>(
-    params: &ModelParams<R>,
-    state: &BallState<R>,
-    horizon: R,
-) -> (R, R::Mask) {
+pub(super) fn ring_time<T: Real>(
+    params: &ModelParams<T>,
+    state: &BallState<T>,
+    search_end: T,
+) -> (T, T::Mask) {
     let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
     let (zero, ball_radius) = (params.zero(), params.ball.radius);
     let motion = HorizontalMotion::new(params, state);
@@ -128,19 +128,20 @@ pub(super) fn ring_time<R: Real>(
     let outer_chord_squared = motion.half_chord_squared(outer);
     let half_chord = outer_chord_squared.positive_part().sqrt();
     let enters = motion.closest_time - half_chord;
-    let leaves = (motion.closest_time + half_chord).select(!motion.still, params.ball.never);
-    let out_of_reach = !motion.still & outer_chord_squared.is_negative()
-        | motion.still & outer.squared().lt(motion.distance_squared);
-    let stop = Real::min(horizon, leaves);
+    let leaves =
+        (motion.closest_time + half_chord).select(!motion.is_vertical, params.ball.never_s);
+    let out_of_reach = !motion.is_vertical & outer_chord_squared.is_negative()
+        | motion.is_vertical & outer.squared().lt(motion.distance_squared);
+    let stop = Real::min(search_end, leaves);
     let falls_to_top = falling_time(params, z, vz, ball_radius);
-    let mut t = enters.select(!motion.still, zero).positive_part();
+    let mut t = enters.select(!motion.is_vertical, zero).positive_part();
     // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
     // and still rising then (a release from beneath) starts when it has come near.
     let z_then = z + vz * t - params.ball.half_gravity * t * t;
     t = Real::max(falls_to_top, t).select(ball_radius.lt(z_then), t);
 
     let mut searching = t.lt(stop) & !out_of_reach;
-    let mut found = params.ball.never;
+    let mut found = params.ball.never_s;
     let mut iterations = 0;
     if searching.any() {
         let bounds = SearchBounds::new(params, &motion, (z, vz), falls_to_top);
@@ -158,13 +159,13 @@ pub(super) fn ring_time<R: Real>(
 
 /// Whether the ball touches the ring at the time `t`, and the next time to look at.
 #[inline(always)]
-fn search_step<R: Real>(
-    params: &ModelParams<R>,
-    motion: &HorizontalMotion<R>,
-    bounds: &SearchBounds<R>,
-    (z, vz): (R, R),
-    t: R,
-) -> (R::Mask, R) {
+fn search_step<T: Real>(
+    params: &ModelParams<T>,
+    motion: &HorizontalMotion<T>,
+    bounds: &SearchBounds<T>,
+    (z, vz): (T, T),
+    t: T,
+) -> (T::Mask, T) {
     let (zero, ball_radius) = (params.zero(), params.ball.radius);
     let z_t = z + vz * t - params.ball.half_gravity * t * t;
     let vz_t = vz - params.ball.gravity * t;
@@ -187,7 +188,7 @@ fn search_step<R: Real>(
     let bounded = half_bound.is_positive();
     let numerator = value.select(
         closing,
-        (half_slope + root).select(bounded, params.ball.never),
+        (half_slope + root).select(bounded, params.ball.never_s),
     );
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, params.one()));
     let safe = t + numerator / denominator;

@@ -5,8 +5,8 @@ use crate::dynamics::contact::double;
 use crate::dynamics::contact::event_time::time_to_touch;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::single;
-use crate::dynamics::end_rules::{ContactEnd, RunLimits, flight_ending, is_lodged, rose_to_ring};
-use crate::dynamics::flight::FlightArc;
+use crate::dynamics::end_rules::{ContactEnd, ShotLimits, flight_ending, is_lodged, rose_to_ring};
+use crate::dynamics::flight::FlightEvents;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
@@ -103,7 +103,7 @@ impl ShotProgress {
 /// A running shot with its observer.
 struct Run<'a, O> {
     params: &'a ModelParams,
-    limits: &'a RunLimits,
+    limits: &'a ShotLimits,
     observer: &'a mut O,
     shot: ShotProgress,
 }
@@ -111,7 +111,7 @@ struct Run<'a, O> {
 /// Simulates one shot to its end.
 pub(crate) fn run<O: Observer>(
     params: &ModelParams,
-    limits: &RunLimits,
+    limits: &ShotLimits,
     start: BallState,
     observer: &mut O,
 ) -> Verdict {
@@ -167,7 +167,7 @@ fn is_pressed<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState)
 /// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next segment.
 pub(crate) fn run_segment(
     params: &ModelParams,
-    limits: &RunLimits,
+    limits: &ShotLimits,
     shot: &mut ShotProgress,
 ) -> Option<Verdict> {
     let mut run = Run {
@@ -183,18 +183,18 @@ pub(crate) fn run_segment(
 
 /// Greatest acceleration that the present contact with `solid` can give the ball within a step.
 #[inline(always)]
-pub(crate) fn max_acceleration<R: Real, S: Solid<R>>(
-    params: &ModelParams<R>,
+pub(crate) fn max_acceleration<T: Real, S: Solid<T>>(
+    params: &ModelParams<T>,
     solid: &S,
-    state: &BallState<R>,
-    longest: R,
-) -> R {
+    state: &BallState<T>,
+    longest: T,
+) -> T {
     let (kinematics, _) = solid.contact(&params.ball, state);
     let material = solid.material();
     let normal_speed = kinematics.velocity.normal.abs();
     let compression = kinematics.compression.positive_part() + normal_speed * longest;
     let normal = material.stiffness * compression + material.damping * normal_speed;
-    normal * (material.friction + 1.0) + params.ball.gravity
+    normal * (material.friction_coefficient + 1.0) + params.ball.gravity
 }
 
 impl<O: Observer> Run<'_, O> {
@@ -218,20 +218,20 @@ impl<O: Observer> Run<'_, O> {
     /// One arc of free flight, to its end or to the next touch.
     fn fly(&mut self) -> Option<Ending> {
         let params = self.params;
-        let mut arc = FlightArc::new(params, &self.shot.state);
-        let behind = arc.resolve_beside_board(params, &self.shot.state);
-        let dt = Real::min(arc.first_end(), behind);
+        let mut flight = FlightEvents::new(params, &self.shot.state);
+        let behind = flight.resolve_beside_board(params, &self.shot.state);
+        let dt = Real::min(flight.first_end(), behind);
         if self.shot.time_s + dt > self.limits.time_limit_s {
             self.advance_flight(self.limits.time_limit_s - self.shot.time_s);
             return Some(Ending::TimeLimit);
         }
         self.advance_flight(dt);
-        if arc.unresolved {
+        if flight.unresolved {
             return Some(Ending::Unresolved);
         }
         // If the ball touches both at once, the ring counts.
         for solid in [SolidId::Ring, SolidId::Board] {
-            if arc.touch_of(solid) <= dt {
+            if flight.touch_of(solid) <= dt {
                 self.touch(solid);
                 let new = FrictionState::new(params);
                 self.shot.contact = ContactState::Single(solid, new);
@@ -265,10 +265,10 @@ impl<O: Observer> Run<'_, O> {
     }
 
     /// Contact with one solid until the ball parts, touches the other solid, or the shot ends.
-    fn single_contact<S: Solid<f64>, T: Solid<f64>>(
+    fn single_contact<S: Solid<f64>, Other: Solid<f64>>(
         &mut self,
         solid: &S,
-        other: &T,
+        other: &Other,
         mut friction: FrictionState,
     ) -> Option<Ending> {
         let params = self.params;
@@ -283,7 +283,7 @@ impl<O: Observer> Run<'_, O> {
             let bound = max_acceleration(params, solid, &before, longest);
             let approach = other.approach(&params.ball, &before, bound, longest);
             if approach.has_arrived() {
-                self.touch(T::ID);
+                self.touch(Other::ID);
                 let mut both = [FrictionState::new(params); SolidId::COUNT];
                 both[S::ID.index()] = friction;
                 self.shot.contact = ContactState::board_and_ring(both);
@@ -371,6 +371,6 @@ impl<O: Observer> Run<'_, O> {
         shot.crossing
             .after_step(self.params, before, &shot.state, true);
         let limit = self.limits.time_limit_s;
-        ContactEnd::new(self.params, &shot.state, shot.time_s, limit).resolve()
+        ContactEnd::new(self.params, &shot.state, shot.time_s, limit).ending()
     }
 }

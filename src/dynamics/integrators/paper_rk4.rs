@@ -7,7 +7,7 @@
 //! between them is missed. The errata of `docs/model.md` are applied: the sign of u_B', the full moment of
 //! the ring's friction, friction only while N > 0, and no contact from behind the board.
 
-use crate::dynamics::end_rules::{ContactEnd, RunLimits, fell_below_ring, flight_ending};
+use crate::dynamics::end_rules::{ContactEnd, ShotLimits, fell_below_ring, flight_ending};
 use crate::dynamics::flight::height_crossing::falling_time;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{NO_IMPULSES, Observer};
@@ -59,7 +59,7 @@ fn sliding_response<S: Solid<f64>>(
     let normal = kinematics.normal_acceleration(solid.material());
     let slip = kinematics.slip();
     let speed = slip.norm();
-    let limit = solid.material().friction * normal.max(0.0);
+    let limit = solid.material().friction_coefficient * normal.max(0.0);
     let per = if speed > 0.0 { limit / speed } else { 0.0 };
     let (friction_1, friction_2) = (-per * slip.x, -per * slip.y);
     let twist = kinematics.lever * params.ball.mass_over_inertia;
@@ -110,7 +110,7 @@ fn rk4(params: &ModelParams, state: &BallState, dt: f64) -> (BallState, bool) {
 /// A running shot with its observer.
 struct Run<'a, O> {
     params: &'a ModelParams,
-    limits: &'a RunLimits,
+    limits: &'a ShotLimits,
     observer: &'a mut O,
     state: BallState,
     time_s: f64,
@@ -122,7 +122,7 @@ struct Run<'a, O> {
 /// Simulates one shot to its end.
 pub(crate) fn run<O: Observer>(
     params: &ModelParams,
-    limits: &RunLimits,
+    limits: &ShotLimits,
     steps: StepRange,
     start: BallState,
     observer: &mut O,
@@ -183,7 +183,7 @@ impl<O: Observer> Run<'_, O> {
         self.state = next;
         self.pressed = pressed;
         let limit = self.limits.time_limit_s;
-        let ending = ContactEnd::new(params, &next, self.time_s, limit).resolve()?;
+        let ending = ContactEnd::new(params, &next, self.time_s, limit).ending()?;
         if ending != Ending::Fell {
             return Some(ending);
         }

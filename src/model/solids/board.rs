@@ -10,20 +10,20 @@ use crate::model::ball_state::BallState;
 
 /// The board.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Board<R = f64> {
+pub(crate) struct Board<T = f64> {
     /// x of the centre of a ball that just touches the face, m.
-    pub(crate) touch_x: R,
+    pub(crate) touch_x: T,
     /// x of the face, m.
-    pub(crate) face_x: R,
-    pub(crate) half_width: R,
-    pub(crate) bottom_z: R,
-    pub(crate) top_z: R,
-    pub(crate) material: Material<R>,
+    pub(crate) face_x: T,
+    pub(crate) half_width: T,
+    pub(crate) bottom_z: T,
+    pub(crate) top_z: T,
+    pub(crate) material: Material<T>,
 }
 
 impl Board {
     #[inline(always)]
-    pub(crate) fn map<R: Real>(&self, splat: &impl Fn(f64) -> R) -> Board<R> {
+    pub(crate) fn map<T: Real>(&self, splat: &impl Fn(f64) -> T) -> Board<T> {
         Board {
             touch_x: splat(self.touch_x),
             face_x: splat(self.face_x),
@@ -39,39 +39,39 @@ impl Board {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BoardFrame;
 
-impl<R: Real> ContactFrame<R> for BoardFrame {
+impl<T: Real> ContactFrame<T> for BoardFrame {
     #[inline(always)]
-    fn to_space(self, vector: ContactVector<R>) -> Vec3<R> {
+    fn to_space(self, vector: ContactVector<T>) -> Vec3<T> {
         Vec3::new(vector.normal, vector.tangent.x, vector.tangent.y)
     }
 
     #[inline(always)]
-    fn tangent_to_space(self, tangent: Vec2<R>) -> Vec3<R> {
+    fn tangent_to_space(self, tangent: Vec2<T>) -> Vec3<T> {
         Vec3::new(tangent.x.zero(), tangent.x, tangent.y)
     }
 }
 
 /// The board as seen by a ball on another solid.
 #[derive(Clone, Copy)]
-pub(crate) struct BoardApproach<R: Real> {
+pub(crate) struct BoardApproach<T: Real> {
     /// [`Board::touch_x`].
-    touch_x: R,
-    arrived: R::Mask,
-    longest: R,
+    touch_x: T,
+    arrived: T::Mask,
+    longest: T,
 }
 
-impl<R: Real> Approach<R> for BoardApproach<R> {
+impl<T: Real> Approach<T> for BoardApproach<T> {
     #[inline(always)]
-    fn has_arrived(&self) -> R::Mask {
+    fn has_arrived(&self) -> T::Mask {
         self.arrived
     }
 
     #[inline(always)]
-    fn closing_gap(&self, state: &BallState<R>, acceleration: Vec3<R>) -> Option<GapPolynomial<R>> {
+    fn closing_gap(&self, state: &BallState<T>, acceleration: Vec3<T>) -> Option<GapPolynomial<T>> {
         let distance = state.position_m.x - self.touch_x;
         let gap = Real::max(distance, distance.splat(TOUCH_GAP_M));
-        let (rate, curve) = (state.velocity_m_s.x, acceleration.x);
-        let least = gap + self.longest * (rate - curve.abs() * self.longest * 0.5);
+        let (rate, second_derivative) = (state.velocity_m_s.x, acceleration.x);
+        let least = gap + self.longest * (rate - second_derivative.abs() * self.longest * 0.5);
         let relevant = least.le(gap.zero());
         if !relevant.any() {
             return None;
@@ -80,27 +80,27 @@ impl<R: Real> Approach<R> for BoardApproach<R> {
             relevant,
             gap,
             rate,
-            curve,
+            second_derivative,
         })
     }
 }
 
-impl<R: Real> Solid<R> for Board<R> {
+impl<T: Real> Solid<T> for Board<T> {
     type Frame = BoardFrame;
-    type Approach = BoardApproach<R>;
+    type Approach = BoardApproach<T>;
     const ID: SolidId = SolidId::Board;
 
     #[inline(always)]
-    fn material(&self) -> &Material<R> {
+    fn material(&self) -> &Material<T> {
         &self.material
     }
 
     #[inline(always)]
     fn contact(
         &self,
-        ball: &BallParams<R>,
-        state: &BallState<R>,
-    ) -> (ContactKinematics<R>, BoardFrame) {
+        ball: &BallParams<T>,
+        state: &BallState<T>,
+    ) -> (ContactKinematics<T>, BoardFrame) {
         let (x, v, w) = (state.position_m.x, state.velocity_m_s, state.spin_rad_s);
         let zero = ball.zero();
         let kinematics = ContactKinematics {
@@ -117,7 +117,7 @@ impl<R: Real> Solid<R> for Board<R> {
 
     /// Whether the centre is in front of the rectangle.
     #[inline(always)]
-    fn faces(&self, state: &BallState<R>) -> R::Mask {
+    fn faces(&self, state: &BallState<T>) -> T::Mask {
         let p = state.position_m;
         self.face_x.lt(p.x)
             & p.y.abs().lt(self.half_width)
@@ -128,11 +128,11 @@ impl<R: Real> Solid<R> for Board<R> {
     #[inline(always)]
     fn approach(
         &self,
-        _ball: &BallParams<R>,
-        state: &BallState<R>,
-        _max_acceleration: R,
-        longest: R,
-    ) -> BoardApproach<R> {
+        _ball: &BallParams<T>,
+        state: &BallState<T>,
+        _max_acceleration: T,
+        longest: T,
+    ) -> BoardApproach<T> {
         let gap = state.position_m.x - self.touch_x;
         BoardApproach {
             touch_x: self.touch_x,

@@ -7,16 +7,16 @@ use crate::model::ball_params::BallParams;
 
 /// A vector along the normal and the two tangents of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ContactVector<R> {
+pub(crate) struct ContactVector<T> {
     /// Along n.
-    pub(crate) normal: R,
+    pub(crate) normal: T,
     /// Along 1 and 2.
-    pub(crate) tangent: Vec2<R>,
+    pub(crate) tangent: Vec2<T>,
 }
 
-impl<R> ContactVector<R> {
+impl<T> ContactVector<T> {
     #[inline(always)]
-    pub(crate) const fn new(normal: R, tangent_1: R, tangent_2: R) -> Self {
+    pub(crate) const fn new(normal: T, tangent_1: T, tangent_2: T) -> Self {
         Self {
             normal,
             tangent: Vec2::new(tangent_1, tangent_2),
@@ -26,47 +26,47 @@ impl<R> ContactVector<R> {
 
 /// Position and motion of the ball relative to the nearest point of a solid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ContactKinematics<R = f64> {
+pub(crate) struct ContactKinematics<T = f64> {
     /// Compression u of the ball, m; negative for a gap.
-    pub(crate) compression: R,
+    pub(crate) compression: T,
     /// Distance R - u from the centre to the contact point, m.
-    pub(crate) lever: R,
+    pub(crate) lever: T,
     /// Velocity of the centre, m/s.
-    pub(crate) velocity: ContactVector<R>,
+    pub(crate) velocity: ContactVector<T>,
     /// Angular velocity, rad/s.
-    pub(crate) spin: ContactVector<R>,
+    pub(crate) spin: ContactVector<T>,
     /// Gravity, m/s^2.
-    pub(crate) gravity: ContactVector<R>,
+    pub(crate) gravity: ContactVector<T>,
     /// Curvature kappa_1 of the path of the normal along 1, 1/m.
-    pub(crate) curvature_1: R,
+    pub(crate) curvature_1: T,
     /// Curvature kappa_2 of the path of the normal along 2, 1/m.
-    pub(crate) curvature_2: R,
+    pub(crate) curvature_2: T,
 }
 
-impl<R: Real> ContactKinematics<R> {
+impl<T: Real> ContactKinematics<T> {
     /// Velocity of the contact point along the surface (Eqs. 4 and 14).
     #[inline(always)]
-    pub(crate) fn slip(&self) -> Vec2<R> {
+    pub(crate) fn slip(&self) -> Vec2<T> {
         let (v, w) = (self.velocity.tangent, self.spin.tangent);
         Vec2::new(v.x - self.lever * w.y, v.y + self.lever * w.x)
     }
 
     /// Normal acceleration (k u + c u')/m (Eqs. 2 and 12); negative just before the ball parts.
     #[inline(always)]
-    pub(crate) fn normal_acceleration(&self, material: &Material<R>) -> R {
+    pub(crate) fn normal_acceleration(&self, material: &Material<T>) -> T {
         material.stiffness * self.compression - material.damping * self.velocity.normal
     }
 
     /// The normal acceleration from the turning of the frame alone, without forces.
     #[inline(always)]
-    pub(crate) fn frame_acceleration(&self) -> R {
+    pub(crate) fn frame_acceleration(&self) -> T {
         let v = self.velocity.tangent;
         self.curvature_1 * v.x.squared() + self.curvature_2 * v.y.squared()
     }
 
     /// Rate of the slip from motion alone, without forces: `-(v_n (n' + w x n) + (R-u) w_n (n x n'))`.
     #[inline(always)]
-    fn slip_rate_of_motion(&self) -> Vec2<R> {
+    fn slip_rate_of_motion(&self) -> Vec2<T> {
         let (v, w) = (self.velocity.tangent, self.spin.tangent);
         let (turn_1, turn_2) = (self.curvature_1 * v.x, self.curvature_2 * v.y);
         let twist = self.lever * self.spin.normal;
@@ -78,20 +78,20 @@ impl<R: Real> ContactKinematics<R> {
 
     /// Rate of the slip without friction: from motion and gravity.
     #[inline(always)]
-    pub(crate) fn frictionless_slip_rate(&self) -> Vec2<R> {
+    pub(crate) fn frictionless_slip_rate(&self) -> Vec2<T> {
         self.gravity.tangent + self.slip_rate_of_motion()
     }
 
     /// Rate of the slip for a unit of friction per unit of mass: 1 + lever^2 m/I.
     #[inline(always)]
-    pub(crate) fn slip_compliance(&self, ball: &BallParams<R>) -> R {
+    pub(crate) fn slip_compliance(&self, ball: &BallParams<T>) -> T {
         self.lever.squared() * ball.mass_over_inertia + 1.0
     }
 
     /// The derivative of the frictionless slip rate along a direction with respect to u'. (The normal
     /// velocity is what changes that rate most.)
     #[inline(always)]
-    pub(crate) fn d_slip_rate_d_compression_rate(&self, direction: Vec2<R>) -> R {
+    pub(crate) fn d_slip_rate_d_compression_rate(&self, direction: Vec2<T>) -> T {
         let (v, w) = (self.velocity.tangent, self.spin.tangent);
         (self.curvature_1 * v.x + w.y) * direction.x + (self.curvature_2 * v.y - w.x) * direction.y
     }

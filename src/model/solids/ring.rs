@@ -10,15 +10,15 @@ use crate::model::ball_state::BallState;
 
 /// The ring.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ring<R = f64> {
+pub(crate) struct Ring<T = f64> {
     /// Radius R_H of the circle, m.
-    pub(crate) radius: R,
-    pub(crate) material: Material<R>,
+    pub(crate) radius: T,
+    pub(crate) material: Material<T>,
 }
 
 impl Ring {
     #[inline(always)]
-    pub(crate) fn map<R: Real>(&self, splat: &impl Fn(f64) -> R) -> Ring<R> {
+    pub(crate) fn map<T: Real>(&self, splat: &impl Fn(f64) -> T) -> Ring<T> {
         Ring {
             radius: splat(self.radius),
             material: self.material.map(splat),
@@ -28,17 +28,17 @@ impl Ring {
 
 /// The angles of the hoop coordinates (Eq. 6).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RingFrame<R> {
-    cos_theta: R,
-    sin_theta: R,
-    cos_phi: R,
-    sin_phi: R,
+pub(crate) struct RingFrame<T> {
+    cos_theta: T,
+    sin_theta: T,
+    cos_phi: T,
+    sin_phi: T,
 }
 
-impl<R: Real> RingFrame<R> {
+impl<T: Real> RingFrame<T> {
     /// Components along (u_n, u_phi, u_theta) of a vector in space.
     #[inline(always)]
-    fn to_frame(self, v: Vec3<R>) -> ContactVector<R> {
+    fn to_frame(self, v: Vec3<T>) -> ContactVector<T> {
         let outward = v.x * self.cos_theta + v.y * self.sin_theta;
         ContactVector::new(
             v.z * self.sin_phi - outward * self.cos_phi,
@@ -48,9 +48,9 @@ impl<R: Real> RingFrame<R> {
     }
 }
 
-impl<R: Real> ContactFrame<R> for RingFrame<R> {
+impl<T: Real> ContactFrame<T> for RingFrame<T> {
     #[inline(always)]
-    fn to_space(self, vector: ContactVector<R>) -> Vec3<R> {
+    fn to_space(self, vector: ContactVector<T>) -> Vec3<T> {
         let (along_phi, along_theta) = (vector.tangent.x, vector.tangent.y);
         let outward = along_phi * self.sin_phi - vector.normal * self.cos_phi;
         Vec3::new(
@@ -61,7 +61,7 @@ impl<R: Real> ContactFrame<R> for RingFrame<R> {
     }
 
     #[inline(always)]
-    fn tangent_to_space(self, tangent: Vec2<R>) -> Vec3<R> {
+    fn tangent_to_space(self, tangent: Vec2<T>) -> Vec3<T> {
         let outward = tangent.x * self.sin_phi;
         Vec3::new(
             outward * self.cos_theta - tangent.y * self.sin_theta,
@@ -73,27 +73,27 @@ impl<R: Real> ContactFrame<R> for RingFrame<R> {
 
 /// The ring as seen by a ball on another solid.
 #[derive(Clone, Copy)]
-pub(crate) struct RingApproach<R: Real> {
+pub(crate) struct RingApproach<T: Real> {
     /// The ball may reach the ring within a step; the other fields are valid only then.
-    near: R::Mask,
-    gap: R,
-    rate: R,
-    frame_acceleration: R,
-    normal: Vec3<R>,
+    near: T::Mask,
+    gap: T,
+    rate: T,
+    frame_acceleration: T,
+    normal: Vec3<T>,
 }
 
-impl<R: Real> Approach<R> for RingApproach<R> {
+impl<T: Real> Approach<T> for RingApproach<T> {
     #[inline(always)]
-    fn has_arrived(&self) -> R::Mask {
+    fn has_arrived(&self) -> T::Mask {
         self.near & self.gap.le(self.gap.splat(TOUCH_GAP_M)) & self.rate.is_negative()
     }
 
     #[inline(always)]
     fn closing_gap(
         &self,
-        _state: &BallState<R>,
-        acceleration: Vec3<R>,
-    ) -> Option<GapPolynomial<R>> {
+        _state: &BallState<T>,
+        acceleration: Vec3<T>,
+    ) -> Option<GapPolynomial<T>> {
         if !self.near.any() {
             return None;
         }
@@ -101,27 +101,27 @@ impl<R: Real> Approach<R> for RingApproach<R> {
             relevant: self.near,
             gap: Real::max(self.gap, self.gap.splat(TOUCH_GAP_M)),
             rate: self.rate,
-            curve: self.normal.dot(acceleration) + self.frame_acceleration,
+            second_derivative: self.normal.dot(acceleration) + self.frame_acceleration,
         })
     }
 }
 
-impl<R: Real> Solid<R> for Ring<R> {
-    type Frame = RingFrame<R>;
-    type Approach = RingApproach<R>;
+impl<T: Real> Solid<T> for Ring<T> {
+    type Frame = RingFrame<T>;
+    type Approach = RingApproach<T>;
     const ID: SolidId = SolidId::Ring;
 
     #[inline(always)]
-    fn material(&self) -> &Material<R> {
+    fn material(&self) -> &Material<T> {
         &self.material
     }
 
     #[inline(always)]
     fn contact(
         &self,
-        ball: &BallParams<R>,
-        state: &BallState<R>,
-    ) -> (ContactKinematics<R>, RingFrame<R>) {
+        ball: &BallParams<T>,
+        state: &BallState<T>,
+    ) -> (ContactKinematics<T>, RingFrame<T>) {
         let [x, y, z] = state.position_m.into();
         let axis = (x.squared() + y.squared()).sqrt();
         let inward = self.radius - axis;
@@ -153,18 +153,18 @@ impl<R: Real> Solid<R> for Ring<R> {
 
     /// The ring is closed: every ball has a nearest point on it.
     #[inline(always)]
-    fn faces(&self, _state: &BallState<R>) -> R::Mask {
+    fn faces(&self, _state: &BallState<T>) -> T::Mask {
         self.radius.splat_mask(true)
     }
 
     #[inline(always)]
     fn approach(
         &self,
-        ball: &BallParams<R>,
-        state: &BallState<R>,
-        max_acceleration: R,
-        longest: R,
-    ) -> RingApproach<R> {
+        ball: &BallParams<T>,
+        state: &BallState<T>,
+        max_acceleration: T,
+        longest: T,
+    ) -> RingApproach<T> {
         let v = state.velocity_m_s;
         let max_speed = v.x.abs() + v.y.abs() + v.z.abs();
         let max_path = (max_speed + max_acceleration * longest * 0.5) * longest;

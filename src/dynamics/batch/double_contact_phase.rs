@@ -1,0 +1,108 @@
+//! The contacts of a batch with board and ring at once.
+
+use super::lane_block::{LaneBlock, bit, lanes_in};
+use super::running_batch::Batch;
+use super::workspace::Phase;
+use crate::dynamics::contact::double;
+use crate::dynamics::end_rules::is_lodged;
+use crate::dynamics::integrators::event_driven::ContactState;
+use crate::dynamics::outcome::Ending;
+use crate::math::real::SimdReal;
+use crate::model::SolidId;
+use crate::model::solids::Solid;
+use fearless_simd::Simd;
+
+/// Steps the shots on board and ring until one contact is left or the ball is lodged.
+///
+/// A function of its own in a module of its own, so that the compiler can translate the phases side by side.
+#[inline(never)]
+pub(super) fn board_and_ring<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+where
+    S: Simd,
+    T: SimdReal<Simd = S>,
+{
+    batch.simd.vectorize(
+        #[inline(always)]
+        || batch.double_contact::<T>(),
+    );
+}
+
+impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+    #[inline(always)]
+    fn double_contact<T: SimdReal<Simd = S>>(&mut self) {
+        let params = &self.lane_params::<T>();
+        let solids = (&params.board, &params.ring);
+        let longest = params.splat(self.limits.longest_step_s);
+        let phase = Phase::BoardAndRing;
+        let mut block = LaneBlock::new();
+        loop {
+            self.refill::<T>(&mut block, phase);
+            if block.occupied() == 0 {
+                return;
+            }
+            if self.should_suspend::<T>(&block, phase) {
+                self.suspend_double_contacts(&mut block);
+                return;
+            }
+            let mut shots = block.load::<T>(self.simd);
+            let before = shots.state;
+            let mut friction = [
+                block.load_friction(self.simd, SolidId::Board),
+                block.load_friction(self.simd, SolidId::Ring),
+            ];
+            let step = double::step(params, solids, &mut shots.state, &mut friction, longest);
+            let left = [
+                step.parted[0] | !solids.0.faces(&shots.state),
+                step.parted[1] | !solids.1.faces(&shots.state),
+            ];
+            let stepped = step.dt.is_positive();
+            let rolling_times =
+                double::rolling_time(&friction, block.load_rolling_times(self.simd), step.dt);
+            let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & stepped;
+            let end = shots.after_step(params, &before, step.dt, self.limits.time_limit_s);
+            block.store(&shots);
+            block.store_rolling_times(rolling_times);
+            for solid in SolidId::ALL {
+                block.store_friction(solid, &friction[solid.index()]);
+            }
+            let ended = T::mask_to_bits(end.any() & stepped);
+            let lodged = T::mask_to_bits(lodged);
+            let left = [T::mask_to_bits(left[0]), T::mask_to_bits(left[1])];
+            let made = T::mask_to_bits(shots.crossing.is_made(params, &shots.state));
+            let end = end.map(
+                #[inline(always)]
+                |mask| T::mask_to_bits(mask),
+            );
+            let done = ended | lodged | left[0] | left[1];
+            for lane in lanes_in(done & block.occupied()) {
+                let slot = block.slot(lane);
+                let shot = &mut self.workspace.slots[slot as usize];
+                block.remove(lane, shot);
+                if bit(ended, lane) {
+                    self.finish_contact(slot, end.map(|rule| bit(rule, lane)), bit(made, lane));
+                } else if bit(lodged, lane) {
+                    self.workspace.finish(slot, Ending::Lodged, false);
+                } else {
+                    let friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
+                    let left = left.map(|left| bit(left, lane));
+                    shot.contact = ContactState::after_double(left, friction, 0.0);
+                    self.workspace.enqueue(slot);
+                }
+            }
+        }
+    }
+
+    /// Takes all shots of a block out of their lanes and queues them again.
+    fn suspend_double_contacts(&mut self, block: &mut LaneBlock) {
+        for lane in lanes_in(block.occupied()) {
+            let slot = block.slot(lane);
+            let shot = &mut self.workspace.slots[slot as usize];
+            block.remove(lane, shot);
+            shot.contact = ContactState::BoardAndRing {
+                friction: SolidId::ALL.map(|solid| block.friction(solid, lane)),
+                rolling_time_s: block.rolling_time_s(lane),
+            };
+            self.workspace.enqueue(slot);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! The free flights of a batch: closed form, a block at a time.
+
+use super::lane_block::{LaneBlock, bit, lanes_in};
+use super::running_batch::Batch;
+use super::workspace::Phase;
+use crate::dynamics::contact::friction::FrictionState;
+use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
+use crate::dynamics::flight::FlightEvents;
+use crate::dynamics::integrators::event_driven::{ContactState, MAX_SEGMENTS};
+use crate::dynamics::outcome::Ending;
+use crate::math::real::{LaneBits, SimdReal};
+use crate::model::SolidId;
+use fearless_simd::Simd;
+
+/// Flies every shot that waits for flight, to its end or its next touch.
+///
+/// A function of its own in a module of its own, so that the compiler can translate the phases side by side.
+#[inline(never)]
+pub(super) fn fly<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+where
+    S: Simd,
+    T: SimdReal<Simd = S>,
+{
+    batch.simd.vectorize(
+        #[inline(always)]
+        || batch.fly_all::<T>(),
+    );
+}
+
+impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+    #[inline(always)]
+    fn fly_all<T: SimdReal<Simd = S>>(&mut self) {
+        let params = &self.lane_params::<T>();
+        let queue = self.workspace.take_flights();
+        let mut block = LaneBlock::new();
+        for slots in queue.chunks(T::LANES) {
+            // Lanes without a shot repeat the last one.
+            let last = slots[slots.len() - 1];
+            let mut next = slots.iter().copied().chain(std::iter::repeat(last));
+            block.fill(T::ALL, &self.workspace.slots, || next.next());
+            let mut shots = block.load::<T>(self.simd);
+            let start = shots.state;
+            let flight = FlightEvents::new(params, &start);
+            let dt = flight.first_end();
+            shots.crossing.after_flight(params, &start, dt);
+            shots.state = start.after_flight(&params.ball, dt);
+            shots.time_s = shots.time_s + dt;
+            let late = params.splat(self.limits.time_limit_s).lt(shots.time_s);
+            let end = FlightEnd {
+                rare: T::mask_to_bits(flight.beside_board.lt(dt) | flight.unresolved | late),
+                made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
+                touches: [
+                    T::mask_to_bits(flight.touch_of(SolidId::Board).le(dt)),
+                    T::mask_to_bits(flight.touch_of(SolidId::Ring).le(dt)),
+                ],
+                rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
+            };
+            block.store(&shots);
+            let occupied = T::ALL >> (T::LANES - slots.len());
+            self.finish_flights(&mut block, slots, occupied, &end);
+        }
+        self.workspace.return_queue(queue);
+    }
+
+    /// Takes the shots of a block out of their lanes after a flight, grouped by outcome: a branch in each
+    /// lane would be mispredicted too often.
+    #[inline(always)]
+    fn finish_flights(
+        &mut self,
+        block: &mut LaneBlock,
+        slots: &[u32],
+        occupied: LaneBits,
+        end: &FlightEnd,
+    ) {
+        let mut remaining = occupied;
+        for lane in lanes_in(occupied) {
+            let shot = &mut self.workspace.slots[slots[lane] as usize];
+            shot.contact = ContactState::Free;
+            if bit(end.rare, lane) || shot.segments >= MAX_SEGMENTS {
+                remaining &= !(1 << lane);
+                self.run_scalar(slots[lane]);
+                continue;
+            }
+            shot.segments += 1;
+            block.remove(lane, shot);
+        }
+        let new = FrictionState::new(self.params);
+        // If the ball touches both at once, the ring counts.
+        for solid in [SolidId::Ring, SolidId::Board] {
+            let touches = end.touches[solid.index()];
+            for lane in lanes_in(remaining & touches) {
+                let shot = &mut self.workspace.slots[slots[lane] as usize];
+                shot.contacts.push(solid);
+                shot.contact = ContactState::Single(solid, new);
+                self.workspace
+                    .queue_mut(Phase::Single(solid))
+                    .push(slots[lane]);
+            }
+            remaining &= !touches;
+        }
+        for lane in lanes_in(remaining) {
+            let ending = flight_ending(bit(end.rose, lane));
+            let made = ending == Ending::Fell && bit(end.made, lane);
+            self.workspace.finish(slots[lane], ending, made);
+        }
+    }
+}
+
+/// How the flights of a block ended, lane by lane.
+struct FlightEnd {
+    /// Left to the scalar form.
+    rare: LaneBits,
+    made: LaneBits,
+    /// The ball touches each solid.
+    touches: [LaneBits; SolidId::COUNT],
+    rose: LaneBits,
+}

@@ -1,0 +1,83 @@
+//! A batch that is being simulated, and what its phases share.
+
+use super::lane_block::LaneBlock;
+use super::workspace::{BatchWorkspace, Phase};
+use crate::dynamics::end_rules::{ContactEnd, ShotLimits};
+use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS};
+use crate::dynamics::outcome::Ending;
+use crate::math::real::SimdReal;
+use crate::math::simd::F64x8;
+use crate::math::simd_unrolled::Unrolled;
+use crate::model::model_params::ModelParams;
+use fearless_simd::Simd;
+
+/// A batch that is being simulated.
+///
+/// `WIDE` steps sixteen lanes instead of eight. This pays off with AVX-512, where one register holds eight
+/// lanes: two independent registers hide the latency of operations. With narrower registers eight lanes are
+/// several registers already.
+pub(super) struct Batch<'a, S: Simd, const WIDE: bool> {
+    pub(super) simd: S,
+    pub(super) params: &'a ModelParams,
+    pub(super) limits: &'a ShotLimits,
+    pub(super) workspace: &'a mut BatchWorkspace,
+}
+
+/// Eight lanes.
+pub(super) type Narrow<S> = F64x8<S>;
+/// Sixteen lanes.
+pub(super) type Wide<S> = Unrolled<F64x8<S>>;
+
+impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+    /// The parameters in every lane.
+    #[inline(always)]
+    pub(super) fn lane_params<T: SimdReal<Simd = S>>(&self) -> ModelParams<T> {
+        self.params.map(
+            #[inline(always)]
+            |value| T::broadcast(self.simd, value),
+        )
+    }
+
+    /// Simulates one segment of a shot with the scalar code and queues the shot again.
+    #[cold]
+    pub(super) fn run_scalar(&mut self, slot: u32) {
+        let shot = &mut self.workspace.slots[slot as usize];
+        if shot.segments >= MAX_SEGMENTS {
+            self.workspace.finish(slot, Ending::Unresolved, false);
+            return;
+        }
+        shot.segments += 1;
+        match event_driven::run_segment(self.params, self.limits, shot) {
+            Some(verdict) => self.workspace.record(slot, verdict),
+            None => self.workspace.enqueue(slot),
+        }
+    }
+
+    /// Fills the free lanes with shots that wait for `phase`.
+    #[inline(always)]
+    pub(super) fn refill<T: SimdReal<Simd = S>>(&mut self, block: &mut LaneBlock, phase: Phase) {
+        let free = T::ALL & !block.occupied();
+        let (slots, queue) = self.workspace.slots_and_queue(phase);
+        block.fill(free, slots, || queue.pop());
+        block.load_friction_of(free, slots);
+    }
+
+    /// Whether to leave a phase whose lanes cannot be filled, because another phase has enough shots.
+    #[inline(always)]
+    pub(super) fn should_suspend<T: SimdReal<Simd = S>>(
+        &self,
+        block: &LaneBlock,
+        phase: Phase,
+    ) -> bool {
+        block.occupied() != T::ALL && self.workspace.other_phase_fills(Wide::<S>::LANES, phase)
+    }
+
+    /// Records the end of a shot in contact.
+    #[inline(always)]
+    pub(super) fn finish_contact(&mut self, slot: u32, end: [bool; 3], made: bool) {
+        if let Some(ending) = ContactEnd::first_ending(end) {
+            let made = ending == Ending::Fell && made;
+            self.workspace.finish(slot, ending, made);
+        }
+    }
+}
