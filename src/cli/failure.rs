@@ -53,10 +53,10 @@ impl Failure {
         }
     }
 
-    pub(crate) fn io(place: impl Display, error: &std::io::Error) -> Self {
+    pub(crate) fn io(what: impl Display, error: &std::io::Error) -> Self {
         Self {
             code: code::IO,
-            message: format!("{place}: {error}"),
+            message: format!("{what}: {error}"),
         }
     }
 }

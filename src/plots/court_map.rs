@@ -17,9 +17,9 @@ const SPACE_LEFT_RIGHT: (f64, f64) = (70.0, 120.0);
 /// Space above and below the axes, px.
 const SPACE_ABOVE_BELOW: (f64, f64) = (34.0, 52.0);
 
-/// A coloured spot on the court.
+/// A coloured place on the court.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColouredSpot {
+pub struct ColouredPlace {
     /// x, from the board towards midcourt, m.
     pub x_m: f64,
     /// y, across, m.
@@ -37,9 +37,9 @@ pub struct CourtMap<'a> {
     pub physics: &'a Physics,
     /// Units of the axes.
     pub units: UnitSystem,
-    /// Distance between neighbouring spots, m; `None` if the spots are not on a square grid.
+    /// Distance between neighbouring places, m; `None` if the places are not on a square grid.
     pub step_m: Option<f64>,
-    /// Greatest x of a spot, m.
+    /// Greatest x of a place, m.
     pub far_x_m: f64,
 }
 
@@ -74,14 +74,14 @@ impl CourtMap<'_> {
         svg: &mut Svg,
         corner: (f64, f64),
         title: &str,
-        spots: &[ColouredSpot],
+        places: &[ColouredPlace],
         key: &ColourKey<'_>,
     ) {
         let axes = self.axes(corner);
         let (long, unit_m) = self.units.length();
         svg.clipped(axes.corner, axes.size, |svg| {
-            for spot in spots {
-                self.draw_spot(svg, &axes, spot);
+            for place in places {
+                self.draw_place(svg, &axes, place);
             }
             draw_court_lines(svg, &axes, unit_m, self.court, self.physics);
         });
@@ -102,10 +102,10 @@ impl CourtMap<'_> {
     }
 
     /// A square of the grid, or a circle if there is no grid.
-    fn draw_spot(&self, svg: &mut Svg, axes: &Axes, spot: &ColouredSpot) {
+    fn draw_place(&self, svg: &mut Svg, axes: &Axes, place: &ColouredPlace) {
         let (_, unit_m) = self.units.length();
-        let colour = hex(spot.colour.unwrap_or(NO_VALUE));
-        let at = axes.pixel((spot.y_m / unit_m, spot.x_m / unit_m));
+        let colour = hex(place.colour.unwrap_or(NO_VALUE));
+        let at = axes.pixel((place.y_m / unit_m, place.x_m / unit_m));
         if let Some(step_m) = self.step_m {
             let side = axes.pixels_of_length(step_m / unit_m);
             // Slightly larger than the cell, or thin gaps would show between neighbours.
@@ -118,7 +118,7 @@ impl CourtMap<'_> {
         }
     }
 
-    /// Outlines an area of grid spots (x, y), m: draws the sides of its squares that have no neighbour in
+    /// Outlines an area of grid places (x, y), m: draws the sides of its squares that have no neighbour in
     /// the area. Without a grid, draws nothing.
     pub fn draw_outline(&self, svg: &mut Svg, corner: (f64, f64), area: &[(f64, f64)]) {
         let Some(step_m) = self.step_m else { return };

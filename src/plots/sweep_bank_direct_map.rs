@@ -5,7 +5,7 @@ use super::colour_key::{ColourKey, ColourScale};
 use super::plot::Plot;
 use super::svg::{Anchor, Svg};
 use super::sweep_results::{
-    SIGNIFICANT_SIGMAS, SpotResults, SweepResults, difference, difference_colour, is_significant,
+    PlaceResults, SIGNIFICANT_SIGMAS, SweepResults, difference, difference_colour, is_significant,
     largest_difference,
 };
 use crate::analysis::sensitivity::Difference;
@@ -24,15 +24,15 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     if !results.has_both_kinds() {
         return None;
     }
-    let gain = |spot: &SpotResults| bank_gain(results, spot);
-    let largest = largest_difference(results.spots().iter().filter_map(gain))
+    let gain = |place: &PlaceResults| bank_gain(results, place);
+    let largest = largest_difference(results.places().iter().filter_map(gain))
         .clamp(SCALE_LIMITS.0, SCALE_LIMITS.1);
-    let compared = results.spots().iter().filter_map(gain).count();
+    let compared = results.places().iter().filter_map(gain).count();
     let bank_spots: Vec<(f64, f64)> = results
-        .spots()
+        .places()
         .iter()
-        .filter(|spot| gain(spot).is_some_and(|by| is_significant(by) && by.value > 0.0))
-        .map(|results| (results.spot.x_m, results.spot.y_m))
+        .filter(|place| gain(place).is_some_and(|by| is_significant(by) && by.value > 0.0))
+        .map(|results| (results.place.x_m, results.place.y_m))
         .collect();
     let caption = format!(
         "The bank shot is better at {} of {compared} places, by more than {SIGNIFICANT_SIGMAS} standard errors.",
@@ -61,9 +61,9 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
 }
 
 /// P of the bank shot minus P of the direct shot.
-fn bank_gain(results: &SweepResults<'_>, spot: &SpotResults) -> Option<Difference> {
-    let direct = results.probability(spot, ShotKind::Direct)?;
-    let bank = results.probability(spot, ShotKind::Bank)?;
+fn bank_gain(results: &SweepResults<'_>, place: &PlaceResults) -> Option<Difference> {
+    let direct = results.probability(place, ShotKind::Direct)?;
+    let bank = results.probability(place, ShotKind::Bank)?;
     Some(difference(bank, direct))
 }
 
@@ -74,8 +74,8 @@ fn draw_probabilities(results: &SweepResults<'_>, svg: &mut Svg) {
     for (i, kind) in ShotKind::ALL.into_iter().enumerate() {
         let corner = (i as f64 * width, MAPS_TOP);
         let title = format!("P of the best {} shot", kind.name());
-        results.draw_on(&map, svg, corner, &title, &scale, &|spot| {
-            Some(sequential(results.probability(spot, kind)?.value))
+        results.draw_on(&map, svg, corner, &title, &scale, &|place| {
+            Some(sequential(results.probability(place, kind)?.value))
         });
     }
 }
@@ -89,7 +89,7 @@ fn draw_gain(results: &SweepResults<'_>, svg: &mut Svg, corner: (f64, f64), larg
         colour: &colour,
     });
     let map = results.court_map();
-    results.draw_on(&map, svg, corner, "bank minus direct", &scale, &|spot| {
-        Some(difference_colour(bank_gain(results, spot)?, largest))
+    results.draw_on(&map, svg, corner, "bank minus direct", &scale, &|place| {
+        Some(difference_colour(bank_gain(results, place)?, largest))
     });
 }

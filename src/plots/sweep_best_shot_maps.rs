@@ -5,7 +5,7 @@ use super::colormaps::{OKABE_ITO, Rgb, sequential};
 use super::colour_key::{ColourKey, ColourScale};
 use super::plot::Plot;
 use super::svg::{Anchor, Svg, shortened};
-use super::sweep_results::{SpotResults, SweepResults};
+use super::sweep_results::{PlaceResults, SweepResults};
 use crate::best_shot::ShotKind;
 use crate::shooter::ReleaseVariable;
 use crate::sweep::columns::{self, RealColumn};
@@ -80,14 +80,14 @@ pub fn draw_all(results: &SweepResults<'_>) -> Vec<Plot> {
     plots
 }
 
-/// One map; `None` if no spot has a colour.
+/// One map; `None` if no place has a colour.
 fn draw_map(
     results: &SweepResults<'_>,
     texts: &MapTexts,
     key: &ColourKey<'_>,
-    colour: &dyn Fn(&SpotResults) -> Option<Rgb>,
+    colour: &dyn Fn(&PlaceResults) -> Option<Rgb>,
 ) -> Option<Plot> {
-    if results.spots().iter().all(|spot| colour(spot).is_none()) {
+    if results.places().iter().all(|place| colour(place).is_none()) {
         return None;
     }
     let map = results.court_map();
@@ -112,8 +112,8 @@ fn draw_probability(results: &SweepResults<'_>) -> Option<Plot> {
         caption: "The probability of the best shot from each place.",
     };
     let key = ColourKey::Scale(ColourScale::PROBABILITY);
-    draw_map(results, &texts, &key, &|spot| {
-        Some(sequential(spot.best()?.real(columns::PROBABILITY)?))
+    draw_map(results, &texts, &key, &|place| {
+        Some(sequential(place.best()?.real(columns::PROBABILITY)?))
     })
 }
 
@@ -128,8 +128,8 @@ fn draw_kind(results: &SweepResults<'_>) -> Option<Plot> {
         caption: "Which kind of shot is the best one from each place.",
     };
     let names = KIND_COLOURS.map(|(kind, colour)| (kind.name().to_owned(), colour));
-    draw_map(results, &texts, &ColourKey::Legend(&names), &|spot| {
-        let kind = spot.best()?.text(columns::KIND)?;
+    draw_map(results, &texts, &ColourKey::Legend(&names), &|place| {
+        let kind = place.best()?.text(columns::KIND)?;
         let found = KIND_COLOURS.iter().find(|(known, _)| known.name() == kind);
         found.map(|(_, colour)| *colour)
     })
@@ -137,8 +137,8 @@ fn draw_kind(results: &SweepResults<'_>) -> Option<Plot> {
 
 /// A map of a column with a scale from its least to its greatest value.
 fn draw_column(results: &SweepResults<'_>, map: &ColumnMap) -> Option<Plot> {
-    let value = |spot: &SpotResults| Some(spot.best()?.real(map.column)? / map.unit_si);
-    let (low, high) = results.spots().iter().filter_map(value).fold(
+    let value = |place: &PlaceResults| Some(place.best()?.real(map.column)? / map.unit_si);
+    let (low, high) = results.places().iter().filter_map(value).fold(
         (f64::INFINITY, f64::NEG_INFINITY),
         |(low, high): (f64, f64), v| (low.min(v), high.max(v)),
     );
@@ -157,7 +157,7 @@ fn draw_column(results: &SweepResults<'_>, map: &ColumnMap) -> Option<Plot> {
         range: (low, high),
         colour: &colour,
     });
-    draw_map(results, &map.texts, &key, &|spot| value(spot).map(colour))
+    draw_map(results, &map.texts, &key, &|place| value(place).map(colour))
 }
 
 fn draw_costliest_error(results: &SweepResults<'_>) -> Option<Plot> {
@@ -166,12 +166,12 @@ fn draw_costliest_error(results: &SweepResults<'_>) -> Option<Plot> {
         title: "the error that costs most",
         caption: "The error that costs the best shot most from each place.",
     };
-    let costliest = |spot: &SpotResults| {
-        let name = spot.best()?.text(columns::COSTLIEST_ERROR)?;
+    let costliest = |place: &PlaceResults| {
+        let name = place.best()?.text(columns::COSTLIEST_ERROR)?;
         Some(name.replace('_', " "))
     };
     let is_shown = |name: &String| {
-        let mut names = results.spots().iter().filter_map(costliest);
+        let mut names = results.places().iter().filter_map(costliest);
         names.any(|other| other == *name)
     };
     let names: Vec<(String, Rgb)> = ReleaseVariable::ALL
@@ -186,8 +186,8 @@ fn draw_costliest_error(results: &SweepResults<'_>) -> Option<Plot> {
         })
         .filter(|(name, _)| is_shown(name))
         .collect();
-    draw_map(results, &texts, &ColourKey::Legend(&names), &|spot| {
-        let name = costliest(spot)?;
+    draw_map(results, &texts, &ColourKey::Legend(&names), &|place| {
+        let name = costliest(place)?;
         let found = names.iter().find(|(known, _)| *known == name);
         found.map(|(_, colour)| *colour)
     })

@@ -5,7 +5,7 @@ use super::colour_key::{ColourKey, ColourScale};
 use super::plot::Plot;
 use super::svg::{Anchor, Svg, shortened};
 use super::sweep_results::{
-    SIGNIFICANT_SIGMAS, SpotResults, SweepResults, difference, difference_colour,
+    PlaceResults, SIGNIFICANT_SIGMAS, SweepResults, difference, difference_colour,
     largest_difference,
 };
 use crate::analysis::sensitivity::Difference;
@@ -18,18 +18,18 @@ const SCALE_LIMITS: (f64, f64) = (0.02, 0.5);
 const MAPS_TOP: f64 = 34.0;
 
 /// Draws the best shots of two sweeps and their difference, `second` minus `first`; `None` if they share no
-/// spot with results.
+/// place with results.
 #[must_use]
 pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot> {
-    let second_spots = spots_by_position(second);
-    let gain = |spot: &SpotResults| {
-        let other = second_spots.get(&position(spot))?;
+    let second_places = spots_by_position(second);
+    let gain = |place: &PlaceResults| {
+        let other = second_places.get(&position(place))?;
         Some(difference(
             best_probability(other)?,
-            best_probability(spot)?,
+            best_probability(place)?,
         ))
     };
-    let gains: Vec<Difference> = first.spots().iter().filter_map(gain).collect();
+    let gains: Vec<Difference> = first.places().iter().filter_map(gain).collect();
     if gains.is_empty() {
         return None;
     }
@@ -67,8 +67,8 @@ fn draw_probabilities(svg: &mut Svg, first: &SweepResults<'_>, second: &SweepRes
     for (i, sweep) in [first, second].into_iter().enumerate() {
         let corner = (i as f64 * width, MAPS_TOP);
         let title = shortened(&sweep.name(), 40);
-        sweep.draw_on(&map, svg, corner, &title, &scale, &|spot| {
-            Some(sequential(best_probability(spot)?.value))
+        sweep.draw_on(&map, svg, corner, &title, &scale, &|place| {
+            Some(sequential(best_probability(place)?.value))
         });
     }
 }
@@ -77,7 +77,7 @@ fn draw_probabilities(svg: &mut Svg, first: &SweepResults<'_>, second: &SweepRes
 fn draw_difference(
     svg: &mut Svg,
     first: &SweepResults<'_>,
-    gain: &dyn Fn(&SpotResults) -> Option<Difference>,
+    gain: &dyn Fn(&PlaceResults) -> Option<Difference>,
     largest: f64,
 ) {
     let map = first.court_map();
@@ -88,22 +88,22 @@ fn draw_difference(
         colour: &|by| diverging(by / largest),
     });
     let corner = (2.0 * width, MAPS_TOP);
-    first.draw_on(&map, svg, corner, "second minus first", &scale, &|spot| {
-        Some(difference_colour(gain(spot)?, largest))
+    first.draw_on(&map, svg, corner, "second minus first", &scale, &|place| {
+        Some(difference_colour(gain(place)?, largest))
     });
 }
 
 /// P of the best shot of either kind.
-fn best_probability(spot: &SpotResults) -> Option<Difference> {
-    spot.best()?.probability()
+fn best_probability(place: &PlaceResults) -> Option<Difference> {
+    place.best()?.probability()
 }
 
-/// The coordinates of a spot, comparable.
-fn position(results: &SpotResults) -> (u64, u64) {
-    (results.spot.x_m.to_bits(), results.spot.y_m.to_bits())
+/// The coordinates of a place, comparable.
+fn position(results: &PlaceResults) -> (u64, u64) {
+    (results.place.x_m.to_bits(), results.place.y_m.to_bits())
 }
 
-fn spots_by_position<'a>(sweep: &'a SweepResults<'_>) -> BTreeMap<(u64, u64), &'a SpotResults> {
-    let spots = sweep.spots().iter();
-    spots.map(|spot| (position(spot), spot)).collect()
+fn spots_by_position<'a>(sweep: &'a SweepResults<'_>) -> BTreeMap<(u64, u64), &'a PlaceResults> {
+    let places = sweep.places().iter();
+    places.map(|place| (position(place), place)).collect()
 }

@@ -1,8 +1,8 @@
-//! The results of a sweep by spot, as its plots need them.
+//! The results of a sweep by place, as its plots need them.
 
 use super::colormaps::{NOT_SIGNIFICANT, Rgb, diverging};
 use super::colour_key::ColourKey;
-use super::court_map::{ColouredSpot, CourtMap};
+use super::court_map::{ColouredPlace, CourtMap};
 use super::svg::{Svg, shortened};
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
@@ -10,20 +10,20 @@ use crate::model::court::Court;
 use crate::sweep::columns;
 use crate::sweep::jobs::Jobs;
 use crate::sweep::result_row::ResultRow;
-use crate::sweep::{CourtSpot, Region, SweepConfig};
+use crate::sweep::{CourtPlace, Region, SweepConfig};
 use std::collections::BTreeMap;
 
 /// A difference is significant if it exceeds this many of its standard errors.
 pub(super) const SIGNIFICANT_SIGMAS: f64 = 2.0;
 
-/// The results at one spot.
-pub(super) struct SpotResults {
-    pub(super) spot: CourtSpot,
+/// The results at one place.
+pub(super) struct PlaceResults {
+    pub(super) place: CourtPlace,
     /// One for each kind of the sweep; `None` if the job has no result yet.
     rows: Vec<Option<ResultRow>>,
 }
 
-impl SpotResults {
+impl PlaceResults {
     /// The row with the largest P of all kinds.
     pub(super) fn best(&self) -> Option<&ResultRow> {
         let p = |row: &ResultRow| row.real(columns::PROBABILITY);
@@ -35,11 +35,11 @@ impl SpotResults {
     }
 }
 
-/// The results of a sweep by spot.
+/// The results of a sweep by place.
 pub struct SweepResults<'a> {
     config: &'a SweepConfig,
     court: Court,
-    spots: Vec<SpotResults>,
+    places: Vec<PlaceResults>,
     kinds: Vec<ShotKind>,
 }
 
@@ -48,11 +48,11 @@ impl<'a> SweepResults<'a> {
     #[must_use]
     pub fn new(config: &'a SweepConfig, rows: &BTreeMap<u64, ResultRow>) -> Self {
         let jobs = Jobs::new(config);
-        let spots = jobs
+        let places = jobs
             .sources
             .iter()
-            .map(|source| SpotResults {
-                spot: source.spot,
+            .map(|source| PlaceResults {
+                place: source.place,
                 rows: (0..jobs.kinds.len())
                     .map(|kind| {
                         let row = rows.get(&jobs.number(source.computed, kind))?;
@@ -68,13 +68,13 @@ impl<'a> SweepResults<'a> {
         Self {
             config,
             court: config.league.court(),
-            spots,
+            places,
             kinds: jobs.kinds,
         }
     }
 
-    pub(super) fn spots(&self) -> &[SpotResults] {
-        &self.spots
+    pub(super) fn places(&self) -> &[PlaceResults] {
+        &self.places
     }
 
     /// Whether the sweep has bank and direct shots.
@@ -82,10 +82,10 @@ impl<'a> SweepResults<'a> {
         self.kinds.len() == ShotKind::ALL.len()
     }
 
-    /// P of the best shot of a kind at a spot.
-    pub(super) fn probability(&self, spot: &SpotResults, kind: ShotKind) -> Option<Difference> {
+    /// P of the best shot of a kind at a place.
+    pub(super) fn probability(&self, place: &PlaceResults, kind: ShotKind) -> Option<Difference> {
         let kind = self.kinds.iter().position(|&other| other == kind)?;
-        spot.rows[kind].as_ref()?.probability()
+        place.rows[kind].as_ref()?.probability()
     }
 
     /// The shooter, as the title of a plot.
@@ -109,15 +109,15 @@ impl<'a> SweepResults<'a> {
             env!("CARGO_PKG_VERSION"),
             self.shooter_name(),
             self.config.league.name().to_uppercase(),
-            self.spots.len(),
+            self.places.len(),
             self.config.settings.search.standard_error()
         )
     }
 
-    /// A map of the court that shows every spot.
+    /// A map of the court that shows every place.
     pub(super) fn court_map(&self) -> CourtMap<'_> {
         let settings = &self.config.settings;
-        let spots = self.spots.iter();
+        let places = self.places.iter();
         CourtMap {
             court: &self.court,
             physics: &settings.physics,
@@ -126,11 +126,11 @@ impl<'a> SweepResults<'a> {
                 Region::HalfCourt { step_m, .. } | Region::Rectangle { step_m, .. } => Some(step_m),
                 _ => None,
             },
-            far_x_m: spots.fold(0.0, |far: f64, results| far.max(results.spot.x_m)),
+            far_x_m: places.fold(0.0, |far: f64, results| far.max(results.place.x_m)),
         }
     }
 
-    /// Draws a colour for each spot on a map.
+    /// Draws a colour for each place on a map.
     pub(super) fn draw_on(
         &self,
         map: &CourtMap<'_>,
@@ -138,18 +138,18 @@ impl<'a> SweepResults<'a> {
         corner: (f64, f64),
         title: &str,
         key: &ColourKey<'_>,
-        colour: &dyn Fn(&SpotResults) -> Option<Rgb>,
+        colour: &dyn Fn(&PlaceResults) -> Option<Rgb>,
     ) {
-        let spots: Vec<ColouredSpot> = self
-            .spots
+        let places: Vec<ColouredPlace> = self
+            .places
             .iter()
-            .map(|results| ColouredSpot {
-                x_m: results.spot.x_m,
-                y_m: results.spot.y_m,
+            .map(|results| ColouredPlace {
+                x_m: results.place.x_m,
+                y_m: results.place.y_m,
                 colour: colour(results),
             })
             .collect();
-        map.draw(svg, corner, title, &spots, key);
+        map.draw(svg, corner, title, &places, key);
     }
 }
 

@@ -28,7 +28,7 @@ pub fn best_shot_page(run: &BestShotRun, progress: &dyn Progress) -> Result<Page
         title: profile.shooter().name.clone(),
         answer: answer(run, better),
         shots: run.shots.clone(),
-        first_spot: 0,
+        first_place: 0,
         scene: Scene {
             simulator: profile.simulator().clone(),
             court: League::Ncaa.court(),

@@ -98,7 +98,7 @@ fn read_shots(profile: &Profile, best: &Value) -> Vec<ReportShot> {
                 standard_error: value("standard_error")?,
             };
             Some(ReportShot {
-                spot: 0,
+                place: 0,
                 location: profile.location(),
                 shot,
                 mirror_of: None,

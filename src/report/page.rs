@@ -23,8 +23,8 @@ pub struct Page {
     pub answer: String,
     /// The shots, at least one.
     pub shots: Vec<ReportShot>,
-    /// The spot that is shown first.
-    pub first_spot: usize,
+    /// The place that is shown first.
+    pub first_place: usize,
     /// Where the shots are taken.
     pub scene: Scene,
     /// Tables.
@@ -48,7 +48,7 @@ impl Page {
         for plot in &self.plots {
             body.push_str(&figure_html(plot));
         }
-        let data = self.scene.page_data(&self.shots, self.first_spot)?;
+        let data = self.scene.page_data(&self.shots, self.first_place)?;
         // Inside a script element, only a tag can end the element.
         let data = data.to_string().replace('<', "\\u003c");
         let parts = [

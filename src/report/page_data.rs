@@ -27,14 +27,14 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The data as JSON. `first_spot` is the spot that the page shows first.
+    /// The data as JSON. `first_place` is the place that the page shows first.
     ///
     /// # Errors
     /// A shot has a value that is not finite.
     pub(super) fn page_data(
         &self,
         shots: &[ReportShot],
-        first_spot: usize,
+        first_place: usize,
     ) -> Result<Value, StateError> {
         let records = shots
             .iter()
@@ -48,14 +48,14 @@ impl Scene {
             "shots": records,
             "court": self.court_record(),
             "far_x_m": to_centimetre(far_x_m),
-            "first_place": first_spot,
+            "first_place": first_place,
         }))
     }
 
     fn shot_record(&self, shot: &ReportShot) -> Result<Value, StateError> {
         let (x_m, y_m) = shot.location.to_xy();
         let mut record = json!({
-            "place": shot.spot,
+            "place": shot.place,
             "kind": shot.shot.kind.name(),
             "x_m": to_centimetre(x_m),
             "y_m": to_centimetre(y_m),

@@ -7,8 +7,8 @@ use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 /// A best shot on a page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportShot {
-    /// Number of its spot on the page.
-    pub spot: usize,
+    /// Number of its place on the page.
+    pub place: usize,
     /// The location of the shooter.
     pub location: Location,
     /// The shot with its probability.

@@ -42,7 +42,7 @@ pub fn sweep_page(
         title: format!("{}: {}", config.name, settings.shooter.name),
         answer,
         tables: vec![shot_table(&shots, settings.output.units)],
-        first_spot: spot_near_free_throw_line(config, &shots),
+        first_place: spot_near_free_throw_line(config, &shots),
         shots,
         plots,
         scene: Scene {
@@ -71,7 +71,7 @@ fn list_shots(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Vec<ReportShot> {
     let mut shot_of_job: BTreeMap<u64, usize> = BTreeMap::new();
     for mirrored in [false, true] {
         let sources = jobs.sources.iter().enumerate();
-        for (spot, source) in sources.filter(|(_, source)| source.mirrored == mirrored) {
+        for (place, source) in sources.filter(|(_, source)| source.mirrored == mirrored) {
             for kind in 0..jobs.kinds.len() {
                 let job = jobs.number(source.computed, kind);
                 let Some(row) = rows.get(&job) else { continue };
@@ -86,8 +86,8 @@ fn list_shots(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Vec<ReportShot> {
                 }
                 let computed = shot_of_job.get(&job).copied();
                 shots.push(ReportShot {
-                    spot,
-                    location: source.spot.location(),
+                    place,
+                    location: source.place.location(),
                     shot,
                     mirror_of: computed.filter(|_| mirrored),
                 });
@@ -115,14 +115,14 @@ fn plotted_shot(row: &ResultRow, jobs: &Jobs, kind: usize) -> Option<PlottedShot
     })
 }
 
-/// The best and the worst spot, and how bank compares with direct; `None` if there are no shots.
+/// The best and the worst place, and how bank compares with direct; `None` if there are no shots.
 fn answer(config: &SweepConfig, shots: &[ReportShot], comparison: Option<&Plot>) -> Option<String> {
     let units = config.settings.output.units;
     let best = most_probable(shots)?;
-    // The best shot of each spot.
+    // The best shot of each place.
     let mut best_at: BTreeMap<usize, &ReportShot> = BTreeMap::new();
     for shot in shots {
-        let best = best_at.entry(shot.spot).or_insert(shot);
+        let best = best_at.entry(shot.place).or_insert(shot);
         if shot.shot.probability > best.shot.probability {
             *best = shot;
         }
@@ -142,7 +142,7 @@ fn answer(config: &SweepConfig, shots: &[ReportShot], comparison: Option<&Plot>)
     ))
 }
 
-/// The spot that is nearest to the middle of the free-throw line.
+/// The place that is nearest to the middle of the free-throw line.
 fn spot_near_free_throw_line(config: &SweepConfig, shots: &[ReportShot]) -> usize {
     let line_x_m = config.league.court().free_throw_x_m;
     let distance_squared = |shot: &ReportShot| {
@@ -153,5 +153,5 @@ fn spot_near_free_throw_line(config: &SweepConfig, shots: &[ReportShot]) -> usiz
     shots
         .iter()
         .min_by(|a, b| distance_squared(a).total_cmp(&distance_squared(b)))
-        .map_or(0, |shot| shot.spot)
+        .map_or(0, |shot| shot.place)
 }

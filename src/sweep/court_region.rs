@@ -1,12 +1,12 @@
-//! The region of a sweep: its spots on the court.
+//! The region of a sweep: its places on the court.
 
 use crate::model::Physics;
 use crate::model::court::League;
 use crate::shooter::{Location, LocationError};
 use serde::Serialize;
 
-/// Greatest number of spots.
-pub const MAX_SPOTS: usize = 100_000;
+/// Greatest number of places.
+pub const MAX_PLACES: usize = 100_000;
 
 /// The region of the court that a sweep covers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -16,7 +16,7 @@ pub enum Region {
     HalfCourt {
         /// Spacing, m.
         step_m: f64,
-        /// Only spots on and inside the three-point line.
+        /// Only places on and inside the three-point line.
         inside_three: bool,
     },
     /// A grid about the hoop's centre within a rectangle.
@@ -42,21 +42,21 @@ pub enum Region {
         /// Spacing along the line, m.
         step_m: f64,
     },
-    /// The spots of a file: (x, y), m.
+    /// The places of a file: (x, y), m.
     Locations(Vec<(f64, f64)>),
 }
 
-/// A spot on the court.
+/// A place on the court.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct CourtSpot {
+pub struct CourtPlace {
     /// x, from the board towards midcourt, m.
     pub x_m: f64,
     /// y, across, m.
     pub y_m: f64,
 }
 
-impl CourtSpot {
-    /// The spot as the location of a shooter.
+impl CourtPlace {
+    /// The place as the location of a shooter.
     #[must_use]
     pub fn location(&self) -> Location {
         Location::from_xy(self.x_m, self.y_m)
@@ -64,18 +64,18 @@ impl CourtSpot {
 }
 
 impl Region {
-    /// Its spots in order. A grid omits those from which nobody can shoot.
+    /// Its places in order. A grid omits those from which nobody can shoot.
     ///
     /// # Errors
-    /// Nobody can shoot from a spot of a file: its row, from 0, and the reason.
-    pub fn spots(
+    /// Nobody can shoot from a place of a file: its row, from 0, and the reason.
+    pub fn places(
         &self,
         league: League,
         physics: &Physics,
-    ) -> Result<Vec<CourtSpot>, (usize, LocationError)> {
+    ) -> Result<Vec<CourtPlace>, (usize, LocationError)> {
         let court = league.court();
-        let spot = |(x_m, y_m): (f64, f64)| CourtSpot { x_m, y_m };
-        let is_possible = |spot: &CourtSpot| spot.location().check(physics).is_ok();
+        let place = |(x_m, y_m): (f64, f64)| CourtPlace { x_m, y_m };
+        let is_possible = |place: &CourtPlace| place.location().check(physics).is_ok();
         Ok(match self {
             Self::HalfCourt {
                 step_m,
@@ -84,12 +84,12 @@ impl Region {
                 let y = (-court.half_width_m, court.half_width_m);
                 grid(*step_m, (court.baseline_x_m, court.half_line_x_m), y)
                     .filter(|&(x, y)| !inside_three || court.is_inside_three(x, y))
-                    .map(spot)
+                    .map(place)
                     .filter(is_possible)
                     .collect()
             }
             Self::Rectangle { step_m, x_m, y_m } => grid(*step_m, *x_m, *y_m)
-                .map(spot)
+                .map(place)
                 .filter(is_possible)
                 .collect(),
             Self::Arcs {
@@ -106,27 +106,28 @@ impl Region {
                             (distance * cos, distance * sin)
                         })
                     })
-                    .map(spot)
+                    .map(place)
                     .filter(is_possible)
                     .collect()
             }
             Self::ThreePointLine { step_m } => {
                 let along = court.along_three(*step_m);
-                along.into_iter().map(spot).filter(is_possible).collect()
+                along.into_iter().map(place).filter(is_possible).collect()
             }
             Self::Locations(locations) => {
-                let spots: Vec<CourtSpot> = locations.iter().copied().map(spot).collect();
-                for (row, spot) in spots.iter().enumerate() {
-                    spot.location()
+                let places: Vec<CourtPlace> = locations.iter().copied().map(place).collect();
+                for (row, place) in places.iter().enumerate() {
+                    place
+                        .location()
                         .check(physics)
                         .map_err(|error| (row, error))?;
                 }
-                spots
+                places
             }
         })
     }
 
-    /// About the number of spots, before any is computed.
+    /// About the number of places, before any is computed.
     #[must_use]
     pub fn size(&self, league: League) -> f64 {
         let court = league.court();

@@ -1,8 +1,8 @@
-//! The jobs of a sweep: what is computed, and which result belongs to which spot.
+//! The jobs of a sweep: what is computed, and which result belongs to which place.
 //!
-//! A spot on the right is the mirror image of one on the left, so only one of the two is computed.
+//! A place on the right is the mirror image of one on the left, so only one of the two is computed: the spot.
 
-use super::court_region::CourtSpot;
+use super::court_region::CourtPlace;
 use super::sweep_toml::SweepConfig;
 use crate::best_shot::ShotKind;
 
@@ -32,11 +32,11 @@ impl std::fmt::Display for Shard {
     }
 }
 
-/// Where the result of a spot comes from.
+/// Where the result of a place comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JobSource {
-    /// The spot.
-    pub spot: CourtSpot,
+    /// The place.
+    pub place: CourtPlace,
     /// The computed spot, an index of [`Jobs::spots`].
     pub computed: usize,
     /// Whether the result is the mirror image of the computed one.
@@ -47,10 +47,10 @@ pub struct JobSource {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jobs {
     /// The computed spots.
-    pub spots: Vec<CourtSpot>,
+    pub spots: Vec<CourtPlace>,
     /// The kinds of shots that are computed at each.
     pub kinds: Vec<ShotKind>,
-    /// For each spot of the region, in order, where its result comes from.
+    /// For each place of the region, in order, where its result comes from.
     pub sources: Vec<JobSource>,
 }
 
@@ -59,26 +59,26 @@ impl Jobs {
     #[must_use]
     pub fn new(config: &SweepConfig) -> Self {
         let uses_mirror = config.is_mirror_symmetric();
-        let mut spots: Vec<CourtSpot> = Vec::new();
+        let mut spots: Vec<CourtPlace> = Vec::new();
         let mut known = std::collections::HashMap::new();
         let sources = config
-            .spots
+            .places
             .iter()
-            .map(|&spot| {
-                let mirrored = uses_mirror && spot.y_m < 0.0;
+            .map(|&place| {
+                let mirrored = uses_mirror && place.y_m < 0.0;
                 // Adding 0 turns a negative zero into zero.
                 let (x_m, y_m) = (
-                    spot.x_m + 0.0,
-                    if mirrored { -spot.y_m } else { spot.y_m } + 0.0,
+                    place.x_m + 0.0,
+                    if mirrored { -place.y_m } else { place.y_m } + 0.0,
                 );
                 let computed = *known
                     .entry((x_m.to_bits(), y_m.to_bits()))
                     .or_insert_with(|| {
-                        spots.push(CourtSpot { x_m, y_m });
+                        spots.push(CourtPlace { x_m, y_m });
                         spots.len() - 1
                     });
                 JobSource {
-                    spot,
+                    place,
                     computed,
                     mirrored,
                 }

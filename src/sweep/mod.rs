@@ -1,6 +1,7 @@
-//! Best shots at every spot of a region, saved to disk as they are computed.
+//! Best shots at every place of a region, saved to disk as they are computed.
 //!
-//! A *job* is one kind of shot at one spot. [`SweepConfig`] says what is wanted, [`jobs`] lists it, [`run`] computes
+//! A *spot* is a place that is computed; the result of a mirrored place is that of its spot. A *job* is one kind
+//! of shot at one spot. [`SweepConfig`] says what is wanted, [`jobs`] lists it, [`run`] computes
 //! what is missing, [`result_store`] saves each result in SQLite with a checksum, [`sweep_folder`] joins the stores
 //! of all processes, and [`result_tables`] writes the final tables. The results on disk are the only state: whatever
 //! is killed, the same command continues.
@@ -20,7 +21,7 @@ mod shard_lock;
 pub mod sweep_folder;
 pub mod sweep_toml;
 
-pub use court_region::{CourtSpot, MAX_SPOTS, Region};
+pub use court_region::{CourtPlace, MAX_PLACES, Region};
 pub use folder_error::SweepFolderError;
 pub use shard_lock::{ShardLock, is_locked};
 pub use sweep_toml::{Compute, SourceTexts, SweepConfig};

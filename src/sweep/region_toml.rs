@@ -6,7 +6,7 @@ use crate::config::toml_reader::TableReader;
 use crate::units::Dimension;
 use std::f64::consts::FRAC_PI_2;
 
-/// Least spacing of spots, m and rad.
+/// Least spacing of places, m and rad.
 const MIN_STEP_M: f64 = 0.001;
 /// See [`MIN_STEP_M`].
 const MIN_STEP_RAD: f64 = 1e-5;

@@ -1,7 +1,7 @@
 //! The result of one job: a row of typed cells in SI units.
 
 use super::columns::{self, IntegerColumn, RealColumn, TextColumn};
-use super::court_region::CourtSpot;
+use super::court_region::CourtPlace;
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::{BestShot, Limit, NoShot, ShotKind};
 use crate::shooter::Profile;
@@ -71,7 +71,7 @@ impl ResultRow {
         (cells.len() == columns::ALL.len()).then_some(Self { job, cells })
     }
 
-    fn new(job: u64, kind: ShotKind, spot: &CourtSpot, status: JobStatus) -> Self {
+    fn new(job: u64, kind: ShotKind, spot: &CourtPlace, status: JobStatus) -> Self {
         let mut row = Self {
             job,
             cells: vec![Cell::Null; columns::ALL.len()],
@@ -88,7 +88,7 @@ impl ResultRow {
 
     /// A job that failed.
     #[must_use]
-    pub fn failed(job: u64, kind: ShotKind, spot: &CourtSpot, reason: &str) -> Self {
+    pub fn failed(job: u64, kind: ShotKind, spot: &CourtPlace, reason: &str) -> Self {
         let mut row = Self::new(job, kind, spot, JobStatus::Failed);
         let short: String = reason.chars().take(500).collect();
         row.set_text(columns::REASON, &short);
@@ -100,7 +100,7 @@ impl ResultRow {
     pub fn of_result(
         job: u64,
         kind: ShotKind,
-        spot: &CourtSpot,
+        spot: &CourtPlace,
         profile: &Profile,
         shot: &Result<BestShot, NoShot>,
     ) -> Self {
@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn prop_twice_mirrored_is_the_same_and_nothing_else_changes() {
-        let spot = CourtSpot {
+        let spot = CourtPlace {
             x_m: 10.0 * FOOT_M,
             y_m: 4.0 * FOOT_M,
         };

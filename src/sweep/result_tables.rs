@@ -1,4 +1,4 @@
-//! The final tables of a sweep: every spot of the region, mirror images included, in the order of the region.
+//! The final tables of a sweep: every place of the region, mirror images included, in the order of the region.
 //!
 //! The bytes depend on the results alone: not on threads, shards, restarts or machines.
 
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// One line of the tables.
 struct Line {
-    /// Number of the spot.
+    /// Number of the place.
     place: i64,
     mirrored: bool,
     /// The result in the units of the tables.
@@ -72,7 +72,7 @@ impl ResultTables {
         }
     }
 
-    /// The tables as CSV: a header, and one line for each spot and kind.
+    /// The tables as CSV: a header, and one line for each place and kind.
     #[must_use]
     pub fn csv(&self) -> Vec<u8> {
         let mut writer = csv::Writer::from_writer(Vec::new());

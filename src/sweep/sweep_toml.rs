@@ -1,6 +1,6 @@
 //! A sweep as a TOML file: from its text to a checked [`SweepConfig`].
 
-use super::court_region::{CourtSpot, MAX_SPOTS, Region};
+use super::court_region::{CourtPlace, MAX_PLACES, Region};
 use super::region_toml::read_region;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::ShotKind;
@@ -29,9 +29,9 @@ pub struct SweepConfig {
     pub compute: Compute,
     /// The shooter and the rest of a profile.
     pub settings: ProfileSettings,
-    /// The spots in the order of the results.
+    /// The places in the order of the results.
     #[serde(skip)]
-    pub spots: Vec<CourtSpot>,
+    pub places: Vec<CourtPlace>,
 }
 
 /// What is computed at each spot.
@@ -145,14 +145,14 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
         };
         root.report_unknown_keys(diagnostics);
         let region = region.filter(|_| read.is_valid)?;
-        let spots = list_spots(&region, league, &read.settings, &sweep_table, diagnostics)?;
+        let places = list_spots(&region, league, &read.settings, &sweep_table, diagnostics)?;
         Some(SweepConfig {
             name,
             league,
             region,
             compute,
             settings: read.settings,
-            spots,
+            places,
         })
     })
 }
@@ -228,13 +228,13 @@ fn list_spots(
     settings: &ProfileSettings,
     table: &TableReader<'_, '_>,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Option<Vec<CourtSpot>> {
-    let problem = if region.size(league) > MAX_SPOTS as f64 {
-        let message = format!("has more than {MAX_SPOTS} places; take a larger step");
+) -> Option<Vec<CourtPlace>> {
+    let problem = if region.size(league) > MAX_PLACES as f64 {
+        let message = format!("has more than {MAX_PLACES} places; take a larger step");
         table.diagnostic("region", message)
     } else {
-        match region.spots(league, &settings.physics) {
-            Ok(spots) if !spots.is_empty() => return Some(spots),
+        match region.places(league, &settings.physics) {
+            Ok(places) if !places.is_empty() => return Some(places),
             Ok(_) => table.diagnostic("region", "has no place that one can shoot from"),
             Err((row, error)) => table.diagnostic("places", format!("row {}: {error}", row + 1)),
         }

@@ -12,7 +12,7 @@ pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {
     let path = options.profile.display();
     if is_sweep(&read_text(&options.profile)?) {
         let (config, _) = load_sweep(&options.profile)?;
-        let (name, places) = (&config.name, config.spots.len());
+        let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
     let profile = load_profile(&options.profile)?;
