@@ -1,6 +1,6 @@
 //! P along each variable of a nominal shot, the others fixed.
 
-use crate::math::grid::Linspace;
+use crate::math::evenly_spaced::Linspace;
 use crate::math::sobol::Scramble;
 use crate::probability::{NominalProbabilities, Sampler};
 use crate::search_space::TablePlan;

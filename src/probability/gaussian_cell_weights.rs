@@ -5,7 +5,7 @@
 //! line. The points are then a lattice in four dimensions. Without the shifts the thin surfaces between made
 //! and missed alias with the grid (errors up to 0.018 in P).
 
-use crate::math::grid::CellAxis;
+use crate::math::evenly_spaced::CellAxis;
 use crate::math::normal_distribution;
 
 /// Shift of the speeds from line to line, in cells, per cell of pitch angle, polar angle and backspin. These

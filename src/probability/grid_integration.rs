@@ -8,7 +8,7 @@ use super::estimate::{Estimate, standard_error_of_mean};
 use super::gaussian_cell_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseDirection};
-use crate::math::grid::CellAxis;
+use crate::math::evenly_spaced::CellAxis;
 use crate::search_space::TablePlan;
 use crate::shooter::{Nominal, NominalVariable, Profile};
 use rand::rngs::ChaCha12Rng;

@@ -10,7 +10,7 @@ use super::gaussian_cell_weights::{
 };
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseDirection, Verdict};
-use crate::math::grid::CellAxis;
+use crate::math::evenly_spaced::CellAxis;
 use crate::model::BallState;
 use crate::search_space::{NominalGrid, TablePlan};
 use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseDispersion};

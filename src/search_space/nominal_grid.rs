@@ -1,6 +1,6 @@
 //! The nominal shots whose probabilities a table gives.
 
-use crate::math::grid::Linspace;
+use crate::math::evenly_spaced::Linspace;
 use crate::shooter::{Nominal, NominalVariable};
 use serde::Serialize;
 

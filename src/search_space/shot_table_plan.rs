@@ -2,7 +2,7 @@
 
 use super::nominal_grid::NominalGrid;
 use super::release_bracket::Bracket;
-use crate::math::grid::{CellAxis, Linspace};
+use crate::math::evenly_spaced::{CellAxis, Linspace};
 use crate::math::normal_distribution;
 use crate::shooter::{Nominal, NominalVariable, Profile, TableGrid};
 use serde::Serialize;

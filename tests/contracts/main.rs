@@ -8,5 +8,5 @@ mod instruction_sets;
 mod invalid_input;
 mod profiles;
 mod regressions;
-mod samples;
+mod sample_replay;
 mod threads;

@@ -1,6 +1,6 @@
 //! The files of a sweep: what is refused and how, and when a folder holds another sweep.
 
-use crate::common::{SWEEP, TestFolder, assert_code, assert_printed, bankshot, printed, tables};
+use crate::support::{SWEEP, TestFolder, assert_code, assert_printed, bankshot, printed, tables};
 use std::fs;
 
 #[test]

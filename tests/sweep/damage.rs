@@ -1,6 +1,6 @@
 //! Damaged and contradictory files: they are found, set aside or refused, and never used.
 
-use crate::common::{
+use crate::support::{
     JOBS, TestFolder, assert_code, assert_printed, bankshot, copy_unfinished, printed, store,
     tables,
 };

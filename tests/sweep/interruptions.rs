@@ -1,6 +1,6 @@
 //! Kills, panics and aborts: what was saved stays, and the tables are the same at the end.
 
-use crate::common::{
+use crate::support::{
     JOBS, SPOTS, TestFolder, assert_code, assert_printed, pause, printed, start, store, tables,
 };
 use rand::rngs::ChaCha12Rng;

@@ -3,11 +3,11 @@
 //! No test depends on how fast the machine is. A test that interrupts a sweep makes it wait at a spot with
 //! `--fault wait:SPOT:FILE`, and acts once the program says that it is there.
 
-mod common;
 mod configuration;
 mod damage;
 mod interruptions;
 mod results;
 mod shards;
 mod signals;
+mod support;
 mod system_call_faults;

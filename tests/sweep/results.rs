@@ -1,6 +1,6 @@
 //! The results: nothing that happens to the outputs loses one, and a mirrored one is right.
 
-use crate::common::{SWEEP, TestFolder, assert_code, bankshot, tables};
+use crate::support::{SWEEP, TestFolder, assert_code, bankshot, tables};
 use bankshot::best_shot;
 use bankshot::config::parse_profile;
 use bankshot::probability::Silent;

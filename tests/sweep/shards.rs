@@ -1,6 +1,6 @@
 //! Shards, threads, and several processes in one folder.
 
-use crate::common::{TestFolder, assert_code, assert_printed, bankshot, printed, stores, tables};
+use crate::support::{TestFolder, assert_code, assert_printed, bankshot, printed, stores, tables};
 use std::fs;
 
 #[test]
@@ -105,7 +105,7 @@ fn contract_all_shards_are_refused_while_one_is_running() {
     let out = test.out("shard");
     let (mut command, file) = test.waiting_command(&out, 0);
     command.args(["--shard", "1/2"]);
-    let shard = crate::common::WaitingSweep::start(command, file);
+    let shard = crate::support::WaitingSweep::start(command, file);
     let output = test.run(&out, &["--quiet"]);
     assert_code(&output, 75);
     assert_printed(&output, &format!("process {}", shard.child.id()));

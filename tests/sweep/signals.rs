@@ -1,7 +1,7 @@
 //! Signals and kills. All of them reach a sweep that waits at a spot, so the speed of the machine is irrelevant.
 #![cfg(unix)]
 
-use crate::common::{JOBS, TestFolder, WaitingSweep, assert_code, assert_printed, tables};
+use crate::support::{JOBS, TestFolder, WaitingSweep, assert_code, assert_printed, tables};
 use std::process::{Command, Stdio};
 
 /// Sends a signal to a process. The process may have ended already.

@@ -2,7 +2,7 @@
 //! Without it they are skipped, unless `BANKSHOT_NO_SKIP` is set.
 #![cfg(target_os = "linux")]
 
-use crate::common::{Tables, TestFolder, printed, store, tables};
+use crate::support::{Tables, TestFolder, printed, store, tables};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -6,7 +6,7 @@ use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::dynamics::BatchWorkspace;
-use bankshot::math::grid::CellAxis;
+use bankshot::math::evenly_spaced::CellAxis;
 use bankshot::output::json_record::{number, object, provenance};
 use bankshot::probability::MAX_BATCH_BYTES;
 use bankshot::search_space::{TablePlan, WideSample, sample_wide};

@@ -1,7 +1,7 @@
 //! The contacts of a batch with board and ring at once.
 
+use super::batch_state::Batch;
 use super::lane_block::{LaneBlock, bit, lanes_in};
-use super::running_batch::Batch;
 use super::workspace::Phase;
 use crate::dynamics::contact::double;
 use crate::dynamics::end_rules::is_lodged;

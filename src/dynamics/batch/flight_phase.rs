@@ -1,7 +1,7 @@
 //! The free flights of a batch: closed form, a block at a time.
 
+use super::batch_state::Batch;
 use super::lane_block::{LaneBlock, bit, lanes_in};
-use super::running_batch::Batch;
 use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};

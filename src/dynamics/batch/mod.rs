@@ -1,12 +1,12 @@
 //! Many shots at once in SIMD lanes, with the same bits as one at a time.
 
-mod board_phase;
+mod batch_state;
+mod board_contact_phase;
 mod double_contact_phase;
 mod flight_phase;
 mod instruction_set;
 mod lane_block;
-mod ring_phase;
-mod running_batch;
+mod ring_contact_phase;
 mod scheduler;
 mod single_contact_phase;
 mod workspace;

@@ -7,11 +7,11 @@
 //!
 //! The equations are those of the scalar code, so the verdicts are the same, bit for bit.
 
-use super::board_phase::board_contact;
+use super::batch_state::{Batch, Narrow, Wide};
+use super::board_contact_phase::board_contact;
 use super::double_contact_phase::board_and_ring;
 use super::flight_phase::fly;
-use super::ring_phase::ring_contact;
-use super::running_batch::{Batch, Narrow, Wide};
+use super::ring_contact_phase::ring_contact;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
 use crate::model::model_params::ModelParams;

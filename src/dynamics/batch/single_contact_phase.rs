@@ -1,7 +1,7 @@
 //! The contacts of a batch with one solid: the shots of a block step together.
 
+use super::batch_state::{Batch, Narrow};
 use super::lane_block::{LaneBlock, bit, lanes_in};
-use super::running_batch::{Batch, Narrow};
 use super::workspace::Phase;
 use crate::dynamics::contact::event_time::time_to_touch;
 use crate::dynamics::contact::single;

@@ -1,14 +1,14 @@
-//! The contacts of a batch with the ring.
+//! The contacts of a batch with the board.
 
-use super::running_batch::Batch;
+use super::batch_state::Batch;
 use crate::math::real::SimdReal;
 use fearless_simd::Simd;
 
-/// Steps the shots on the ring until they part or touch the board.
+/// Steps the shots on the board until they part or touch the ring.
 ///
 /// A function of its own in a module of its own, so that the compiler can translate the phases side by side.
 #[inline(never)]
-pub(super) fn ring_contact<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+pub(super) fn board_contact<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
 where
     S: Simd,
     T: SimdReal<Simd = S>,
@@ -17,7 +17,7 @@ where
         #[inline(always)]
         || {
             let params = batch.lane_params::<T>();
-            batch.single_contact(&params, &params.ring, &params.board);
+            batch.single_contact(&params, &params.board, &params.ring);
         },
     );
 }
