@@ -5,7 +5,7 @@
 //! with errors in polar angle and backspin from a Kronecker sequence. The shares of made shots are averaged with
 //! the normal densities of speed and pitch angle. Other errors are left out.
 
-use crate::dynamics::{BatchWorkspace, OutcomeKind, ReleaseDirection};
+use crate::dynamics::{BatchWorkspace, OutcomeKind, ReleaseWithoutSpeed};
 use crate::math::normal_distribution;
 use crate::model::BallState;
 use crate::shooter::{Nominal, Profile};
@@ -142,7 +142,7 @@ impl<'a> ProbabilityMap<'a> {
                     backspin_rad_s: self.nominal.backspin_rad_s + spin_sigma * spin,
                     ..*self.nominal
                 };
-                let direction = ReleaseDirection::new(&self.profile.release(&shot));
+                let direction = ReleaseWithoutSpeed::new(&self.profile.release(&shot));
                 starts.push(direction.state(shot.speed_m_s, shot.backspin_rad_s));
             }
         }

@@ -6,7 +6,7 @@ use crate::model::BallState;
 use crate::model::model_params::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
 
-/// Limits of a simulation that are no part of the equations.
+/// Limits of a simulation that are not part of the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotLimits {
     /// Longest step in contact, s.
@@ -19,13 +19,13 @@ pub(crate) struct ShotLimits {
 
 /// Whether a step in contact ends the shot, and how; lane by lane.
 #[derive(Clone, Copy)]
-pub(crate) struct ContactEnd<T: Real> {
+pub(crate) struct ShotEndFlags<T: Real> {
     behind_board: T::Mask,
     fell: T::Mask,
     too_late: T::Mask,
 }
 
-impl<T: Real> ContactEnd<T> {
+impl<T: Real> ShotEndFlags<T> {
     /// After a step in contact to `state` at `time_s` after the release.
     #[inline(always)]
     pub(crate) fn new(
@@ -47,19 +47,15 @@ impl<T: Real> ContactEnd<T> {
         self.behind_board | self.fell | self.too_late
     }
 
-    /// One number for each mask, in the order of [`ContactEnd::first_ending`].
+    /// Applies `f` to each mask, in the order of [`ShotEndFlags::first_ending`].
     #[inline(always)]
-    pub(crate) fn map<Value>(&self, number: impl Fn(T::Mask) -> Value) -> [Value; 3] {
-        [
-            number(self.behind_board),
-            number(self.fell),
-            number(self.too_late),
-        ]
+    pub(crate) fn map<Value>(&self, f: impl Fn(T::Mask) -> Value) -> [Value; 3] {
+        [f(self.behind_board), f(self.fell), f(self.too_late)]
     }
 }
 
-impl ContactEnd<f64> {
-    /// How the shot ended, if it did, from the values of [`ContactEnd::map`]. If several rules apply, the
+impl ShotEndFlags<f64> {
+    /// How the shot ended, if it did, from the values of [`ShotEndFlags::map`]. If several rules apply, the
     /// first one counts.
     #[inline(always)]
     pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<Ending> {
@@ -80,14 +76,14 @@ impl ContactEnd<f64> {
     }
 }
 
-/// Whether the centre is below `z = -R` and falls: nothing can touch the ball any more.
+/// Whether the centre is below `z = -R` and falls. The ring can no longer touch the ball, and the shot ends.
 #[inline(always)]
 pub(crate) fn fell_below_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     state.position_m.z.lt(-params.ball.radius) & state.velocity_m_s.z.is_negative()
 }
 
-/// Whether a flight that ended at `state`, without a touch, had risen above `z = -R`. A flight that does
-/// ends there; one that never rises so high ends at its highest point.
+/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -R`. One that never
+/// rises so high ends at its highest point.
 #[inline(always)]
 pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     let height = params.splat(-1.0) * params.ball.radius - TOUCH_GAP_M;

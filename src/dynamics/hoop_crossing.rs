@@ -1,10 +1,10 @@
 //! How the ball crosses the plane of the hoop: with the contacts, this decides between made and missed.
 //!
 //! A shot is made if it falls through `z = -R` inside the ring, has been above the plane of the hoop, and
-//! its centre never rose through the hoop from below. The last condition is taken literally: a ball that
+//! its centre never rose through the hoop from below. The last condition is the paper's, taken literally: a ball that
 //! dips below the plane inside the ring and bounces up through it again is missed, even if it then falls
-//! in (this turns 6 of a thousand shots that would otherwise be made into misses; `docs/model.md` gives the
-//! measured effect).
+//! in (6 of 1000 shots that would count as made without this condition are missed with it; `docs/model.md`
+//! gives the measured effect).
 
 use crate::math::real::Real;
 use crate::model::BallState;
@@ -43,7 +43,7 @@ impl<T: Real> HoopCrossing<T> {
         self.has_been_above = self.has_been_above | rises;
     }
 
-    /// Updates the crossings after a step in contact, in the lanes that made one.
+    /// Updates the crossings after a step in contact, in the lanes of `stepped`.
     #[inline(always)]
     pub(crate) fn after_step(
         &mut self,

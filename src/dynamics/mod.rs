@@ -2,7 +2,7 @@
 //!
 //! [`Simulator`] is the interface. Behind it are two integrators: the default
 //! [`Integrator::EventDriven`], and the paper's own method, [`Integrator::PaperRk4`]. Both use the same
-//! solids and contact forces (Eqs. 2-14 of the paper).
+//! solids, normal force and sliding friction (Eqs. 2-14 of the paper); the default adds rolling.
 //!
 //! # Terms
 //!
@@ -10,17 +10,23 @@
 //! |---|---|
 //! | `R`, `R_H` | radius of the ball; radius of the ring's circle |
 //! | `u`, `N`, `mu` | compression of the ball, normal force (per unit of mass), coefficient of friction |
-//! | slip | velocity of the contact point along the surface |
-//! | sliding, rolling | the slip is not zero; the slip is zero and stays zero |
-//! | stuck | the slip is zero, whether or not it stays so |
+//! | slip, slip rate | velocity of the contact point along the surface, and its derivative |
+//! | sliding | friction is `mu N`, against the slip or the slip that is about to start |
+//! | rolling | less friction than `mu N` keeps the slip at zero |
+//! | at zero slip | rolling, or about to roll or slide |
+//! | solid | the board or the ring |
 //! | single, double contact | with one solid, with board and ring at once |
 //! | segment | one flight, or one single or double contact, of a shot |
-//! | step | one time step within a contact |
-//! | batch | the shots of one call of [`Simulator::verdicts`] |
+//! | step | one time step |
+//! | batch | the shots of one call of [`Simulator::verdicts`], simulated in SIMD lanes |
 //! | lane | one element of a SIMD number; it holds one shot |
-//! | slot | the memory of one shot in progress within a batch |
+//! | slot | the index of the memory of one shot in progress within a batch |
+//! | block | the shots in the lanes of one step |
+//! | phase | the kind of segment that a shot waits for |
 //!
-//! The type parameter `T` is the number type: `f64` for one shot, a SIMD number for one shot a lane.
+//! The type parameter `T` is the number type: `f64` for one shot, a SIMD number for one shot a lane. A constant
+//! in all lanes needs a token of the vector instructions, which every SIMD number holds: so `x.zero()` is zero in
+//! the lanes of `x`. `a.select(mask, b)` is `a` where `mask` holds and `b` elsewhere.
 
 mod batch;
 mod contact;
@@ -37,6 +43,6 @@ mod trace;
 
 pub use batch::{BatchWorkspace, InstructionSet};
 pub use outcome::{ContactSequence, Ending, Entry, Outcome, OutcomeKind, Verdict};
-pub use release::{Release, ReleaseDirection};
+pub use release::{Release, ReleaseWithoutSpeed};
 pub use simulator::{Integrator, Simulator, SimulatorError, StateError};
 pub use trace::{Event, EventKind, Sample, Trace};

@@ -133,11 +133,12 @@ pub enum OutcomeKind {
     Short,
     /// Missed beyond the hoop (a bank shot: it came too far off the board).
     Long,
-    /// Missed to the left or right by more than short or long.
+    /// Missed more to the side than short or long.
     Wide,
     /// Missed: the ball went behind the board ([`Ending::BehindBoard`]), over it or past its edge.
     OverBoard,
-    /// Missed: the ball came to rest on ring and board, or was still in play at the time limit.
+    /// Missed: the ball never came off ring and board ([`Ending::Lodged`]), or was still in play at the time
+    /// limit.
     Lodged,
     /// Missed without touching anything.
     Airball,
@@ -208,7 +209,7 @@ impl fmt::Display for OutcomeKind {
     }
 }
 
-/// The last fall of the ball through the plane of the hoop.
+/// The last fall of the ball through the plane of the hoop, inside or outside the ring.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Entry {
     /// Angle of the path below the horizontal, rad (0 to pi/2).

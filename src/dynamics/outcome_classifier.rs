@@ -18,8 +18,8 @@ pub(crate) struct OutcomeClassifier {
     was_inside: bool,
     board_point_m: Option<(f64, f64, f64)>,
     /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop.
-    aim_m: Option<(f64, f64)>,
-    /// The first contact was with the board, and the flight after it has not come yet.
+    undisturbed_crossing_m: Option<(f64, f64)>,
+    /// The first contact was with the board, and the flight after it has not begun.
     awaits_flight_off_board: bool,
 }
 
@@ -40,7 +40,7 @@ impl OutcomeClassifier {
             apex_m: z,
             was_inside: false,
             board_point_m: None,
-            aim_m: None,
+            undisturbed_crossing_m: None,
             awaits_flight_off_board: false,
         }
     }
@@ -54,10 +54,10 @@ impl OutcomeClassifier {
         self.was_inside |= (x * x + y * y).sqrt() < self.ring_radius_m;
     }
 
-    /// The point [`OutcomeClassifier::aim_m`] relative to the hoop's centre: beyond it and to its right,
+    /// The point [`OutcomeClassifier::undisturbed_crossing_m`] relative to the hoop's centre: beyond it and to its right,
     /// facing the hoop (a bank shot: the board), m.
     fn aim_beyond_and_right(&self) -> (f64, f64) {
-        let (x, y) = self.aim_m.unwrap_or((0.0, 0.0));
+        let (x, y) = self.undisturbed_crossing_m.unwrap_or((0.0, 0.0));
         let (ahead_x, ahead_y) = self.towards_hoop;
         match self.first_contact {
             Some(SolidId::Board) => (x, y),
@@ -116,9 +116,10 @@ impl Observer for OutcomeClassifier {
         if discriminant >= 0.0 {
             let t = (v.z + discriminant.sqrt()) / params.ball.gravity;
             let crossing = (p.x + v.x * t, p.y + v.y * t);
-            let is_first_flight = self.aim_m.is_none() && self.first_contact.is_none();
+            let is_first_flight =
+                self.undisturbed_crossing_m.is_none() && self.first_contact.is_none();
             if is_first_flight || self.awaits_flight_off_board {
-                self.aim_m = Some(crossing);
+                self.undisturbed_crossing_m = Some(crossing);
             }
             if t > 0.0 && t <= dt {
                 self.record_entry(crossing, Vec3::new(v.x, v.y, v.z - params.ball.gravity * t));

@@ -32,7 +32,7 @@ impl Release {
     /// The nine state variables at the release (Eq. 18).
     #[must_use]
     pub fn state(&self) -> BallState {
-        ReleaseDirection::new(self).state(self.speed_m_s, self.backspin_rad_s)
+        ReleaseWithoutSpeed::new(self).state(self.speed_m_s, self.backspin_rad_s)
     }
 
     /// The same release mirrored in the plane of symmetry (y -> -y).
@@ -48,10 +48,9 @@ impl Release {
     }
 }
 
-/// The location, directions and other spins of a release, without speed and backspin. Their sines and
-/// cosines are computed once for many shots.
+/// A release without its speed and backspin. Its sines and cosines are computed once for many shots.
 #[derive(Clone, Copy, Debug)]
-pub struct ReleaseDirection {
+pub struct ReleaseWithoutSpeed {
     position_m: Vec3<f64>,
     sin_pitch: f64,
     cos_pitch: f64,
@@ -61,8 +60,8 @@ pub struct ReleaseDirection {
     side_spin_rad_s: f64,
 }
 
-impl ReleaseDirection {
-    /// The location, directions and other spins of `release`.
+impl ReleaseWithoutSpeed {
+    /// `release` without its speed and backspin.
     #[must_use]
     pub fn new(release: &Release) -> Self {
         let (sin_pitch, cos_pitch) = libm::sincos(release.pitch_rad);
@@ -86,11 +85,15 @@ impl ReleaseDirection {
     /// The nine state variables at the release with this speed and backspin (Eq. 18).
     #[must_use]
     pub fn state(&self, speed_m_s: f64, backspin_rad_s: f64) -> BallState {
-        let level = speed_m_s * self.cos_pitch;
+        let horizontal_speed = speed_m_s * self.cos_pitch;
         let (sin, cos) = (self.sin_polar, self.cos_polar);
         BallState {
             position_m: self.position_m,
-            velocity_m_s: Vec3::new(-level * cos, -level * sin, speed_m_s * self.sin_pitch),
+            velocity_m_s: Vec3::new(
+                -horizontal_speed * cos,
+                -horizontal_speed * sin,
+                speed_m_s * self.sin_pitch,
+            ),
             spin_rad_s: Vec3::new(
                 self.rifle_spin_rad_s * cos - backspin_rad_s * sin,
                 self.rifle_spin_rad_s * sin + backspin_rad_s * cos,

@@ -101,7 +101,7 @@ pub enum SimulatorError {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("release {index} has a value that is not finite: {state:?}")]
 pub struct StateError {
-    /// Position in the batch; 0 for a single shot.
+    /// Position among the releases; 0 for a single shot.
     pub index: usize,
     /// The state at the release.
     pub state: BallState,
@@ -284,7 +284,7 @@ impl Simulator {
         Ok(recorder.into_trace(&self.params, classifier.outcome(verdict)))
     }
 
-    /// What the ball touches first in flight, if anything.
+    /// What the ball touches first in flight; `None` if nothing, or if it comes beside the board first.
     #[must_use]
     pub fn first_touch(&self, release: &Release) -> Option<SolidId> {
         FlightEvents::new(&self.params, &release.state()).first_touch()

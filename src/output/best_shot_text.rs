@@ -164,7 +164,11 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
         let sensitivity = &shot.sensitivity;
         // Writing to a String does not fail, here and below.
         let _ = writeln!(text, "{}, gains in points of P (0.01):", kind.name());
-        let _ = writeln!(text, "  makes within {}", windows_text(sensitivity, units));
+        let _ = writeln!(
+            text,
+            "  made over a range of {}",
+            windows_text(sensitivity, units)
+        );
         add_errors(&mut text, &sensitivity.errors);
         if let Some(gain) = sensitivity.backspin_gain() {
             let verdict = if gain.is_surely_positive() {
@@ -189,15 +193,11 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
 fn windows_text(sensitivity: &Sensitivity, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     let width = |window: &ShotWindow| match window.variable {
-        NominalVariable::Speed => format!("speed {:.2} {long}/s wide", window.width() / metre),
-        variable => format!(
-            "{} {:.1} deg wide",
-            variable.name(),
-            window.width() / DEGREE_RAD
-        ),
+        NominalVariable::Speed => format!("speed {:.2} {long}/s", window.width() / metre),
+        variable => format!("{} {:.1} deg", variable.name(), window.width() / DEGREE_RAD),
     };
     let widths: Vec<String> = sensitivity.windows.iter().map(width).collect();
-    format!("{}, each with the others exact", widths.join(", "))
+    format!("{}, one at a time", widths.join(", "))
 }
 
 fn add_errors(text: &mut String, errors: &[ErrorCost]) {

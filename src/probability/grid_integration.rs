@@ -7,7 +7,7 @@
 use super::estimate::{Estimate, standard_error_of_mean};
 use super::gaussian_cell_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
 use super::progress::Progress;
-use crate::dynamics::{BatchWorkspace, ReleaseDirection};
+use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed};
 use crate::math::evenly_spaced::CellAxis;
 use crate::search_space::TablePlan;
 use crate::shooter::{Nominal, NominalVariable, Profile};
@@ -191,7 +191,7 @@ impl<'a> Grid<'a> {
         if angle_weight == 0.0 {
             return GridSum::default();
         }
-        let direction = ReleaseDirection::new(&self.profile.release(&Nominal {
+        let direction = ReleaseWithoutSpeed::new(&self.profile.release(&Nominal {
             pitch_rad,
             polar_rad,
             ..*self.nominal

@@ -9,7 +9,7 @@ use super::gaussian_cell_weights::{
     weight_matrix,
 };
 use super::progress::Progress;
-use crate::dynamics::{BatchWorkspace, ReleaseDirection, Verdict};
+use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed, Verdict};
 use crate::math::evenly_spaced::CellAxis;
 use crate::model::BallState;
 use crate::search_space::{NominalGrid, TablePlan};
@@ -273,7 +273,7 @@ impl TableSimulation<'_> {
         let Some(line) = line else {
             return;
         };
-        let direction = ReleaseDirection::new(&self.profile.release(&Nominal {
+        let direction = ReleaseWithoutSpeed::new(&self.profile.release(&Nominal {
             speed_m_s: 0.0,
             pitch_rad,
             polar_rad,

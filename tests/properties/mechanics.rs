@@ -3,7 +3,7 @@
 use crate::common::{
     disagreements, event_driven, free_throw_uniform, release, side_uniform, verdicts,
 };
-use bankshot::dynamics::{OutcomeKind, Release, Sample, Simulator};
+use bankshot::dynamics::{Ending, Integrator, OutcomeKind, Release, Sample, Simulator};
 use bankshot::math::vector::Vec3;
 use bankshot::model::{BallState, Physics, SolidId};
 use proptest::prelude::*;
@@ -268,5 +268,26 @@ proptest! {
         let outcome = simulator.simulate(&release).unwrap();
         prop_assert!(outcome.verdict.time_s.is_finite() && outcome.apex_m.is_finite());
         prop_assert!(outcome.kind != OutcomeKind::Unresolved, "{release:?}");
+    }
+}
+
+#[test]
+fn contract_a_ball_released_below_the_ring_and_falling_ends_at_once() {
+    let release = Release {
+        distance_m: 3.0,
+        court_angle_rad: 0.0,
+        height_above_hoop_m: -1.0,
+        speed_m_s: 2.0,
+        pitch_rad: -0.5,
+        polar_rad: 0.0,
+        backspin_rad_s: 0.0,
+        rifle_spin_rad_s: 0.0,
+        side_spin_rad_s: 0.0,
+    };
+    for integrator in [Integrator::EVENT_DRIVEN, Integrator::PAPER_RK4] {
+        let simulator = Simulator::with_integrator(&Physics::paper(), integrator).unwrap();
+        let verdict = simulator.simulate(&release).unwrap().verdict;
+        assert_eq!(verdict.ending, Ending::NeverRose, "{integrator:?}");
+        assert!(verdict.time_s < 0.1, "{integrator:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::lane_block::LaneBlock;
 use super::workspace::{BatchWorkspace, Phase};
-use crate::dynamics::end_rules::{ContactEnd, ShotLimits};
+use crate::dynamics::end_rules::{ShotEndFlags, ShotLimits};
 use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS};
 use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
@@ -74,8 +74,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
 
     /// Records the end of a shot in contact.
     #[inline(always)]
-    pub(super) fn finish_contact(&mut self, slot: u32, end: [bool; 3], made: bool) {
-        if let Some(ending) = ContactEnd::first_ending(end) {
+    pub(super) fn finish_shot_in_contact(&mut self, slot: u32, end: [bool; 3], made: bool) {
+        if let Some(ending) = ShotEndFlags::first_ending(end) {
             let made = ending == Ending::Fell && made;
             self.workspace.finish(slot, ending, made);
         }

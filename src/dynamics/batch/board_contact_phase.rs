@@ -4,9 +4,9 @@ use super::batch_state::Batch;
 use crate::math::real::SimdReal;
 use fearless_simd::Simd;
 
-/// Steps the shots on the board until they part or touch the ring.
+/// Steps the shots on the board until they leave it, touch the ring or end, or another phase can use the lanes better.
 ///
-/// A function of its own in a module of its own, so that the compiler can translate the phases side by side.
+/// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
 pub(super) fn board_contact<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
 where

@@ -14,7 +14,7 @@ use fearless_simd::Simd;
 
 /// Steps the shots on board and ring until one contact is left or the ball is lodged.
 ///
-/// A function of its own in a module of its own, so that the compiler can translate the phases side by side.
+/// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
 pub(super) fn board_and_ring<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
 where
@@ -51,9 +51,9 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 block.load_friction(self.simd, SolidId::Ring),
             ];
             let step = double::step(params, solids, &mut shots.state, &mut friction, longest);
-            let left = [
-                step.parted[0] | !solids.0.faces(&shots.state),
-                step.parted[1] | !solids.1.faces(&shots.state),
+            let separated = [
+                step.separated[0] | !solids.0.faces(&shots.state),
+                step.separated[1] | !solids.1.faces(&shots.state),
             ];
             let stepped = step.dt.is_positive();
             let rolling_times =
@@ -67,25 +67,29 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             }
             let ended = T::mask_to_bits(end.any() & stepped);
             let lodged = T::mask_to_bits(lodged);
-            let left = [T::mask_to_bits(left[0]), T::mask_to_bits(left[1])];
+            let separated = [T::mask_to_bits(separated[0]), T::mask_to_bits(separated[1])];
             let made = T::mask_to_bits(shots.crossing.is_made(params, &shots.state));
             let end = end.map(
                 #[inline(always)]
                 |mask| T::mask_to_bits(mask),
             );
-            let done = ended | lodged | left[0] | left[1];
+            let done = ended | lodged | separated[0] | separated[1];
             for lane in lanes_in(done & block.occupied()) {
                 let slot = block.slot(lane);
                 let shot = &mut self.workspace.slots[slot as usize];
                 block.remove(lane, shot);
                 if bit(ended, lane) {
-                    self.finish_contact(slot, end.map(|rule| bit(rule, lane)), bit(made, lane));
+                    self.finish_shot_in_contact(
+                        slot,
+                        end.map(|rule| bit(rule, lane)),
+                        bit(made, lane),
+                    );
                 } else if bit(lodged, lane) {
                     self.workspace.finish(slot, Ending::Lodged, false);
                 } else {
                     let friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
-                    let left = left.map(|left| bit(left, lane));
-                    shot.contact = ContactState::after_double(left, friction, 0.0);
+                    let separated = separated.map(|separated| bit(separated, lane));
+                    shot.contact = ContactState::after_double(separated, friction, 0.0);
                     self.workspace.enqueue(slot);
                 }
             }

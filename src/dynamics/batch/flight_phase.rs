@@ -14,7 +14,7 @@ use fearless_simd::Simd;
 
 /// Flies every shot that waits for flight, to its end or its next touch.
 ///
-/// A function of its own in a module of its own, so that the compiler can translate the phases side by side.
+/// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
 pub(super) fn fly<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
 where
@@ -47,7 +47,9 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             shots.time_s = shots.time_s + dt;
             let late = params.splat(self.limits.time_limit_s).lt(shots.time_s);
             let end = FlightEnd {
-                rare: T::mask_to_bits(flight.beside_board.lt(dt) | flight.unresolved | late),
+                needs_scalar: T::mask_to_bits(
+                    flight.beside_board.lt(dt) | flight.unresolved | late,
+                ),
                 made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
                 touches: [
                     T::mask_to_bits(flight.touch_of(SolidId::Board).le(dt)),
@@ -56,8 +58,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
             };
             block.store(&shots);
-            let occupied = T::ALL >> (T::LANES - slots.len());
-            self.finish_flights(&mut block, slots, occupied, &end);
+            let real_lanes = T::ALL >> (T::LANES - slots.len());
+            self.finish_flights(&mut block, slots, real_lanes, &end);
         }
         self.workspace.return_queue(queue);
     }
@@ -69,14 +71,14 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         &mut self,
         block: &mut LaneBlock,
         slots: &[u32],
-        occupied: LaneBits,
+        real_lanes: LaneBits,
         end: &FlightEnd,
     ) {
-        let mut remaining = occupied;
-        for lane in lanes_in(occupied) {
+        let mut remaining = real_lanes;
+        for lane in lanes_in(real_lanes) {
             let shot = &mut self.workspace.slots[slots[lane] as usize];
             shot.contact = ContactState::Free;
-            if bit(end.rare, lane) || shot.segments >= MAX_SEGMENTS {
+            if bit(end.needs_scalar, lane) || shot.segments >= MAX_SEGMENTS {
                 remaining &= !(1 << lane);
                 self.run_scalar(slots[lane]);
                 continue;
@@ -84,14 +86,13 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             shot.segments += 1;
             block.remove(lane, shot);
         }
-        let new = FrictionState::new(self.params);
-        // If the ball touches both at once, the ring counts.
+        let new_friction = FrictionState::new(self.params);
         for solid in [SolidId::Ring, SolidId::Board] {
             let touches = end.touches[solid.index()];
             for lane in lanes_in(remaining & touches) {
                 let shot = &mut self.workspace.slots[slots[lane] as usize];
                 shot.contacts.push(solid);
-                shot.contact = ContactState::Single(solid, new);
+                shot.contact = ContactState::Single(solid, new_friction);
                 self.workspace
                     .queue_mut(Phase::Single(solid))
                     .push(slots[lane]);
@@ -108,8 +109,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
 
 /// How the flights of a block ended, lane by lane.
 struct FlightEnd {
-    /// Left to the scalar form.
-    rare: LaneBits,
+    /// Left to the scalar code, which repeats the flight from its start.
+    needs_scalar: LaneBits,
     made: LaneBits,
     /// The ball touches each solid.
     touches: [LaneBits; SolidId::COUNT],

@@ -1,7 +1,7 @@
 //! Eight or sixteen shots side by side, one in each lane.
 
 use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::end_rules::ContactEnd;
+use crate::dynamics::end_rules::ShotEndFlags;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
 use crate::math::real::{LaneArray, LaneBits, SimdReal};
@@ -17,8 +17,8 @@ pub(super) struct LaneBlock {
     /// The nine state variables.
     state: [LaneArray; 9],
     times_s: LaneArray,
-    /// [`FrictionState::zero_slip`] of each solid.
-    zero_slips: [LaneArray; SolidId::COUNT],
+    /// [`FrictionState::slip_tolerance`] of each solid.
+    slip_tolerances: [LaneArray; SolidId::COUNT],
     rolling_times_s: LaneArray,
     slots: [u32; ZEROS.len()],
     flags: LaneFlags,
@@ -71,7 +71,7 @@ impl LaneBlock {
         Self {
             state: [ZEROS; 9],
             times_s: ZEROS,
-            zero_slips: [ZEROS; SolidId::COUNT],
+            slip_tolerances: [ZEROS; SolidId::COUNT],
             rolling_times_s: ZEROS,
             slots: [0; ZEROS.len()],
             flags: LaneFlags::default(),
@@ -142,7 +142,7 @@ impl LaneBlock {
                     lane,
                     friction.rolling_failed,
                 );
-                self.zero_slips[solid.index()][lane] = friction.zero_slip;
+                self.slip_tolerances[solid.index()][lane] = friction.slip_tolerance;
             };
             match &slots[self.slots[lane] as usize].contact {
                 ContactState::Free => {}
@@ -190,7 +190,7 @@ impl LaneBlock {
         FrictionState {
             rolling: bit(self.flags.rolling[solid.index()], lane),
             rolling_failed: bit(self.flags.rolling_failed[solid.index()], lane),
-            zero_slip: self.zero_slips[solid.index()][lane],
+            slip_tolerance: self.slip_tolerances[solid.index()][lane],
         }
     }
 
@@ -242,7 +242,7 @@ impl LaneBlock {
         FrictionState {
             rolling: T::mask_from_bits(simd, self.flags.rolling[solid.index()]),
             rolling_failed: T::mask_from_bits(simd, self.flags.rolling_failed[solid.index()]),
-            zero_slip: T::load(simd, &self.zero_slips[solid.index()]),
+            slip_tolerance: T::load(simd, &self.slip_tolerances[solid.index()]),
         }
     }
 
@@ -255,8 +255,8 @@ impl LaneBlock {
         self.flags.rolling[solid.index()] = T::mask_to_bits(friction.rolling);
         self.flags.rolling_failed[solid.index()] = T::mask_to_bits(friction.rolling_failed);
         friction
-            .zero_slip
-            .store(&mut self.zero_slips[solid.index()]);
+            .slip_tolerance
+            .store(&mut self.slip_tolerances[solid.index()]);
     }
 
     #[inline(always)]
@@ -279,10 +279,10 @@ impl<T: SimdReal> LaneShots<T> {
         before: &BallState<T>,
         dt: T,
         time_limit_s: f64,
-    ) -> ContactEnd<T> {
+    ) -> ShotEndFlags<T> {
         self.time_s = self.time_s + dt;
         self.crossing
             .after_step(params, before, &self.state, dt.is_positive());
-        ContactEnd::new(params, &self.state, self.time_s, time_limit_s)
+        ShotEndFlags::new(params, &self.state, self.time_s, time_limit_s)
     }
 }

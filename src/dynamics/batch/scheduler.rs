@@ -3,9 +3,11 @@
 //! The shots wait in queues by phase: flight, contact with one solid, contact with two. Flights are closed
 //! form and are done a block at a time. In contact the shots of a block step together. Finished lanes are
 //! refilled at once, so short and long contacts mix without waiting. Rare events (from one contact to two,
-//! the board's edges, the time limit) are left to the scalar code; after them the shot waits in a queue again.
+//! the board's edges, the time limit in flight, an unresolved search) are left to the scalar code; after them the
+//! shot waits in a queue again.
 //!
-//! The equations are those of the scalar code, so the verdicts are the same, bit for bit.
+//! It is the same generic code as for one shot, with the same operations in the same order. So the verdicts are
+//! the same, bit for bit.
 
 use super::batch_state::{Batch, Narrow, Wide};
 use super::board_contact_phase::board_contact;
@@ -26,7 +28,7 @@ pub(crate) fn run(
     starts: &[BallState],
     workspace: &mut BatchWorkspace,
 ) {
-    // `dispatch!` would also compile the shots for SSE4.2. That would take a third more time to compile and
+    // `dispatch!` would also compile the batch for SSE4.2. That would take a third more time to compile and
     // gain little over SSE2.
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = level.as_avx512() {

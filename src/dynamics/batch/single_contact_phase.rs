@@ -33,18 +33,22 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             let before = shots.state;
             let bound = max_acceleration(params, solid, &before, longest);
             let approach = other.approach(&params.ball, &before, bound, longest);
-            let leaves = T::mask_to_bits(!solid.faces(&before) | approach.has_arrived());
+            let needs_scalar = T::mask_to_bits(!solid.faces(&before) | approach.has_arrived());
             // Half of the lanes fit into a narrower block.
             let few = block.occupied().count_ones() as usize <= T::LANES / 2
                 && T::LANES > Narrow::<S>::LANES;
             let suspended = few || self.should_suspend::<T>(&block, phase);
-            let removed = if suspended { block.occupied() } else { leaves };
+            let removed = if suspended {
+                block.occupied()
+            } else {
+                needs_scalar
+            };
             for lane in lanes_in(removed & block.occupied()) {
                 let slot = block.slot(lane);
                 let shot = &mut self.workspace.slots[slot as usize];
                 block.remove(lane, shot);
                 shot.contact = ContactState::Single(A::ID, block.friction(A::ID, lane));
-                if bit(leaves, lane) {
+                if bit(needs_scalar, lane) {
                     self.run_scalar(slot);
                 } else {
                     self.workspace.queue_mut(phase).push(slot);
@@ -66,11 +70,11 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             let end = shots.after_step(params, &before, step.dt, self.limits.time_limit_s);
             block.store(&shots);
             block.store_friction(A::ID, &friction);
-            let done = T::mask_to_bits(step.parted | end.any()) & block.occupied();
+            let done = T::mask_to_bits(step.separated | end.any()) & block.occupied();
             if done == 0 {
                 continue;
             }
-            let parted = T::mask_to_bits(step.parted);
+            let separated = T::mask_to_bits(step.separated);
             let made = T::mask_to_bits(shots.crossing.is_made(params, &shots.state));
             let end = end.map(
                 #[inline(always)]
@@ -79,10 +83,14 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             for lane in lanes_in(done) {
                 let slot = block.slot(lane);
                 block.remove(lane, &mut self.workspace.slots[slot as usize]);
-                if bit(parted, lane) {
+                if bit(separated, lane) {
                     self.workspace.queue_mut(Phase::Flight).push(slot);
                 } else {
-                    self.finish_contact(slot, end.map(|rule| bit(rule, lane)), bit(made, lane));
+                    self.finish_shot_in_contact(
+                        slot,
+                        end.map(|rule| bit(rule, lane)),
+                        bit(made, lane),
+                    );
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::end_rules::ShotLimits;
 use crate::dynamics::integrators::event_driven::{
-    self, ContactState, ShotProgress, solids_pressed_at_start,
+    self, ContactState, ShotProgress, solids_touched_at_release,
 };
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::model::model_params::ModelParams;
@@ -38,7 +38,7 @@ pub(super) enum Phase {
 
 impl Phase {
     pub(super) const COUNT: usize = SolidId::COUNT + 2;
-    /// Every phase, in the order in which they are worked off.
+    /// Every phase, in the order in which they are processed.
     pub(super) const ALL: [Self; Self::COUNT] = [
         Self::Flight,
         Self::Single(SolidId::Board),
@@ -85,7 +85,7 @@ impl BatchWorkspace {
         starts: &[BallState],
     ) {
         while let Some(start) = starts.get(self.started) {
-            if solids_pressed_at_start(params, start).contains(&true) {
+            if solids_touched_at_release(params, start).contains(&true) {
                 self.verdicts[self.started] = event_driven::run(params, limits, *start, &mut ());
                 self.started += 1;
                 continue;

@@ -3,8 +3,10 @@
 //! The mechanics are those of the single contact, with both forces in one balance. Where both contacts
 //! roll, their frictions are coupled: four linear equations keep both slips at zero.
 
-use super::friction::{DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, zero_slip_after};
-use super::normal_force::{NormalForce, ZERO_FORCE_M_S2, has_parted};
+use super::friction::{
+    DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, slip_tolerance_after,
+};
+use super::normal_force::{FORCE_TOLERANCE_M_S2, NormalForce, has_separated};
 use super::single::SHORTEST_STEP_S;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
@@ -39,13 +41,13 @@ macro_rules! for_both {
 pub(crate) struct DoubleContactStep<T: Real> {
     /// Length of the step, s.
     pub(crate) dt: T,
-    /// The ball has left the first, the second solid; nothing was integrated.
-    pub(crate) parted: [T::Mask; 2],
+    /// Whether the ball has left each solid. If it has left any, nothing was integrated.
+    pub(crate) separated: [T::Mask; 2],
     /// Impulses of both contacts per unit of mass, m/s.
     pub(crate) impulses: [Vec3<T>; 2],
 }
 
-/// Least slip speed that counts as zero after a step meant to end the slip, m/s. The force of the other
+/// Lower bound of the slip tolerance after a step meant to end the slip, m/s. The force of the other
 /// contact turns the slip as it decreases, so each such step leaves about half of it.
 const SLIP_ENDED_M_S: f64 = 1e-3;
 
@@ -88,7 +90,7 @@ impl<T: Real> ContactPair<T> {
         Self {
             axes: [axes_of(params, first_frame), axes_of(params, second_frame)],
             lever_over_inertia: for_both!(i => kinematics[i].lever * params.ball.mass_over_inertia),
-            normals: for_both!(i => kinematics[i].normal_acceleration(&materials[i])),
+            normals: for_both!(i => kinematics[i].normal_force(&materials[i])),
             kinematics,
             materials,
         }
@@ -156,18 +158,18 @@ impl<T: Real> ContactPair<T> {
         if !(rolling[FIRST] | rolling[SECOND]).any() {
             return sliding;
         }
-        let wanted = for_both!(i => {
+        let right_side = for_both!(i => {
             let rate = self.frictionless_slip_rate(i, self.normal_only(params, 1 - i));
             (-rate).select(rolling[i], sliding[i])
         });
-        self.solve(params, rolling, wanted)
+        self.solve(params, rolling, right_side)
     }
 
-    /// The tangential accelerations `a` at both contacts that change the slips of the `held` contacts at the
-    /// `wanted` rates `w`. Those of the other contacts are `wanted` themselves.
+    /// The tangential accelerations `a` at both contacts that change the slips of the `constrained` contacts at the
+    /// rates `w`, the right side. For a contact that is not constrained, `w` is its tangential acceleration.
     ///
     /// The tangential acceleration at a contact changes the slip there equally in both directions, by the
-    /// slip compliance `s = 1 + lever^2 m/I`, and the slip at the other contact by a coupling matrix `C`:
+    /// inverse effective mass `s = 1 + lever^2 m/I`, and the slip at the other contact by a coupling matrix `C`:
     ///
     /// ```text
     /// s_1 a_1 + C_12 a_2 = w_1        (s_2 - C_21 C_12/s_1) a_2 = w_2 - C_21 w_1/s_1
@@ -177,18 +179,18 @@ impl<T: Real> ContactPair<T> {
     fn solve(
         &self,
         params: &ModelParams<T>,
-        held: [T::Mask; 2],
-        wanted: [Vec2<T>; 2],
+        constrained: [T::Mask; 2],
+        right_side: [Vec2<T>; 2],
     ) -> [Vec2<T>; 2] {
-        let [w_1, w_2] = wanted;
+        let [w_1, w_2] = right_side;
         let [s_1, s_2] = for_both!(i => {
-            let compliance = self.kinematics[i].slip_compliance(&params.ball);
-            compliance.select(held[i], params.one())
+            let compliance = self.kinematics[i].inverse_effective_mass(&params.ball);
+            compliance.select(constrained[i], params.one())
         });
-        let [c_12, c_21] = for_both!(i => self.coupling(params, i, held[i]));
+        let [c_12, c_21] = for_both!(i => self.coupling(params, i, constrained[i]));
         let inverse_s_1 = params.one() / s_1;
         let from_first = c_21.times(Vec2::new(w_1.x * inverse_s_1, w_1.y * inverse_s_1));
-        let right_side = Vec2::new(w_2.x - from_first.x, w_2.y - from_first.y);
+        let reduced = Vec2::new(w_2.x - from_first.x, w_2.y - from_first.y);
         let product = c_21.product_scaled(&c_12, inverse_s_1);
         let matrix = Matrix2 {
             a: s_2 - product.a,
@@ -196,7 +198,7 @@ impl<T: Real> ContactPair<T> {
             c: -product.c,
             d: s_2 - product.d,
         };
-        let a_2 = matrix.solve(params, right_side, s_2);
+        let a_2 = matrix.solve(params, reduced, s_2);
         let from_second = c_12.times(a_2);
         let a_1 = Vec2::new(
             (w_1.x - from_second.x) * inverse_s_1,
@@ -205,17 +207,22 @@ impl<T: Real> ContactPair<T> {
         [a_1, a_2]
     }
 
-    /// The slip rates at a contact for unit tangential accelerations at the other one, where `held`.
+    /// The slip rates at a contact for unit tangential accelerations at the other one, where `constrained`.
     #[inline(always)]
-    fn coupling(&self, params: &ModelParams<T>, contact: usize, held: T::Mask) -> Matrix2<T> {
+    fn coupling(
+        &self,
+        params: &ModelParams<T>,
+        contact: usize,
+        constrained: T::Mask,
+    ) -> Matrix2<T> {
         let (zero, one) = (params.zero(), params.one());
         let first = self.slip_rate_from_other(contact, ContactVector::new(zero, one, zero));
         let second = self.slip_rate_from_other(contact, ContactVector::new(zero, zero, one));
         Matrix2 {
-            a: first.x.select(held, zero),
-            b: second.x.select(held, zero),
-            c: first.y.select(held, zero),
-            d: second.y.select(held, zero),
+            a: first.x.select(constrained, zero),
+            b: second.x.select(constrained, zero),
+            c: first.y.select(constrained, zero),
+            d: second.y.select(constrained, zero),
         }
     }
 
@@ -302,38 +309,38 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
 ) -> DoubleContactStep<T> {
     let start = *state;
     let mut pair = ContactPair::new(params, solids, state);
-    let parted = for_both!(i => has_parted(&pair.kinematics[i]));
-    let any_parted = parted[FIRST] | parted[SECOND];
+    let separated = for_both!(i => has_separated(&pair.kinematics[i]));
+    let any_separated = separated[FIRST] | separated[SECOND];
     let no_impulse = Vec3::splat(params.zero());
-    if any_parted.all() {
+    if any_separated.all() {
         return DoubleContactStep {
             dt: params.zero(),
-            parted,
+            separated,
             impulses: [no_impulse; 2],
         };
     }
 
     // 1. Slips that have ended are removed by friction's own impulses.
-    let stuck = for_both!(i => {
+    let at_zero_slip = for_both!(i => {
         let slip = pair.kinematics[i].slip();
-        friction[i].rolling | slip.norm_squared().le(friction[i].zero_slip.squared())
+        friction[i].rolling | slip.norm_squared().le(friction[i].slip_tolerance.squared())
     });
     let mut impulses = [no_impulse; 2];
-    if (stuck[FIRST] | stuck[SECOND]).any() {
-        impulses = remove_slips(params, solids, state, &mut pair, stuck);
+    if (at_zero_slip[FIRST] | at_zero_slip[SECOND]).any() {
+        impulses = remove_slips(params, solids, state, &mut pair, at_zero_slip);
     }
 
-    // 2. Which contacts roll: the stuck ones whose friction suffices. If it does not suffice for one, that
+    // 2. Which contacts roll: the at_zero_slip ones whose friction suffices. If it does not suffice for one, that
     //    one slides, and the other is solved for again.
     let slips = for_both!(i => pair.kinematics[i].slip());
-    let slip_speeds = for_both!(i => params.zero().select(stuck[i], slips[i].norm()));
+    let slip_speeds = for_both!(i => params.zero().select(at_zero_slip[i], slips[i].norm()));
     let limits = for_both!(i => pair.friction_limit(i));
-    let mut rolling = for_both!(i => stuck[i] & !friction[i].rolling_failed);
+    let mut rolling = for_both!(i => at_zero_slip[i] & !friction[i].rolling_failed);
     let mut fails_now = [params.splat_mask(false); 2];
     // For a contact that does not roll: the direction of its slip, or in which it would slip.
     let directions = for_both!(i => {
         let slip_rate = pair.frictionless_slip_rate(i, pair.normal_only(params, 1 - i));
-        let slip_or_slip_rate = slip_rate.select(stuck[i], slips[i]);
+        let slip_or_slip_rate = slip_rate.select(at_zero_slip[i], slips[i]);
         let size = slip_or_slip_rate.norm();
         let inverse_size = params.one() / size.select(size.is_positive(), params.one());
         Vec2::new(slip_or_slip_rate.x * inverse_size, slip_or_slip_rate.y * inverse_size)
@@ -378,14 +385,14 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
             tangent: frictions[1 - i],
         };
         let slip_rate = pair.frictionless_slip_rate(i, other);
-        let slip_compliance = pair.kinematics[i].slip_compliance(&params.ball);
+        let inverse_effective_mass = pair.kinematics[i].inverse_effective_mass(&params.ball);
         let balance = FrictionBalance {
             slip: slip_speeds[i],
-            slip_rate: slip_rate.dot(directions[i]) - limits[i] * slip_compliance,
-            slip_compliance,
-            friction_reserve: Real::max(limits[i] - frictions[i].norm(), params.splat(ZERO_FORCE_M_S2)),
+            slip_rate: slip_rate.dot(directions[i]) - limits[i] * inverse_effective_mass,
+            inverse_effective_mass,
+            friction_reserve: Real::max(limits[i] - frictions[i].norm(), params.splat(FORCE_TOLERANCE_M_S2)),
             // With two contacts this is hard to predict; the rate of the limit is not.
-            d_required_d_compression_acceleration: params.zero(),
+            d_required_d_compression_rate: params.zero(),
         };
         balance.time_to_change(params, pair.materials[i].friction_coefficient, &forces[i], rolling[i])
     });
@@ -413,19 +420,21 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
         let ends_slip = changes[i].le(next_event) & !rolling[i];
         let loading = forces[i].rate.is_positive();
         let rolling_failed = (friction[i].rolling_failed | fails_now[i]) & !loading;
-        let zero_slip = zero_slip_after(ends_slip, slip_speeds[i], SLIP_ENDED_M_S);
+        let slip_tolerance = slip_tolerance_after(ends_slip, slip_speeds[i], SLIP_ENDED_M_S);
         friction[i] = FrictionState {
-            rolling: friction[i].rolling.select(any_parted, rolling[i]),
+            rolling: friction[i].rolling.select(any_separated, rolling[i]),
             rolling_failed: friction[i]
                 .rolling_failed
-                .select(any_parted, rolling_failed),
-            zero_slip: friction[i].zero_slip.select(any_parted, zero_slip),
+                .select(any_separated, rolling_failed),
+            slip_tolerance: friction[i]
+                .slip_tolerance
+                .select(any_separated, slip_tolerance),
         };
     }
-    *state = start.select(any_parted, next);
+    *state = start.select(any_separated, next);
     DoubleContactStep {
-        dt: params.zero().select(any_parted, dt),
-        parted,
+        dt: params.zero().select(any_separated, dt),
+        separated,
         impulses,
     }
 }
@@ -468,18 +477,19 @@ pub(crate) fn rolling_time<T: Real>(friction: &[FrictionState<T>; 2], before: T,
     )
 }
 
-/// Removes the slips of the stuck contacts together; returns the impulses per unit of mass.
+/// Removes the slips of the at_zero_slip contacts together; returns the impulses per unit of mass.
 #[inline(always)]
 fn remove_slips<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,
     solids: (&A, &B),
     state: &mut BallState<T>,
     pair: &mut ContactPair<T>,
-    stuck: [T::Mask; 2],
+    at_zero_slip: [T::Mask; 2],
 ) -> [Vec3<T>; 2] {
     let zero = params.zero();
-    let wanted = for_both!(i => (-pair.kinematics[i].slip()).select(stuck[i], Vec2::splat(zero)));
-    let slip_impulses = pair.solve(params, stuck, wanted);
+    let right_side =
+        for_both!(i => (-pair.kinematics[i].slip()).select(at_zero_slip[i], Vec2::splat(zero)));
+    let slip_impulses = pair.solve(params, at_zero_slip, right_side);
     let impulses = for_both!(i => {
         let impulse = ContactVector {
             normal: zero,
@@ -517,9 +527,9 @@ mod tests {
     #[test]
     fn prop_held_slips_change_at_the_wanted_rates() {
         let (params, pair) = pair();
-        let wanted = [Vec2::new(0.7, -0.4), Vec2::new(-0.2, 0.5)];
-        for held in [[true, true], [true, false], [false, true], [false, false]] {
-            let found = pair.solve(&params, held, wanted);
+        let right_side = [Vec2::new(0.7, -0.4), Vec2::new(-0.2, 0.5)];
+        for constrained in [[true, true], [true, false], [false, true], [false, false]] {
+            let found = pair.solve(&params, constrained, right_side);
             for i in [FIRST, SECOND] {
                 let force = |contact: usize| ContactVector {
                     normal: 0.0,
@@ -527,8 +537,12 @@ mod tests {
                 };
                 let own = pair.slip_rate(i, pair.response(i, force(i)));
                 let other = pair.slip_rate_from_other(i, force(1 - i));
-                let expected = if held[i] { own + other } else { found[i] };
-                assert!((expected - wanted[i]).norm() < 1e-12, "{held:?}");
+                let expected = if constrained[i] {
+                    own + other
+                } else {
+                    found[i]
+                };
+                assert!((expected - right_side[i]).norm() < 1e-12, "{constrained:?}");
             }
         }
     }

@@ -6,8 +6,8 @@ use crate::model::BallState;
 use crate::model::model_params::ModelParams;
 use crate::model::solids::Approach;
 
-/// A step that ends a roll or a force goes this factor beyond the predicted time, so that the next step
-/// starts after the event and not, again and again, just before it.
+/// A step meant to end rolling or the normal force is longer than predicted by this factor. Otherwise the next
+/// step could start just before the event again.
 pub(crate) const OVERSHOOT: f64 = 1.03;
 
 /// The time until an event, as a fraction. The earliest of several events is found without a division,

@@ -5,8 +5,8 @@ use super::normal_force::NormalForce;
 use crate::math::real::Real;
 use crate::model::model_params::ModelParams;
 
-/// Slip speed that counts as zero, m/s.
-const ZERO_SLIP_M_S: f64 = 1e-9;
+/// A slip speed up to this counts as zero, m/s.
+const SLIP_TOLERANCE_M_S: f64 = 1e-9;
 /// A step that is meant to end the slip may leave this fraction of it. Friction's own impulse removes the
 /// rest. (With 0.05 there were more steps and no better agreement.)
 const SLIP_REMAINDER: f64 = 0.2;
@@ -22,29 +22,29 @@ pub(crate) struct FrictionState<T: Real = f64> {
     /// Rolling needed more than mu N. The ball slides until N grows again; otherwise it would switch
     /// between the two in tiny steps.
     pub(crate) rolling_failed: T::Mask,
-    /// Slip speed that counts as zero: what a step meant to end at zero slip may leave, m/s.
-    pub(crate) zero_slip: T,
+    /// A slip speed up to this counts as zero: what a step meant to end at zero slip may leave, m/s.
+    pub(crate) slip_tolerance: T,
 }
 
 impl<T: Real> FrictionState<T> {
     /// A contact that has just begun.
     #[inline(always)]
     pub(crate) fn new(params: &ModelParams<T>) -> Self {
-        let no = params.splat_mask(false);
+        let no_lanes = params.splat_mask(false);
         Self {
-            rolling: no,
-            rolling_failed: no,
-            zero_slip: params.splat(ZERO_SLIP_M_S),
+            rolling: no_lanes,
+            rolling_failed: no_lanes,
+            slip_tolerance: params.splat(SLIP_TOLERANCE_M_S),
         }
     }
 }
 
-/// Slip speed that counts as zero after a step from the slip `speed`. It is larger where the step was
-/// meant to end the slip: [`SLIP_REMAINDER`] of it, and at least `at_least` m/s.
+/// The slip speed up to which the slip counts as zero after a step from the slip `speed`. It is larger where
+/// the step was meant to end the slip: [`SLIP_REMAINDER`] of it, and at least `at_least` m/s.
 #[inline(always)]
-pub(crate) fn zero_slip_after<T: Real>(ends_slip: T::Mask, speed: T, at_least: f64) -> T {
+pub(crate) fn slip_tolerance_after<T: Real>(ends_slip: T::Mask, speed: T, at_least: f64) -> T {
     let remainder = Real::max(speed * SLIP_REMAINDER, speed.splat(at_least));
-    remainder.select(ends_slip, speed.splat(ZERO_SLIP_M_S))
+    remainder.select(ends_slip, speed.splat(SLIP_TOLERANCE_M_S))
 }
 
 /// The quantities that decide when friction changes between sliding and rolling.
@@ -54,11 +54,11 @@ pub(crate) struct FrictionBalance<T> {
     /// Rate of the slip speed while the ball slides.
     pub(crate) slip_rate: T,
     /// Rate of the slip for a unit of friction per unit of mass.
-    pub(crate) slip_compliance: T,
+    pub(crate) inverse_effective_mass: T,
     /// mu N less the friction that rolling needs.
     pub(crate) friction_reserve: T,
-    /// Derivative of the friction that rolling needs with respect to u''. (Its other changes are slow.)
-    pub(crate) d_required_d_compression_acceleration: T,
+    /// Derivative of the friction that rolling needs with respect to u'. (Its other changes are slow.)
+    pub(crate) d_required_d_compression_rate: T,
 }
 
 impl<T: Real> FrictionBalance<T> {
@@ -67,17 +67,17 @@ impl<T: Real> FrictionBalance<T> {
     pub(crate) fn time_to_change(
         &self,
         params: &ModelParams<T>,
-        friction: T,
+        friction_coefficient: T,
         force: &NormalForce<T>,
         rolling: T::Mask,
     ) -> EventTime<T> {
-        let limit_rate = friction * force.rate;
-        let slip_second_derivative = -(limit_rate * self.slip_compliance);
-        let required_rate =
-            self.d_required_d_compression_acceleration * force.compression_acceleration;
+        let limit_rate = friction_coefficient * force.rate;
+        let slip_second_derivative = -(limit_rate * self.inverse_effective_mass);
+        let required_rate = self.d_required_d_compression_rate * force.compression_acceleration;
         let c0 = self.friction_reserve.select(rolling, self.slip);
         let c1 = (limit_rate - required_rate).select(rolling, self.slip_rate);
-        let c2 = (friction * force.second_derivative).select(rolling, slip_second_derivative);
+        let c2 = (friction_coefficient * force.second_derivative)
+            .select(rolling, slip_second_derivative);
         let possible = c0.is_positive() | rolling;
         first_root(params, c0, c1, c2)
             .scaled(params.splat(OVERSHOOT).select(rolling, params.one()))

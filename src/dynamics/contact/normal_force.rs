@@ -6,15 +6,15 @@ use crate::model::model_params::ModelParams;
 use crate::model::solids::{ContactKinematics, Material};
 
 /// Normal acceleration that counts as zero, m/s^2 (a bounce reaches a thousand).
-pub(crate) const ZERO_FORCE_M_S2: f64 = 0.5;
-/// Compression at which an outgoing ball has parted, m.
-const PARTED_M: f64 = 1e-7;
-/// The same for a ball faster than [`FAST_M_S`]: the rest of the way takes microseconds.
-const PARTED_FAST_M: f64 = 2e-5;
+pub(crate) const FORCE_TOLERANCE_M_S2: f64 = 0.5;
+/// Compression at which an outgoing ball has left the solid, m.
+const SEPARATED_M: f64 = 1e-7;
+/// The same for a ball faster than [`FAST_M_S`]: the rest of the way takes at most 0.2 ms.
+const SEPARATED_FAST_M: f64 = 2e-5;
 /// Speed away from the solid that counts as fast, m/s.
 const FAST_M_S: f64 = 0.1;
-/// Longest time by which a parting step moves the ball, s.
-pub(crate) const PARTING_STEP_S: f64 = PARTED_FAST_M / FAST_M_S;
+/// Longest time by which a separation step moves the ball, s.
+pub(crate) const SEPARATION_STEP_S: f64 = SEPARATED_FAST_M / FAST_M_S;
 
 /// The normal force of a contact per unit of mass, and its derivatives in time.
 pub(crate) struct NormalForce<T> {
@@ -52,7 +52,7 @@ impl<T: Real> NormalForce<T> {
     }
 
     /// Time until the force ends: until it is zero (an outgoing ball reaches zero force before zero
-    /// compression) or, where it is zero already or will not be, until the compression is zero.
+    /// compression) or, if it is zero already or is not predicted to reach zero, until the compression is zero.
     #[inline(always)]
     pub(crate) fn time_to_end(
         &self,
@@ -60,7 +60,7 @@ impl<T: Real> NormalForce<T> {
         material: &Material<T>,
         kinematics: &ContactKinematics<T>,
     ) -> EventTime<T> {
-        let pressing = params.splat(ZERO_FORCE_M_S2).lt(self.value);
+        let pressing = params.splat(FORCE_TOLERANCE_M_S2).lt(self.value);
         let (u, du, ddu) = (
             kinematics.compression.positive_part(),
             -kinematics.velocity.normal,
@@ -91,7 +91,7 @@ impl<T: Real> NormalForce<T> {
         };
         let valid = slope.is_negative() & refined.numerator.is_positive() & found;
         // Where the force ends: a little beyond it, but not so far that a ball with little damping would
-        // be past its parting.
+        // already have separated.
         let beyond = Real::min(
             end.numerator * OVERSHOOT,
             end.numerator + material.relaxation_time * end.denominator,
@@ -104,12 +104,12 @@ impl<T: Real> NormalForce<T> {
     }
 }
 
-/// Whether the ball has left the solid: it moves away, and the compression is gone but for what the
-/// parting step makes up.
+/// Whether the ball has left the solid: it moves away, and the compression is so small that the separation
+/// step can remove it.
 #[inline(always)]
-pub(crate) fn has_parted<T: Real>(kinematics: &ContactKinematics<T>) -> T::Mask {
+pub(crate) fn has_separated<T: Real>(kinematics: &ContactKinematics<T>) -> T::Mask {
     let v = kinematics.velocity.normal;
     let fast = v.splat(FAST_M_S).lt(v);
-    let threshold = v.splat(PARTED_FAST_M).select(fast, v.splat(PARTED_M));
+    let threshold = v.splat(SEPARATED_FAST_M).select(fast, v.splat(SEPARATED_M));
     v.is_positive() & kinematics.compression.le(threshold)
 }

@@ -1,23 +1,25 @@
-//! Contact with one solid: RK4 steps that end on the events of friction.
+//! Contact with one solid: RK4 steps that end at contact events.
 //!
 //! A bounce slides, rolls, slides again and, where the normal force is negative just before the ball
-//! parts, has no friction. The force has a kink or a jump at each change, so no step spans one. The times
-//! until the slip reaches zero, rolling needs more than mu N, N reaches zero and the ball parts are
+//! separates, has no friction. The force has a kink or a jump at each change, so no step spans one. The times
+//! until the slip reaches zero, rolling needs more than mu N, N reaches zero and the ball separates are
 //! predicted from the derivatives at the start of the step. The step is the shortest of them.
 //!
-//! Sliding is the paper's law (Eqs. 3 and 13). Rolling is its exact limit (a Filippov sliding mode; the
+//! Sliding is the paper's law (Eqs. 3 and 13). Rolling is its exact limit (a Filippov solution on the surface of zero slip; the
 //! paper's Appendix 2 approaches it by chattering): the friction that keeps the slip at zero.
 
 use super::event_time::EventTime;
-use super::friction::{DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, zero_slip_after};
-use super::normal_force::{NormalForce, PARTING_STEP_S, has_parted};
+use super::friction::{
+    DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, slip_tolerance_after,
+};
+use super::normal_force::{NormalForce, SEPARATION_STEP_S, has_separated};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::model_params::ModelParams;
 use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Solid};
 use crate::model::{BallState, StateDerivative};
 
-/// Least slip speed that counts as zero after a step meant to end the slip, m/s: what the shortest step at
+/// Lower bound of the slip tolerance after a step meant to end the slip, m/s: what the shortest step at
 /// the strongest friction overshoots by.
 const SLIP_ENDED_M_S: f64 = 2e-4;
 /// Shortest step, s.
@@ -28,7 +30,7 @@ pub(crate) struct SingleContactStep<T: Real> {
     /// Length of the step, s.
     pub(crate) dt: T,
     /// The ball has left the solid; it was moved to zero compression, and no time is counted.
-    pub(crate) parted: T::Mask,
+    pub(crate) separated: T::Mask,
 }
 
 /// The derivative of the state under a normal and friction acceleration given along (n, 1, 2).
@@ -70,7 +72,7 @@ fn stage<T: Real, S: Solid<T>>(
     direction: SlipDirection<T>,
 ) -> StateDerivative<T> {
     let (kinematics, frame) = solid.contact(&params.ball, state);
-    let normal = kinematics.normal_acceleration(solid.material());
+    let normal = kinematics.normal_force(solid.material());
     let limit = solid.material().friction_coefficient * normal.positive_part();
     let (slip, initial) = (kinematics.slip(), direction.initial);
     let has_direction = direction.threshold.lt(slip.dot(initial));
@@ -86,7 +88,7 @@ fn stage<T: Real, S: Solid<T>>(
             .frictionless_slip_rate()
             .select(rolling, numerator);
         denominator = kinematics
-            .slip_compliance(&params.ball)
+            .inverse_effective_mass(&params.ball)
             .select(rolling, denominator);
     }
     let factor = -(params.one() / denominator);
@@ -104,13 +106,13 @@ fn remove_slip<T: Real, F: ContactFrame<T>>(
     state: &mut BallState<T>,
     (kinematics, frame): (&mut ContactKinematics<T>, F),
     impulse_per_slip: T,
-    stuck: T::Mask,
+    at_zero_slip: T::Mask,
 ) {
     let zero = params.zero();
     let slip = kinematics.slip();
     let impulse = Vec2::new(
-        (-(impulse_per_slip * slip.x)).select(stuck, zero),
-        (-(impulse_per_slip * slip.y)).select(stuck, zero),
+        (-(impulse_per_slip * slip.x)).select(at_zero_slip, zero),
+        (-(impulse_per_slip * slip.y)).select(at_zero_slip, zero),
     );
     let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
     let angular_impulse = Vec2::new(
@@ -127,7 +129,7 @@ fn remove_slip<T: Real, F: ContactFrame<T>>(
 }
 
 /// Advances the ball in contact with `solid` by one step of at most `longest`, or finds that it has
-/// parted.
+/// separated.
 ///
 /// `time_to_other` gives, for the state and the acceleration of the ball, the time until something outside this contact
 /// (a touch of another solid) must end the step.
@@ -142,68 +144,76 @@ pub(crate) fn step<T: Real, S: Solid<T>>(
 ) -> SingleContactStep<T> {
     let material = solid.material();
     let (mut kinematics, frame) = solid.contact(&params.ball, state);
-    let parted = has_parted(&kinematics);
-    if parted.all() {
-        finish_parting(params, solid, state, (&kinematics, frame), parted);
+    let separated = has_separated(&kinematics);
+    if separated.all() {
+        finish_separation(params, solid, state, (&kinematics, frame), separated);
         return SingleContactStep {
             dt: params.zero(),
-            parted,
+            separated,
         };
     }
 
     // 1. Which balls stick: those that roll, and those whose slip has ended.
     let slip = kinematics.slip();
-    let stuck = (friction.rolling | slip.norm_squared().le(friction.zero_slip.squared())) & !parted;
-    let slip_compliance = kinematics.slip_compliance(&params.ball);
-    // Only stuck contacts need it.
+    let at_zero_slip =
+        (friction.rolling | slip.norm_squared().le(friction.slip_tolerance.squared())) & !separated;
+    let inverse_effective_mass = kinematics.inverse_effective_mass(&params.ball);
+    // Only at_zero_slip contacts need it.
     let mut impulse_per_slip = params.one();
-    if stuck.any() {
-        impulse_per_slip = params.one() / slip_compliance;
+    if at_zero_slip.any() {
+        impulse_per_slip = params.one() / inverse_effective_mass;
         remove_slip(
             params,
             state,
             (&mut kinematics, frame),
             impulse_per_slip,
-            stuck,
+            at_zero_slip,
         );
     }
-    let normal = kinematics.normal_acceleration(material);
+    let normal = kinematics.normal_force(material);
     let limit = material.friction_coefficient * normal.positive_part();
     let normal_acceleration = normal + kinematics.gravity.normal + kinematics.frame_acceleration();
     let force = NormalForce::new(material, &kinematics, normal, normal_acceleration);
 
-    // 2. The direction of the slip (or the direction in which a stuck ball would slip), and friction.
+    // 2. The direction of the slip (or the direction in which a at_zero_slip ball would slip), and friction.
     let slip_rate = kinematics.frictionless_slip_rate();
-    let driving = slip_rate.select(stuck, slip);
-    let driving_rate = driving.norm();
-    let inverse_size = params.one() / driving_rate.select(driving_rate.is_positive(), params.one());
-    let direction = Vec2::new(driving.x * inverse_size, driving.y * inverse_size);
-    let required_friction = impulse_per_slip * driving_rate;
+    let slip_or_slip_rate = slip_rate.select(at_zero_slip, slip);
+    let slip_or_slip_rate_size = slip_or_slip_rate.norm();
+    let inverse_size = params.one()
+        / slip_or_slip_rate_size.select(slip_or_slip_rate_size.is_positive(), params.one());
+    let direction = Vec2::new(
+        slip_or_slip_rate.x * inverse_size,
+        slip_or_slip_rate.y * inverse_size,
+    );
+    let required_friction = impulse_per_slip * slip_or_slip_rate_size;
     let suffices = required_friction.le(limit);
     let loading = force.rate.is_positive();
-    let rolling_failed = (friction.rolling_failed | (stuck & !suffices)) & !loading;
-    let rolling = stuck & suffices & !rolling_failed;
-    let slip_speed = params.zero().select(stuck, driving_rate);
+    let rolling_failed = (friction.rolling_failed | (at_zero_slip & !suffices)) & !loading;
+    let rolling = at_zero_slip & suffices & !rolling_failed;
+    let slip_speed = params.zero().select(at_zero_slip, slip_or_slip_rate_size);
     let stage_direction = SlipDirection {
         initial: direction,
         threshold: slip_speed * DIRECTION_SLIP_FRACTION,
     };
-    let friction_size = -required_friction.select(rolling, limit);
+    let friction_along_direction = -required_friction.select(rolling, limit);
 
     // 3. The step ends at the first event.
     let end_of_force = force.time_to_end(params, material, &kinematics);
     let balance = FrictionBalance {
         slip: slip_speed,
-        slip_rate: slip_rate.dot(direction) - limit * slip_compliance,
-        slip_compliance,
+        slip_rate: slip_rate.dot(direction) - limit * inverse_effective_mass,
+        inverse_effective_mass,
         friction_reserve: limit - required_friction,
-        d_required_d_compression_acceleration: impulse_per_slip
+        d_required_d_compression_rate: impulse_per_slip
             * kinematics.d_slip_rate_d_compression_rate(direction),
     };
     let change = balance.time_to_change(params, material.friction_coefficient, &force, rolling);
     let contact = ContactVector {
         normal,
-        tangent: Vec2::new(friction_size * direction.x, friction_size * direction.y),
+        tangent: Vec2::new(
+            friction_along_direction * direction.x,
+            friction_along_direction * direction.y,
+        ),
     };
     let k1 = derivative(params, state, (&kinematics, frame), contact);
     let end = end_of_force
@@ -237,35 +247,35 @@ pub(crate) fn step<T: Real, S: Solid<T>>(
     );
     let next = state.runge_kutta_step([&k1, &k2, &k3, &k4], dt);
 
-    if parted.any() {
-        finish_parting(params, solid, state, (&kinematics, frame), parted);
+    if separated.any() {
+        finish_separation(params, solid, state, (&kinematics, frame), separated);
     }
-    *state = state.select(parted, next);
+    *state = state.select(separated, next);
     *friction = FrictionState {
         rolling,
         rolling_failed,
-        zero_slip: zero_slip_after(ends_slip, slip_speed, SLIP_ENDED_M_S),
+        slip_tolerance: slip_tolerance_after(ends_slip, slip_speed, SLIP_ENDED_M_S),
     };
     SingleContactStep {
-        dt: params.zero().select(parted, dt),
-        parted,
+        dt: params.zero().select(separated, dt),
+        separated,
     }
 }
 
-/// Moves a ball that has parted to zero compression, forwards or backwards.
+/// Moves a ball that has separated to zero compression, forwards or backwards.
 #[inline(always)]
-fn finish_parting<T: Real, S: Solid<T>>(
+fn finish_separation<T: Real, S: Solid<T>>(
     params: &ModelParams<T>,
     solid: &S,
     state: &mut BallState<T>,
     (kinematics, frame): (&ContactKinematics<T>, S::Frame),
-    parted: T::Mask,
+    separated: T::Mask,
 ) {
-    let most = params.splat(PARTING_STEP_S);
-    let dt = kinematics.compression / kinematics.velocity.normal.select(parted, params.one());
-    let dt = Real::max(Real::min(dt, most), -most).select(parted, params.zero());
+    let max_shift_s = params.splat(SEPARATION_STEP_S);
+    let dt = kinematics.compression / kinematics.velocity.normal.select(separated, params.one());
+    let dt = Real::max(Real::min(dt, max_shift_s), -max_shift_s).select(separated, params.zero());
     let contact = ContactVector {
-        normal: kinematics.normal_acceleration(solid.material()),
+        normal: kinematics.normal_force(solid.material()),
         tangent: Vec2::splat(params.zero()),
     };
     let last = derivative(params, state, (kinematics, frame), contact);

@@ -1,13 +1,16 @@
-//! The first touch of the board: the centre reaches the plane `x = R - a`, linear in time.
+//! The first touch of the board: the centre reaches the *touch plane*, the ball's radius in front of the *face
+//! plane*. In free flight x is linear in time.
 
 use super::height_crossing::{falling_time, rising_time};
-use super::ring_search::MIN_JUMP_S;
 use crate::math::real::Real;
 use crate::model::BallState;
 use crate::model::model_params::ModelParams;
 use crate::model::solids::Solid;
 
-/// Times at which the ball touches the board, and at which it reaches the plane of the board beside it.
+/// A ball that passed the touch plane longer ago than this overlaps the board, s.
+const OVERLAP_TOLERANCE_S: f64 = 1e-9;
+
+/// Times at which the ball touches the board, and at which it reaches the touch plane outside the rectangle.
 #[inline(always)]
 pub(super) fn board_times<T: Real>(
     params: &ModelParams<T>,
@@ -19,7 +22,7 @@ pub(super) fn board_times<T: Real>(
     let approaching = v.x.is_negative();
     let speed = (-v.x).select(approaching, params.one());
     let reach = (p.x - board.touch_x) / speed;
-    let overlapping = reach.lt(params.splat(-MIN_JUMP_S));
+    let overlapping = reach.lt(params.splat(-OVERLAP_TOLERANCE_S));
     let t = reach.positive_part();
     let y = p.y + v.y * t;
     let z = p.z + v.z * t - params.ball.half_gravity * t * t;
@@ -32,9 +35,9 @@ pub(super) fn board_times<T: Real>(
     )
 }
 
-/// For a ball whose centre is beside the board's rectangle at the time `from` of its arc, nearer to the
-/// plane than its radius: the times at which the centre comes in front of the rectangle, and at which it
-/// passes the plane of the face.
+/// For a ball whose centre is beside the rectangle at the time `from` of its flight, between the touch plane and
+/// the face plane: the times at which the centre comes in front of the rectangle, and at which it passes the face
+/// plane.
 pub(super) fn entry_from_beside(params: &ModelParams, state: &BallState, from: f64) -> (f64, f64) {
     /// Time after a crossing at which to look: on the edge itself the ball is still beside the rectangle.
     const PAST_S: f64 = 1e-9;

@@ -17,8 +17,8 @@ use crate::model::model_params::ModelParams;
 
 /// F at which an approaching ball touches the ring, as a fraction of R^2.
 const TOUCH_TOLERANCE: f64 = 1e-10;
-/// Shortest jump, s; a shorter one is left to the bounded step.
-pub(super) const MIN_JUMP_S: f64 = 1e-9;
+/// Shortest jump, s; a shorter one is left to the safe step.
+const MIN_JUMP_S: f64 = 1e-9;
 /// Limit on the iterations. The search needs one or two, seldom more than ten.
 const MAX_ITERATIONS: u32 = 200;
 
@@ -28,7 +28,7 @@ struct HorizontalMotion<T: Real> {
     /// p.v.
     dot: T,
     /// x v_y - y v_x.
-    moment: T,
+    angular_momentum: T,
     distance_squared: T,
     /// The ball moves straight up or down.
     is_vertical: T::Mask,
@@ -47,15 +47,18 @@ impl<T: Real> HorizontalMotion<T> {
         let is_vertical = speed_squared.le(params.splat(1e-12));
         let inverse_speed_squared = one / one.select(is_vertical, speed_squared);
         let dot = p.x * v.x + p.y * v.y;
-        let moment = p.x * v.y - p.y * v.x;
+        let angular_momentum = p.x * v.y - p.y * v.x;
         Self {
             speed_squared,
             dot,
-            moment,
+            angular_momentum,
             distance_squared: p.x.squared() + p.y.squared(),
             is_vertical,
             inverse_speed_squared,
-            closest_squared: zero.select(is_vertical, moment.squared() * inverse_speed_squared),
+            closest_squared: zero.select(
+                is_vertical,
+                angular_momentum.squared() * inverse_speed_squared,
+            ),
             closest_time: -(dot * inverse_speed_squared),
         }
     }
@@ -63,7 +66,7 @@ impl<T: Real> HorizontalMotion<T> {
     /// Square of half the time that the ball spends within `radius` of the axis; negative if it never
     /// comes so near.
     #[inline(always)]
-    fn half_chord_squared(&self, radius: T) -> T {
+    fn half_time_within_squared(&self, radius: T) -> T {
         (radius.squared() - self.closest_squared) * self.inverse_speed_squared
     }
 
@@ -81,7 +84,7 @@ struct SearchBounds<T> {
     rises_to_bottom: T,
     /// The centre rises through z = R.
     rises_to_top: T,
-    /// The centre enters and leaves the circle of radius R_H - R.
+    /// The centre enter_time and leave_time the circle of radius R_H - R.
     inner_enter: T,
     inner_leave: T,
     /// The part of -F''/2 that comes from the curvature of the ring.
@@ -98,17 +101,21 @@ impl<T: Real> SearchBounds<T> {
     ) -> Self {
         let (ring_radius, ball_radius) = (params.ring.radius, params.ball.radius);
         let inner = ring_radius - ball_radius;
-        let half_chord = motion.half_chord_squared(inner).positive_part().sqrt();
+        let half_time = motion
+            .half_time_within_squared(inner)
+            .positive_part()
+            .sqrt();
         let nearest = Real::max(inner.squared(), motion.closest_squared);
         Self {
             falls_to_top,
             rises_to_bottom: rising_time(params, z, vz, -ball_radius),
             rises_to_top: rising_time(params, z, vz, ball_radius),
-            inner_enter: (motion.closest_time - half_chord)
+            inner_enter: (motion.closest_time - half_time)
                 .select(!motion.is_vertical, -params.ball.never_s),
-            inner_leave: (motion.closest_time + half_chord)
+            inner_leave: (motion.closest_time + half_time)
                 .select(!motion.is_vertical, params.ball.never_s),
-            curvature_bound: ring_radius * motion.moment.squared() / (nearest * nearest.sqrt()),
+            curvature_bound: ring_radius * motion.angular_momentum.squared()
+                / (nearest * nearest.sqrt()),
         }
     }
 }
@@ -125,16 +132,16 @@ pub(super) fn ring_time<T: Real>(
     let (zero, ball_radius) = (params.zero(), params.ball.radius);
     let motion = HorizontalMotion::new(params, state);
     let outer = params.ring.radius + ball_radius;
-    let outer_chord_squared = motion.half_chord_squared(outer);
-    let half_chord = outer_chord_squared.positive_part().sqrt();
-    let enters = motion.closest_time - half_chord;
-    let leaves =
-        (motion.closest_time + half_chord).select(!motion.is_vertical, params.ball.never_s);
-    let out_of_reach = !motion.is_vertical & outer_chord_squared.is_negative()
+    let outer_time_squared = motion.half_time_within_squared(outer);
+    let half_time = outer_time_squared.positive_part().sqrt();
+    let enter_time = motion.closest_time - half_time;
+    let leave_time =
+        (motion.closest_time + half_time).select(!motion.is_vertical, params.ball.never_s);
+    let out_of_reach = !motion.is_vertical & outer_time_squared.is_negative()
         | motion.is_vertical & outer.squared().lt(motion.distance_squared);
-    let stop = Real::min(search_end, leaves);
+    let stop = Real::min(search_end, leave_time);
     let falls_to_top = falling_time(params, z, vz, ball_radius);
-    let mut t = enters.select(!motion.is_vertical, zero).positive_part();
+    let mut t = enter_time.select(!motion.is_vertical, zero).positive_part();
     // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
     // and still rising then (a release from beneath) starts when it has come near.
     let z_then = z + vz * t - params.ball.half_gravity * t * t;
@@ -181,8 +188,8 @@ fn search_step<T: Real>(
         - fall_squared)
         .positive_part();
 
-    // F + 2 half_slope s - half_bound s^2 >= 0 up to the step s. The small overlap that a parting leaves
-    // counts as none.
+    // With h = F'/2 and b = M/2: F + 2 h s - b s^2 >= 0 up to its first root s, F/(root - h) for a closing
+    // ball and (root + h)/b otherwise. F < 0, the small overlap that a separation leaves, counts as 0.
     let root = (half_slope.squared() + half_bound * value.positive_part()).sqrt();
     let closing = half_slope.le(zero);
     let bounded = half_bound.is_positive();

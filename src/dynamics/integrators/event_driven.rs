@@ -1,11 +1,13 @@
 //! The default integrator: closed-form flight in which every touch is found, and contacts in RK4 steps
-//! that end on the events of friction.
+//! that end at contact events (the slip reaches zero, rolling fails, the force ends, the other solid is touched).
 
 use crate::dynamics::contact::double;
 use crate::dynamics::contact::event_time::time_to_touch;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::single;
-use crate::dynamics::end_rules::{ContactEnd, ShotLimits, flight_ending, is_lodged, rose_to_ring};
+use crate::dynamics::end_rules::{
+    ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
+};
 use crate::dynamics::flight::FlightEvents;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
@@ -46,12 +48,12 @@ impl ContactState {
 
     /// After a step on board and ring that the ball may have left.
     pub(crate) fn after_double(
-        [left_board, left_ring]: [bool; 2],
+        [off_board, off_ring]: [bool; 2],
         friction: [FrictionState; 2],
         rolling_time_s: f64,
     ) -> Self {
         let [on_board, on_ring] = friction;
-        match (left_board, left_ring) {
+        match (off_board, off_ring) {
             (true, true) => Self::Free,
             (true, false) => Self::Single(SolidId::Ring, on_ring),
             (false, true) => Self::Single(SolidId::Board, on_board),
@@ -71,7 +73,7 @@ pub(crate) struct ShotProgress {
     pub(crate) contact: ContactState,
     pub(crate) contacts: ContactSequence,
     pub(crate) crossing: HoopCrossing,
-    /// Flights and contacts so far.
+    /// Segments so far. (In a batch, a contact in the lanes is not counted; the limit is far away in any case.)
     pub(crate) segments: u32,
 }
 
@@ -116,18 +118,18 @@ pub(crate) fn run<O: Observer>(
     observer: &mut O,
 ) -> Verdict {
     let mut shot = ShotProgress::at_release(params, start);
-    let pressed = solids_pressed_at_start(params, &start);
+    let touched = solids_touched_at_release(params, &start);
     for solid in SolidId::ALL {
-        if pressed[solid.index()] {
+        if touched[solid.index()] {
             shot.contacts.push(solid);
             observer.touch(0.0, solid, &start);
         }
     }
-    let new = FrictionState::new(params);
-    shot.contact = match pressed {
-        [true, true] => ContactState::board_and_ring([new; 2]),
-        [true, false] => ContactState::Single(SolidId::Board, new),
-        [false, true] => ContactState::Single(SolidId::Ring, new),
+    let new_friction = FrictionState::new(params);
+    shot.contact = match touched {
+        [true, true] => ContactState::board_and_ring([new_friction; 2]),
+        [true, false] => ContactState::Single(SolidId::Board, new_friction),
+        [false, true] => ContactState::Single(SolidId::Ring, new_friction),
         [false, false] => ContactState::Free,
     };
     let mut run = Run {
@@ -144,8 +146,8 @@ pub(crate) fn run<O: Observer>(
     run.shot.verdict(params, Ending::Unresolved)
 }
 
-/// The solids that press the ball at its start, by [`SolidId::index`].
-pub(crate) fn solids_pressed_at_start(
+/// The solids that the ball touches at its release, by [`SolidId::index`].
+pub(crate) fn solids_touched_at_release(
     params: &ModelParams,
     start: &BallState,
 ) -> [bool; SolidId::COUNT] {
@@ -154,12 +156,12 @@ pub(crate) fn solids_pressed_at_start(
         return [false; SolidId::COUNT];
     }
     [
-        is_pressed(params, &params.board, start),
-        is_pressed(params, &params.ring, start),
+        is_touched(params, &params.board, start),
+        is_touched(params, &params.ring, start),
     ]
 }
 
-fn is_pressed<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState) -> bool {
+fn is_touched<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState) -> bool {
     let (kinematics, _) = solid.contact(&params.ball, state);
     kinematics.compression > TOUCH_GAP_M && solid.faces(state)
 }
@@ -229,12 +231,12 @@ impl<O: Observer> Run<'_, O> {
         if flight.unresolved {
             return Some(Ending::Unresolved);
         }
-        // If the ball touches both at once, the ring counts.
+        // The ring is searched only up to the time of the board, so at most one of the two is touched.
         for solid in [SolidId::Ring, SolidId::Board] {
             if flight.touch_of(solid) <= dt {
                 self.touch(solid);
-                let new = FrictionState::new(params);
-                self.shot.contact = ContactState::Single(solid, new);
+                let new_friction = FrictionState::new(params);
+                self.shot.contact = ContactState::Single(solid, new_friction);
                 return None;
             }
         }
@@ -297,7 +299,7 @@ impl<O: Observer> Run<'_, O> {
                 longest,
                 |state, acceleration| time_to_touch(params, &approach, state, acceleration),
             );
-            if step.parted {
+            if step.separated {
                 self.part(S::ID);
                 self.shot.contact = ContactState::Free;
                 return None;
@@ -327,12 +329,12 @@ impl<O: Observer> Run<'_, O> {
                 &mut friction,
                 self.limits.longest_step_s,
             );
-            let left = [
-                step.parted[0] || !solids.0.faces(&self.shot.state),
-                step.parted[1] || !solids.1.faces(&self.shot.state),
+            let separated = [
+                step.separated[0] || !solids.0.faces(&self.shot.state),
+                step.separated[1] || !solids.1.faces(&self.shot.state),
             ];
-            for (left, solid) in left.into_iter().zip([A::ID, B::ID]) {
-                if left {
+            for (separated, solid) in separated.into_iter().zip([A::ID, B::ID]) {
+                if separated {
                     self.part(solid);
                 }
             }
@@ -346,8 +348,8 @@ impl<O: Observer> Run<'_, O> {
                     return Some(Ending::Lodged);
                 }
             }
-            if left.contains(&true) {
-                self.shot.contact = ContactState::after_double(left, friction, rolling_time_s);
+            if separated.contains(&true) {
+                self.shot.contact = ContactState::after_double(separated, friction, rolling_time_s);
                 return None;
             }
         }
@@ -371,6 +373,6 @@ impl<O: Observer> Run<'_, O> {
         shot.crossing
             .after_step(self.params, before, &shot.state, true);
         let limit = self.limits.time_limit_s;
-        ContactEnd::new(self.params, &shot.state, shot.time_s, limit).ending()
+        ShotEndFlags::new(self.params, &shot.state, shot.time_s, limit).ending()
     }
 }

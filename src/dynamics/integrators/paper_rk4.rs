@@ -1,5 +1,5 @@
-//! The paper's integrator, taken literally: variable-step RK4 of Eqs. 16 and 17, with friction by the
-//! sliding law alone.
+//! The paper's integrator with its errata corrected: variable-step RK4 of Eqs. 16 and 17, with friction by
+//! the sliding law alone.
 //!
 //! On the way into a contact the step is halved until it is `dt_min`. It stays there in contact, and
 //! doubles on the way out up to `dt_max`. (This is the paper's tuned bisection. Its Table 1 is lost; the
@@ -7,7 +7,7 @@
 //! between them is missed. The errata of `docs/model.md` are applied: the sign of u_B', the full moment of
 //! the ring's friction, friction only while N > 0, and no contact from behind the board.
 
-use crate::dynamics::end_rules::{ContactEnd, ShotLimits, fell_below_ring, flight_ending};
+use crate::dynamics::end_rules::{ShotEndFlags, ShotLimits, fell_below_ring, flight_ending};
 use crate::dynamics::flight::height_crossing::falling_time;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{NO_IMPULSES, Observer};
@@ -26,9 +26,9 @@ pub(crate) struct StepRange {
 
 /// The solids that press the ball (CONDB and CONDH of Eq. 17), by [`SolidId::index`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Pressed([bool; SolidId::COUNT]);
+struct ActiveContacts([bool; SolidId::COUNT]);
 
-impl Pressed {
+impl ActiveContacts {
     fn new(params: &ModelParams, state: &BallState) -> Self {
         let board = state.position_m.x < params.board.touch_x && params.board.faces(state);
         let [x, y, z] = state.position_m.into();
@@ -56,30 +56,30 @@ fn sliding_response<S: Solid<f64>>(
     state: &BallState,
 ) -> (Vec3<f64>, Vec3<f64>) {
     let (kinematics, frame) = solid.contact(&params.ball, state);
-    let normal = kinematics.normal_acceleration(solid.material());
+    let normal = kinematics.normal_force(solid.material());
     let slip = kinematics.slip();
     let speed = slip.norm();
     let limit = solid.material().friction_coefficient * normal.max(0.0);
-    let per = if speed > 0.0 { limit / speed } else { 0.0 };
-    let (friction_1, friction_2) = (-per * slip.x, -per * slip.y);
-    let twist = kinematics.lever * params.ball.mass_over_inertia;
+    let friction_per_slip = if speed > 0.0 { limit / speed } else { 0.0 };
+    let (friction_1, friction_2) = (-friction_per_slip * slip.x, -friction_per_slip * slip.y);
+    let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
     (
         frame.to_space(ContactVector::new(normal, friction_1, friction_2)),
         frame.to_space(ContactVector::new(
             0.0,
-            twist * friction_2,
-            -twist * friction_1,
+            lever_over_inertia * friction_2,
+            -lever_over_inertia * friction_1,
         )),
     )
 }
 
 /// The right-hand side of Eq. 17, and the solids that press the ball there.
-fn derivative(params: &ModelParams, state: &BallState) -> (StateDerivative, Pressed) {
-    let pressed = Pressed::new(params, state);
+fn derivative(params: &ModelParams, state: &BallState) -> (StateDerivative, ActiveContacts) {
+    let active = ActiveContacts::new(params, state);
     let mut linear = Vec3::new(0.0, 0.0, -params.ball.gravity);
     let mut angular = Vec3::zeros();
     for solid in SolidId::ALL {
-        if !pressed.by(solid) {
+        if !active.by(solid) {
             continue;
         }
         let (a, alpha) = match solid {
@@ -94,7 +94,7 @@ fn derivative(params: &ModelParams, state: &BallState) -> (StateDerivative, Pres
         acceleration_m_s2: linear,
         angular_acceleration_rad_s2: angular,
     };
-    (derivative, pressed)
+    (derivative, active)
 }
 
 /// One RK4 step, and whether a contact was detected at any of its stages.
@@ -114,7 +114,7 @@ struct Run<'a, O> {
     observer: &'a mut O,
     state: BallState,
     time_s: f64,
-    pressed: Pressed,
+    active: ActiveContacts,
     contacts: ContactSequence,
     crossing: HoopCrossing,
 }
@@ -133,22 +133,22 @@ pub(crate) fn run<O: Observer>(
         observer,
         state: start,
         time_s: 0.0,
-        pressed: Pressed::new(params, &start),
+        active: ActiveContacts::new(params, &start),
         contacts: ContactSequence::default(),
         crossing: HoopCrossing::at_release(params, &start),
     };
     let mut dt = steps.dt_max_s;
     let ending = loop {
         let (next, detected) = rk4(params, &run.state, dt);
-        let pressed = Pressed::new(params, &next);
-        if (detected || pressed.any()) && !run.pressed.any() && dt > steps.dt_min_s {
+        let active = ActiveContacts::new(params, &next);
+        if (detected || active.any()) && !run.active.any() && dt > steps.dt_min_s {
             dt = (0.5 * dt).max(steps.dt_min_s);
             continue;
         }
-        if let Some(ending) = run.accept(next, pressed, dt) {
+        if let Some(ending) = run.accept(next, active, dt) {
             break ending;
         }
-        dt = if pressed.any() {
+        dt = if active.any() {
             steps.dt_min_s
         } else {
             (2.0 * dt).min(steps.dt_max_s)
@@ -164,14 +164,14 @@ pub(crate) fn run<O: Observer>(
 
 impl<O: Observer> Run<'_, O> {
     /// Takes a step of `dt` to the state `next`; returns how the shot ends with it, if it does.
-    fn accept(&mut self, next: BallState, pressed: Pressed, dt: f64) -> Option<Ending> {
+    fn accept(&mut self, next: BallState, active: ActiveContacts, dt: f64) -> Option<Ending> {
         let params = self.params;
         let before = self.state;
         let fall = self.falling_time(&before);
-        let falls = fell_below_ring(params, &next) && !self.pressed.any();
+        let falls = fell_below_ring(params, &next) && !self.active.any();
         if falls && fall <= dt {
             self.observer.flight(params, self.time_s, fall, &before);
-        } else if self.pressed.any() {
+        } else if self.active.any() {
             self.observer
                 .step(self.time_s, dt, (&before, &next), NO_IMPULSES);
         } else {
@@ -179,20 +179,20 @@ impl<O: Observer> Run<'_, O> {
         }
         self.crossing.after_step(params, &before, &next, true);
         self.time_s += dt;
-        self.report_changes(pressed, &next);
+        self.report_changes(active, &next);
         self.state = next;
-        self.pressed = pressed;
+        self.active = active;
         let limit = self.limits.time_limit_s;
-        let ending = ContactEnd::new(params, &next, self.time_s, limit).ending()?;
+        let ending = ShotEndFlags::new(params, &next, self.time_s, limit).ending()?;
         if ending != Ending::Fell {
             return Some(ending);
         }
         if fell_below_ring(params, &before) {
-            // It fell below the ring earlier and has been in contact since.
-            return (self.time_s > limit).then_some(Ending::TimeLimit);
+            // It was released below the ring and has never risen.
+            return Some(Ending::NeverRose);
         }
         // Where the last step crossed z = -R, by the parabola of that step.
-        if !pressed.any() && fall <= dt {
+        if !active.any() && fall <= dt {
             self.state = before.after_flight(&params.ball, fall);
             self.time_s += fall - dt;
         }
@@ -212,9 +212,9 @@ impl<O: Observer> Run<'_, O> {
         z > -radius || vz * vz + 2.0 * self.params.ball.gravity * (z + radius) > 0.0
     }
 
-    fn report_changes(&mut self, pressed: Pressed, state: &BallState) {
+    fn report_changes(&mut self, active: ActiveContacts, state: &BallState) {
         for solid in SolidId::ALL {
-            match (self.pressed.by(solid), pressed.by(solid)) {
+            match (self.active.by(solid), active.by(solid)) {
                 (false, true) => {
                     self.contacts.push(solid);
                     self.observer.touch(self.time_s, solid, state);

@@ -53,7 +53,7 @@ impl<T: Real> ContactKinematics<T> {
 
     /// Normal acceleration (k u + c u')/m (Eqs. 2 and 12); negative just before the ball parts.
     #[inline(always)]
-    pub(crate) fn normal_acceleration(&self, material: &Material<T>) -> T {
+    pub(crate) fn normal_force(&self, material: &Material<T>) -> T {
         material.stiffness * self.compression - material.damping * self.velocity.normal
     }
 
@@ -84,7 +84,7 @@ impl<T: Real> ContactKinematics<T> {
 
     /// Rate of the slip for a unit of friction per unit of mass: 1 + lever^2 m/I.
     #[inline(always)]
-    pub(crate) fn slip_compliance(&self, ball: &BallParams<T>) -> T {
+    pub(crate) fn inverse_effective_mass(&self, ball: &BallParams<T>) -> T {
         self.lever.squared() * ball.mass_over_inertia + 1.0
     }
 
