@@ -7,7 +7,7 @@
 use super::aim_point::with_same_aim;
 use crate::math::sobol::ScrambleKey;
 use crate::probability::{Progress, REPLICATES, Sampler};
-use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseVariable};
+use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseVariable, ShotKind};
 use crate::units::FOOT_M;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -87,7 +87,7 @@ pub struct ErrorCost {
     pub a_tenth_less: Difference,
 }
 
-/// The gain in P of a changed shot, its speed re-optimised.
+/// The gain in P of a changed shot, its speed re-optimised among shots of the same kind.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Variation {
     /// The changed value, SI units: backspin, or height of the release.
@@ -261,18 +261,16 @@ impl Analysis<'_> {
         costs
     }
 
-    /// Evenly spaced backspins from none to the shooter's limit.
+    /// Evenly spaced backspins from none to the shooter's limit. (They do not change the kind of the shot.)
     fn backspins(&self, count: usize) -> Vec<Variation> {
         let most = self.profile.shooter().max_backspin_rad_s;
         (0..count)
-            .map(|i| {
+            .filter_map(|i| {
                 self.progress.advance(1);
                 let value = most * i as f64 / (BACKSPINS - 1) as f64;
                 let shot = self.nominal.with(NominalVariable::Backspin, value);
-                Variation {
-                    value,
-                    gain: self.gain_re_optimised(self.profile, &shot),
-                }
+                let gain = self.gain_re_optimised(self.profile, &shot)?;
+                Some(Variation { value, gain })
             })
             .collect()
     }
@@ -290,7 +288,7 @@ impl Analysis<'_> {
                 let shot = with_same_aim(self.profile, &other, self.nominal);
                 Some(Variation {
                     value: other.shooter().release_height_m,
-                    gain: self.gain_re_optimised(&other, &shot),
+                    gain: self.gain_re_optimised(&other, &shot)?,
                 })
             })
             .collect()
@@ -314,18 +312,21 @@ impl Analysis<'_> {
         difference(&other, &self.means)
     }
 
-    /// Gain in P of another profile or shot, at the best of a few speeds.
-    fn gain_re_optimised(&self, profile: &Profile, shot: &Nominal) -> Difference {
+    /// Gain in P of another profile or shot, at the best of a few speeds with which the shot is of the same kind,
+    /// direct or bank; `None` if there is no such speed.
+    fn gain_re_optimised(&self, profile: &Profile, shot: &Nominal) -> Option<Difference> {
+        let kind = ShotKind::of(self.profile, self.nominal);
         let sigma = profile.shooter().dispersion.speed_m_s(shot.speed_m_s);
         let best = SPEEDS
             .iter()
             .map(|by| shot.with(NominalVariable::Speed, shot.speed_m_s + by * sigma))
+            .filter(|shot| ShotKind::of(profile, shot) == kind)
             .map(|shot| {
                 let made: f64 = means(profile, &shot, OPTIMISATION_SCRAMBLES).iter().sum();
                 (made, shot)
             })
             .reduce(|best, next| if next.0 > best.0 { next } else { best });
-        self.gain(profile, &best.map_or(*shot, |(_, shot)| shot))
+        best.map(|(_, shot)| self.gain(profile, &shot))
     }
 
     /// The ends of the window about the error-free shot along a variable.

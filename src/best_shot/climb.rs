@@ -1,10 +1,9 @@
 //! The pattern search that climbs from a start to a local optimum.
 
-use super::shot_kind::ShotKind;
 use crate::analysis::aim_point::centre_speed_m_s;
 use crate::probability::Progress;
 use crate::search_space::Bracket;
-use crate::shooter::{Nominal, NominalVariable, Profile};
+use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
 /// Greatest number of moves from one start.
 const MAX_MOVES: u32 = 200;

@@ -2,7 +2,6 @@
 
 mod climb;
 mod search;
-mod shot_kind;
 
+pub use crate::shooter::ShotKind;
 pub use search::{BestShot, BestShotError, BestShots, Limit, NoShot, find, find_kinds};
-pub use shot_kind::ShotKind;

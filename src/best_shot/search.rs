@@ -8,7 +8,6 @@
 //! not the largest of many noisy values.
 
 use super::climb::Climb;
-use super::shot_kind::ShotKind;
 use crate::analysis::aim_point::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, Sensitivity, SensitivityTopics};
@@ -16,7 +15,7 @@ use crate::dynamics::Outcome;
 use crate::math::sobol::{Scramble, ScrambleKey};
 use crate::probability::{Estimate, NominalProbabilities, NominalTable, Progress, Sampler};
 use crate::search_space::{PlanError, TablePlan};
-use crate::shooter::{Nominal, NominalVariable, Profile};
+use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -113,10 +112,22 @@ impl BestShots {
 
 /// Why there is no best shot of a kind.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no {} shot within the limits can go in from this place", .kind.name())]
-pub struct NoShot {
-    /// The kind.
-    pub kind: ShotKind,
+pub enum NoShot {
+    /// No shot within the limits can go in.
+    #[error("no {} shot within the limits can go in from this place", .0.name())]
+    Impossible(ShotKind),
+    /// The most probable shot goes in only with errors.
+    #[error("no clean {} shot from this place: the most probable release, P {}, misses when it has no errors", .kind.name(), probability_text(*.probability_per_million))]
+    NotClean {
+        /// The kind.
+        kind: ShotKind,
+        /// P of the most probable shot, in millionths.
+        probability_per_million: u32,
+    },
+}
+
+fn probability_text(per_million: u32) -> String {
+    format!("{:.4}", f64::from(per_million) / 1e6)
 }
 
 /// Why the search could not start.
@@ -134,7 +145,7 @@ pub enum BestShotError {
 pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<BestShots, BestShotError> {
     let topics = SensitivityTopics::ALL;
     let (plan, mut shots) = find_kinds(profile, &ShotKind::ALL, topics, progress)?;
-    let none = |kind| Err(NoShot { kind });
+    let none = |kind| Err(NoShot::Impossible(kind));
     let bank = shots.pop().unwrap_or_else(|| none(ShotKind::Bank));
     let direct = shots.pop().unwrap_or_else(|| none(ShotKind::Direct));
     Ok(BestShots { plan, direct, bank })
@@ -259,7 +270,7 @@ impl BestShotSearch<'_> {
             replicate: u64::MAX,
         });
         let Some(start) = self.climb_from(kind, starts, &sampler, &scramble) else {
-            return Ok(Err(NoShot { kind }));
+            return Ok(Err(NoShot::Impossible(kind)));
         };
         let mut window = self.move_window(kind, start)?;
         let searches_side_spin = search.choice.includes(NominalVariable::SideSpin);
@@ -275,13 +286,22 @@ impl BestShotSearch<'_> {
         let nominal = window.nominal;
         let estimate =
             sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
-        let start = self.profile.release(&nominal).state();
+        let outcome = self
+            .profile
+            .simulator()
+            .outcome(self.profile.release(&nominal).state());
+        if !outcome.verdict.made {
+            return Ok(Err(NoShot::NotClean {
+                kind,
+                probability_per_million: (estimate.probability * 1e6).round() as u32,
+            }));
+        }
         Ok(Ok(BestShot {
             nominal,
             estimate,
             table_probability: window.table_probability,
             window: window.plan,
-            outcome: self.profile.simulator().outcome(start),
+            outcome,
             curves: window.curves,
             sensitivity: sensitivity::analyse(self.profile, &nominal, self.topics, self.progress),
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),

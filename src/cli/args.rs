@@ -291,19 +291,24 @@ pub(crate) enum IntegratorName {
 #[command(after_help = "\
 Columns, by name and in any order: distance_ft, court_angle_deg, release_height_ft, speed_ft_s,
 pitch_deg, polar_deg; optional backspin_rev_s, rifle_spin_rev_s, side_spin_rev_s. The suffixes _m,
-_m_s, _rad and _rad_s are accepted instead. Other columns are copied. The columns made, kind, contacts,
-n_board, n_ring, flight_time_s and entry_angle_deg are added. A row that cannot be simulated is reported
-and has empty results; the exit code is then 3.
+_m_s, _rad and _rad_s are accepted instead. Other columns are copied; one that is named like a quantity
+must be given with --carry, so that no misspelt column is overlooked. The columns made, kind, contacts,
+n_board, n_ring, flight_time_s (to the end of the shot, bounces included), entry_angle_deg and
+first_touch_s are added. A row that cannot be simulated is reported with its line and has empty results;
+the exit code is then 3. Files named *.parquet are Parquet, others CSV.
 
 Examples:
   bankshot simulate releases.csv --output outcomes.csv
   bankshot simulate - --output - --integrator paper <releases.csv >outcomes.csv")]
 pub(crate) struct SimulateOptions {
-    /// The releases, a CSV file; - for standard input.
+    /// The releases, a CSV or Parquet file; - for CSV from standard input.
     pub(crate) releases: PathBuf,
-    /// The file of outcomes; - for standard output.
-    #[arg(long, short, value_name = "OUT.csv")]
+    /// The file of outcomes, CSV or Parquet; - for CSV to standard output.
+    #[arg(long, short, value_name = "OUT.csv|OUT.parquet")]
     pub(crate) output: PathBuf,
+    /// Copy columns that are named like a quantity but are none of the release.
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
+    pub(crate) carry: Vec<String>,
     /// The preset `paper`, or a TOML file with a [physics] table.
     #[arg(long, default_value = "paper", value_name = "PRESET|FILE")]
     pub(crate) physics: String,

@@ -10,6 +10,21 @@ use bankshot::shooter::Profile;
 use bankshot::sweep::SweepConfig;
 use std::path::{Path, PathBuf};
 
+/// The file beside the plots of a sweep that names the sweep's folder, and that of the sweep it is compared with.
+pub(crate) const SWEEP_LINK: &str = "of_sweep.json";
+/// The folder, in that of a comparison, of the best shots of the other shooter.
+pub(crate) const AGAINST_FOLDER: &str = "against";
+/// The files of a run.
+const FILES: [&str; 7] = [
+    "best_shots.csv",
+    "best_shots.json",
+    "curves.csv",
+    "sensitivity.csv",
+    "profile.toml",
+    "plan.json",
+    "provenance.json",
+];
+
 /// `<name>-<hash>`. The name is reduced to letters, digits and dashes, so it never becomes a path.
 fn folder_name(name: &str, hash: &str) -> String {
     let mut name: String = name
@@ -66,23 +81,29 @@ pub(crate) fn write_best_shots(
     provenance.push(("seed".to_owned(), profile.search().seed.into()));
     provenance.push(("table_shots".to_owned(), best.plan.shots.into()));
     provenance.push(("configuration_si".to_owned(), configuration));
-    let files = [
-        ("best_shots.csv", best_shots_csv(profile, best, units)),
-        (
-            "best_shots.json",
-            json(&best_shots_json(profile, best, units)),
-        ),
-        ("curves.csv", curves_csv(best, units)),
-        ("sensitivity.csv", sensitivity_csv(best, units)),
-        ("profile.toml", read_text(source)?.into_bytes()),
-        ("plan.json", json(&plan)),
-        ("provenance.json", json(&json_record::object(provenance))),
+    let contents = [
+        best_shots_csv(profile, best, units),
+        json(&best_shots_json(profile, best, units)),
+        curves_csv(best, units),
+        sensitivity_csv(best, units),
+        read_text(source)?.into_bytes(),
+        json(&plan),
+        json(&json_record::object(provenance)),
     ];
-    for (name, bytes) in files {
+    for (name, bytes) in FILES.into_iter().zip(contents) {
         let path = folder.join(name);
         atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
     }
     Ok(())
+}
+
+/// Removes the files that [`write_best_shots`] wrote into a folder, and the folder if nothing else is in it.
+pub(crate) fn remove_best_shots(folder: &Path) {
+    for name in FILES {
+        // A file that does not exist needs no removal.
+        let _ = std::fs::remove_file(folder.join(name));
+    }
+    let _ = std::fs::remove_dir(folder);
 }
 
 /// The exit code of a run of `best`.

@@ -1,5 +1,6 @@
 //! A CSV file of locations on the court.
 
+use crate::shooter::is_control_or_direction;
 use crate::units::{DEGREE_RAD, FOOT_M};
 
 /// A column with its name and the size of its unit in SI units.
@@ -10,12 +11,24 @@ const COURT_ANGLE: [Column; 2] = [("court_angle_deg", DEGREE_RAD), ("court_angle
 const X: [Column; 2] = [("x_ft", FOOT_M), ("x_m", 1.0)];
 const Y: [Column; 2] = [("y_ft", FOOT_M), ("y_m", 1.0)];
 
+/// Locations on the court, with their names if they have any.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NamedLocations {
+    /// (x, y), m.
+    pub points_m: Vec<(f64, f64)>,
+    /// A name for each point, or none at all.
+    pub names: Vec<String>,
+}
+
+/// Longest name of a location, in characters.
+const LONGEST_NAME: usize = 100;
+
 /// Parses the locations of a CSV text with the columns x and y, or distance and court_angle, with their
-/// units: (x, y), m. Other columns are ignored.
+/// units, and an optional column name. Other columns are ignored.
 ///
 /// # Errors
 /// The columns are missing, or a row is wrong; its number is in the message.
-pub fn parse_locations(text: &str) -> Result<Vec<(f64, f64)>, String> {
+pub fn parse_locations(text: &str) -> Result<NamedLocations, String> {
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
@@ -37,7 +50,8 @@ pub fn parse_locations(text: &str) -> Result<Vec<(f64, f64)>, String> {
             );
         }
     };
-    let mut locations = Vec::new();
+    let name = header.iter().position(|column| column == "name");
+    let mut locations = NamedLocations::default();
     for (row, record) in reader.records().enumerate() {
         let record = record.map_err(|error| error.to_string())?;
         let number = |(index, name, unit): (usize, &str, f64)| {
@@ -51,12 +65,23 @@ pub fn parse_locations(text: &str) -> Result<Vec<(f64, f64)>, String> {
             }
         };
         let (first, second) = (number(first)?, number(second)?);
-        locations.push(if is_polar {
+        locations.points_m.push(if is_polar {
             let (sin, cos) = libm::sincos(second);
             (first * cos, first * sin)
         } else {
             (first, second)
         });
+        if let Some(index) = name {
+            let name = record.get(index).unwrap_or_default();
+            let is_long = name.chars().count() > LONGEST_NAME;
+            if is_long || name.chars().any(is_control_or_direction) {
+                return Err(format!(
+                    "row {}: name must have at most {LONGEST_NAME} characters, none of them a control character",
+                    row + 1
+                ));
+            }
+            locations.names.push(name.to_owned());
+        }
     }
     Ok(locations)
 }

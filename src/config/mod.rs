@@ -10,7 +10,7 @@ mod shooter_tables;
 pub(crate) mod toml_reader;
 
 pub use diagnostics::{ConfigError, Diagnostic};
-pub use locations_csv::parse_locations;
+pub use locations_csv::{NamedLocations, parse_locations};
 pub use physics_table::parse_physics;
 pub use profile_file::{MAX_FILE_BYTES, parse_profile};
 #[cfg(feature = "app")]

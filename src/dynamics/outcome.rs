@@ -229,6 +229,8 @@ pub struct Outcome {
     pub entry: Option<Entry>,
     /// Greatest height of the centre above the plane of the hoop, m.
     pub apex_m: f64,
+    /// Time from the release to the first touch of a solid, if any, s.
+    pub first_touch_s: Option<f64>,
     /// Position of the centre at the first touch of the board (x, y, z), m.
     pub board_point_m: Option<(f64, f64, f64)>,
     /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop:

@@ -13,6 +13,7 @@ pub(crate) struct OutcomeClassifier {
     /// Unit vector on the floor from the release to the hoop.
     towards_hoop: (f64, f64),
     first_contact: Option<SolidId>,
+    first_touch_s: Option<f64>,
     entry: Option<Entry>,
     apex_m: f64,
     was_inside: bool,
@@ -36,6 +37,7 @@ impl OutcomeClassifier {
             ring_radius_m,
             towards_hoop,
             first_contact: None,
+            first_touch_s: None,
             entry: None,
             apex_m: z,
             was_inside: false,
@@ -97,6 +99,7 @@ impl OutcomeClassifier {
             kind,
             entry: self.entry,
             apex_m: self.apex_m,
+            first_touch_s: self.first_touch_s,
             board_point_m: self.board_point_m,
             right_of_centre_m: self.aim_beyond_and_right().1,
         }
@@ -128,13 +131,14 @@ impl Observer for OutcomeClassifier {
         self.awaits_flight_off_board = false;
     }
 
-    fn touch(&mut self, _t: f64, solid: SolidId, state: &BallState) {
+    fn touch(&mut self, t: f64, solid: SolidId, state: &BallState) {
         if solid == SolidId::Board && self.board_point_m.is_none() {
             let [x, y, z] = state.position_m.into();
             self.board_point_m = Some((x, y, z));
         }
         if self.first_contact.is_none() {
             self.first_contact = Some(solid);
+            self.first_touch_s = Some(t);
             self.awaits_flight_off_board = solid == SolidId::Board;
         }
     }

@@ -128,6 +128,26 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<bool> {
     }
 }
 
+/// Whether two paths lead to the same regular file.
+#[must_use]
+pub fn same_file(a: &Path, b: &Path) -> bool {
+    let found = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let (Some(first), Some(second)) = (found(a), found(b)) else {
+        return false;
+    };
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        // Hard links too.
+        (first.dev(), first.ino()) == (second.dev(), second.ino())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (first, second);
+        fs::canonicalize(a).ok() == fs::canonicalize(b).ok()
+    }
+}
+
 /// Removes every temporary file, for a program that is about to end.
 pub fn discard_temporary_files() {
     if let Ok(pending) = TEMPORARY_FILES.lock() {

@@ -113,9 +113,9 @@ fn across_text(across: f64, unit: &str) -> String {
 }
 
 /// What the table does not show of a shot.
-fn notes_of(profile: &Profile, kind: ShotKind, shot: &BestShot) -> Vec<String> {
+fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<String> {
     let mut notes = Vec::new();
-    let kind = kind.name();
+    let kind = kind_of_shot.name();
     let nominal = &shot.nominal;
     if nominal.side_spin_rad_s != 0.0 || nominal.rifle_spin_rad_s != 0.0 {
         notes.push(format!(
@@ -126,6 +126,22 @@ fn notes_of(profile: &Profile, kind: ShotKind, shot: &BestShot) -> Vec<String> {
     }
     for limit in &shot.at_limits {
         notes.push(format!("{kind}: {}.", limit_text(*limit)));
+    }
+    let probability = shot.estimate.probability;
+    let banked = shot.estimate.shares.banked() / probability.max(f64::MIN_POSITIVE);
+    let of_other_kind = match kind_of_shot {
+        ShotKind::Direct => banked,
+        ShotKind::Bank => 1.0 - banked,
+    };
+    if of_other_kind > 0.5 {
+        let touch = match kind_of_shot {
+            ShotKind::Direct => "touch the board first",
+            ShotKind::Bank => "do not touch the board first",
+        };
+        notes.push(format!(
+            "{kind}: at the limit of its kind; {:.0} % of its makes {touch}.",
+            100.0 * of_other_kind
+        ));
     }
     if shot.estimate.standard_error > profile.search().standard_error {
         notes.push(format!(

@@ -7,4 +7,4 @@ pub mod best_shot_json;
 pub mod best_shot_text;
 pub mod json_record;
 pub mod probability_answer;
-pub mod simulation_csv;
+pub mod simulation_files;

@@ -4,12 +4,10 @@ use super::colormaps::{diverging, sequential};
 use super::colour_key::{ColourKey, ColourScale};
 use super::plot::Plot;
 use super::svg::{Anchor, Svg};
-use super::sweep_results::{
-    PlaceResults, SIGNIFICANT_SIGMAS, SweepResults, difference, difference_colour, is_significant,
-    largest_difference,
-};
+use super::sweep_results::{PlaceResults, SweepResults, difference_colour, largest_difference};
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
+use crate::sweep::bank_advantage::{BankAdvantage, SIGNIFICANT_SIGMAS, difference, is_significant};
 
 /// Limits of the colour scale of the difference. Larger differences have the colour of the largest on the
 /// scale.
@@ -28,16 +26,17 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     let largest = largest_difference(results.places().iter().filter_map(gain))
         .clamp(SCALE_LIMITS.0, SCALE_LIMITS.1);
     let compared = results.places().iter().filter_map(gain).count();
-    let bank_spots: Vec<(f64, f64)> = results
+    let bank_places: Vec<(f64, f64)> = results
         .places()
         .iter()
         .filter(|place| gain(place).is_some_and(|by| is_significant(by) && by.value > 0.0))
         .map(|results| (results.place.x_m, results.place.y_m))
         .collect();
-    let caption = format!(
-        "The bank shot is better at {} of {compared} places, by more than {SIGNIFICANT_SIGMAS} standard errors.",
-        bank_spots.len()
-    );
+    let advantage = BankAdvantage {
+        better: bank_places.len(),
+        compared,
+    };
+    let caption = advantage.to_string();
     let note = format!(
         "{caption} Outlined: bank is better. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} points.",
         100.0 * largest
@@ -50,7 +49,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     draw_probabilities(results, &mut svg);
     let corner = (2.0 * width, MAPS_TOP);
     draw_gain(results, &mut svg, corner, largest);
-    map.draw_outline(&mut svg, corner, &bank_spots);
+    map.draw_outline(&mut svg, corner, &bank_places);
     svg.footnote((20.0, MAPS_TOP + height + 6.0), &note);
     svg.footnote((20.0, MAPS_TOP + height + 22.0), &results.source_note());
     Some(Plot {

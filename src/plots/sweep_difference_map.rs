@@ -4,11 +4,9 @@ use super::colormaps::{diverging, sequential};
 use super::colour_key::{ColourKey, ColourScale};
 use super::plot::Plot;
 use super::svg::{Anchor, Svg, shortened};
-use super::sweep_results::{
-    PlaceResults, SIGNIFICANT_SIGMAS, SweepResults, difference, difference_colour,
-    largest_difference,
-};
+use super::sweep_results::{PlaceResults, SweepResults, difference_colour, largest_difference};
 use crate::analysis::sensitivity::Difference;
+use crate::sweep::bank_advantage::{SIGNIFICANT_SIGMAS, difference};
 use std::collections::BTreeMap;
 
 /// Limits of the colour scale of the difference. Larger differences have the colour of the largest on the
@@ -21,7 +19,7 @@ const MAPS_TOP: f64 = 34.0;
 /// place with results.
 #[must_use]
 pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot> {
-    let second_places = spots_by_position(second);
+    let second_places = places_by_position(second);
     let gain = |place: &PlaceResults| {
         let other = second_places.get(&position(place))?;
         Some(difference(
@@ -103,7 +101,7 @@ fn position(results: &PlaceResults) -> (u64, u64) {
     (results.place.x_m.to_bits(), results.place.y_m.to_bits())
 }
 
-fn spots_by_position<'a>(sweep: &'a SweepResults<'_>) -> BTreeMap<(u64, u64), &'a PlaceResults> {
+fn places_by_position<'a>(sweep: &'a SweepResults<'_>) -> BTreeMap<(u64, u64), &'a PlaceResults> {
     let places = sweep.places().iter();
     places.map(|place| (position(place), place)).collect()
 }

@@ -7,14 +7,12 @@ use super::svg::{Svg, shortened};
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
 use crate::model::court::Court;
+use crate::sweep::bank_advantage::is_significant;
 use crate::sweep::columns;
 use crate::sweep::jobs::Jobs;
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::{CourtPlace, Region, SweepConfig};
 use std::collections::BTreeMap;
-
-/// A difference is significant if it exceeds this many of its standard errors.
-pub(super) const SIGNIFICANT_SIGMAS: f64 = 2.0;
 
 /// The results at one place.
 pub(super) struct PlaceResults {
@@ -151,19 +149,6 @@ impl<'a> SweepResults<'a> {
             .collect();
         map.draw(svg, corner, title, &places, key);
     }
-}
-
-/// `a` minus `b`, two independent estimates of P.
-pub(super) fn difference(a: Difference, b: Difference) -> Difference {
-    Difference {
-        value: a.value - b.value,
-        standard_error: libm::hypot(b.standard_error, a.standard_error),
-    }
-}
-
-/// Whether a difference, positive or negative, is significant.
-pub(super) fn is_significant(difference: Difference) -> bool {
-    difference.value.abs() > SIGNIFICANT_SIGMAS * difference.standard_error
 }
 
 /// The largest absolute value of some differences, for the ends of a colour scale.

@@ -15,6 +15,11 @@ pub struct HtmlTable {
 }
 
 impl HtmlTable {
+    /// Puts a name before the caption.
+    pub(super) fn name(&mut self, name: &str) {
+        self.caption = format!("{name}: {}", self.caption);
+    }
+
     /// The table as HTML. `number` makes the ids of a page's tables different.
     pub(super) fn html(&self, number: usize) -> String {
         let mut html = format!(

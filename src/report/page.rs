@@ -36,6 +36,36 @@ pub struct Page {
 }
 
 impl Page {
+    /// Adds the answer, the tables and the plots of another page, and a plot of the difference if there is one.
+    pub fn add_comparison(&mut self, other: Self, difference: Option<Plot>) {
+        self.answer = format!(
+            "{}: {} {}: {}",
+            self.title, self.answer, other.title, other.answer
+        );
+        if let Some(plot) = difference {
+            self.answer = format!("{} {}", self.answer, plot.caption);
+            self.plots.insert(0, plot);
+        }
+        for table in &mut self.tables {
+            table.name(&self.title);
+        }
+        self.tables
+            .extend(other.tables.into_iter().map(|mut table| {
+                table.name(&other.title);
+                // The page shows the paths of the first page's shots only.
+                for (shot, _) in &mut table.rows {
+                    *shot = None;
+                }
+                table
+            }));
+        self.plots.extend(other.plots.into_iter().map(|mut plot| {
+            plot.name.push_str("_against");
+            plot
+        }));
+        self.title = format!("{} against {}", self.title, other.title);
+        self.footer = format!("{} {}", self.footer, other.footer);
+    }
+
     /// The page as one HTML file.
     ///
     /// # Errors

@@ -175,7 +175,7 @@ impl Shooter {
             let message = format!("must have at most {LONGEST_NAME} characters");
             checks.refuse("shooter.name", message);
         }
-        if self.name.chars().any(char::is_control) {
+        if self.name.chars().any(is_control_or_direction) {
             checks.refuse("shooter.name", "must not contain control characters");
         }
         checks.require(

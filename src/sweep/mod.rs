@@ -6,6 +6,7 @@
 //! of all processes, and [`result_tables`] writes the final tables. The results on disk are the only state: whatever
 //! is killed, the same command continues.
 
+pub mod bank_advantage;
 pub mod columns;
 mod court_region;
 mod folder_error;

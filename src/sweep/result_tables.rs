@@ -8,6 +8,7 @@ use super::result_row::{Cell, ResultRow};
 use super::sweep_toml::SweepConfig;
 use crate::output::json_record::{Record, number, object, provenance};
 use crate::units::UnitSystem;
+use crate::units::rounded;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -30,6 +31,8 @@ struct Line {
 /// The result tables of a sweep.
 pub struct ResultTables {
     column_names: Vec<String>,
+    /// The names of the places; empty if they have none.
+    place_names: Vec<String>,
     lines: Vec<Line>,
     provenance: Record,
 }
@@ -67,6 +70,7 @@ impl ResultTables {
                 .iter()
                 .map(|column| column.name_in(units))
                 .collect(),
+            place_names: config.place_names.clone(),
             lines,
             provenance: provenance_of(config, hash, jobs, rows.len()),
         }
@@ -78,18 +82,25 @@ impl ResultTables {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let names = self.column_names.iter().map(String::as_str);
         // Writing to memory does not fail.
-        let _ = writer.write_record(["place", "mirrored"].into_iter().chain(names));
+        let name = (!self.place_names.is_empty()).then_some("name");
+        let _ = writer.write_record(["place", "mirrored"].into_iter().chain(name).chain(names));
         for line in &self.lines {
             let first = [line.place.to_string(), line.mirrored.to_string()];
+            let first = first.into_iter().chain(self.place_name(line));
             let cells = line.cells.iter().map(|cell| match cell {
                 Cell::Null => String::new(),
                 Cell::Real(value) => value.to_string(),
                 Cell::Integer(value) => value.to_string(),
                 Cell::Text(text) => text.clone(),
             });
-            let _ = writer.write_record(first.into_iter().chain(cells));
+            let _ = writer.write_record(first.chain(cells));
         }
         writer.into_inner().unwrap_or_default()
+    }
+
+    /// The name of the place of a line, if places have names.
+    fn place_name(&self, line: &Line) -> Option<String> {
+        self.place_names.get(line.place as usize).cloned()
     }
 
     /// The tables as Parquet, with the provenance in the metadata of the file.
@@ -108,6 +119,14 @@ impl ResultTables {
         write_column::<Int64Type>(&mut group, &places, None)?;
         let mirrored: Vec<bool> = self.lines.iter().map(|line| line.mirrored).collect();
         write_column::<BoolType>(&mut group, &mirrored, None)?;
+        if !self.place_names.is_empty() {
+            let names: Vec<ByteArray> = self
+                .lines
+                .iter()
+                .map(|line| ByteArray::from(self.place_name(line).unwrap_or_default().as_str()))
+                .collect();
+            write_column::<ByteArrayType>(&mut group, &names, None)?;
+        }
         for (i, column) in columns::ALL.iter().enumerate() {
             self.write_cells(&mut group, i, column.column_type)?;
         }
@@ -128,6 +147,15 @@ impl ResultTables {
             field("place", Physical::INT64, None, Repetition::REQUIRED)?,
             field("mirrored", Physical::BOOLEAN, None, Repetition::REQUIRED)?,
         ];
+        if !self.place_names.is_empty() {
+            let text = Some(LogicalType::String);
+            fields.push(field(
+                "name",
+                Physical::BYTE_ARRAY,
+                text,
+                Repetition::REQUIRED,
+            )?);
+        }
         for (name, column) in self.column_names.iter().zip(columns::ALL) {
             let (of, logical) = match column.column_type {
                 ColumnType::Real => (Physical::DOUBLE, None),
@@ -241,7 +269,7 @@ fn in_units(cells: &[Cell], units: UnitSystem) -> Vec<Cell> {
         .iter()
         .zip(cells)
         .map(|(column, cell)| match cell {
-            Cell::Real(value) => Cell::Real(value / column.unit.in_system(units).1),
+            Cell::Real(value) => Cell::Real(rounded(value / column.unit.in_system(units).1)),
             other => other.clone(),
         })
         .collect()

@@ -10,7 +10,10 @@ use crate::config::{
     read_settings, read_settings_of,
 };
 use crate::model::court::League;
-use crate::shooter::{IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash};
+use crate::shooter::{
+    IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash,
+    is_control_or_direction,
+};
 use serde::{Deserialize, Serialize};
 
 /// Longest name of a sweep, in characters.
@@ -32,6 +35,9 @@ pub struct SweepConfig {
     /// The places in the order of the results.
     #[serde(skip)]
     pub places: Vec<CourtPlace>,
+    /// Their names, if the file of places has any; else none. No result depends on them.
+    #[serde(skip)]
+    pub place_names: Vec<String>,
 }
 
 /// What is computed at each spot.
@@ -120,10 +126,15 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
         (Some(name), Some(text)) => Some(parse_profile(text, name)?),
         _ => None,
     };
-    let locations = match (&files.places, &texts.places) {
+    let mut locations = match (&files.places, &texts.places) {
         (Some(_), Some(text)) => Some(parse_locations(text)),
         _ => None,
     };
+    let place_names = match &mut locations {
+        Some(Ok(locations)) => std::mem::take(&mut locations.names),
+        _ => Vec::new(),
+    };
+    let locations = locations.map(|read| read.map(|locations| locations.points_m));
     parse_toml(&texts.sweep, origin, |mut root, diagnostics| {
         let mut table = root.table("sweep", diagnostics);
         if !root.has("sweep") {
@@ -145,7 +156,7 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
         };
         root.report_unknown_keys(diagnostics);
         let region = region.filter(|_| read.is_valid)?;
-        let places = list_spots(&region, league, &read.settings, &sweep_table, diagnostics)?;
+        let places = list_places(&region, league, &read.settings, &sweep_table, diagnostics)?;
         Some(SweepConfig {
             name,
             league,
@@ -153,6 +164,7 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
             compute,
             settings: read.settings,
             places,
+            place_names,
         })
     })
 }
@@ -183,7 +195,7 @@ fn read_name(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>)
         .text("name", diagnostics)
         .unwrap_or_else(|| "sweep".into());
     let is_too_long = name.chars().count() > LONGEST_NAME;
-    if name.is_empty() || is_too_long || name.chars().any(char::is_control) {
+    if name.is_empty() || is_too_long || name.chars().any(is_control_or_direction) {
         let message = "must have 1 to 500 characters, none of them a control character";
         diagnostics.push(table.diagnostic("name", message));
     }
@@ -222,7 +234,7 @@ fn read_compute(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnosti
     }
 }
 
-fn list_spots(
+fn list_places(
     region: &Region,
     league: League,
     settings: &ProfileSettings,

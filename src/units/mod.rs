@@ -8,3 +8,26 @@ mod unit_system;
 pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
 pub use quantity::{Dimension, QuantityError, parse};
 pub use unit_system::UnitSystem;
+
+/// The value with 12 significant digits. A table shows 6 and not 6.000000000000001, the last digits of a change of
+/// units.
+#[must_use]
+pub fn rounded(value: f64) -> f64 {
+    // Both conversions are exact to the last bit on every machine.
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_tables_have_twelve_digits() {
+        let six_feet_m = 6.0 * FOOT_M;
+        assert_eq!(rounded(six_feet_m * 1.000_000_000_000_000_2 / FOOT_M), 6.0);
+        assert_eq!(rounded(-0.123_456_789_012_345_6), -0.123_456_789_012);
+        assert_eq!(rounded(1.0 / 3.0).to_string(), "0.333333333333");
+        assert_eq!(rounded(0.0), 0.0);
+        assert!(rounded(f64::NAN).is_nan());
+    }
+}

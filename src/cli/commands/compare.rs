@@ -6,7 +6,7 @@ use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder;
+use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot::{self, BestShots};
 use bankshot::output::atomic_file;
@@ -24,9 +24,6 @@ use bankshot::sweep::sweep_folder::SweepFolder;
 use bankshot::sweep::sweep_toml::is_sweep;
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// A file beside the plots of a sweep that names the sweep's folder.
-const SWEEP_LINK: &str = "of_sweep.json";
 
 pub(crate) fn run(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     let Some(sweep) = open_sweep(&options.what)? else {
@@ -107,7 +104,12 @@ fn compare_on_court(
     };
     plot_files::write(&folder, &plots)?;
     let target = std::fs::canonicalize(sweep_path).unwrap_or(sweep_path.to_owned());
-    let link = serde_json::json!({ "sweep": target.display().to_string() });
+    let mut link = serde_json::json!({ "sweep": target.display().to_string() });
+    if let Some(other) = other {
+        let path = other.folder.path();
+        let path = std::fs::canonicalize(path).unwrap_or(path.to_owned());
+        link["against"] = path.display().to_string().into();
+    }
     let file = folder.join(SWEEP_LINK);
     atomic_file::write(&file, format!("{link:#}\n").as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
@@ -137,7 +139,8 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     ));
     let mut text = probabilities_text(&profile, &best);
     let mut exit = run_folder::exit_code(&profile, &best);
-    if let Some(other) = other {
+    let mut against = None;
+    if let (Some(other), Some(path)) = (other, &options.against) {
         let best = best_shot::find(&other, &bars)?;
         let shots = PlottedShot::of_best(&best);
         if let Some(mut plot) = bank_direct_release_map::draw_probabilities(&other, &shots) {
@@ -146,6 +149,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
         }
         text.push_str(&probabilities_text(&other, &best));
         exit = exit.max(run_folder::exit_code(&other, &best));
+        against = Some((path, other, best));
     }
     let folder = match &options.out {
         Some(folder) => folder.clone(),
@@ -153,8 +157,14 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     };
     plot_files::write(&folder, &plots)?;
     run_folder::write_best_shots(&folder, &options.what, &profile, &best)?;
-    // The folder may have had the plots of a sweep.
+    // The folder may have had another comparison.
     let _ = std::fs::remove_file(folder.join(SWEEP_LINK));
+    let against_folder = folder.join(AGAINST_FOLDER);
+    run_folder::remove_best_shots(&against_folder);
+    if let Some((path, other, best)) = against {
+        run_folder::prepare(&against_folder)?;
+        run_folder::write_best_shots(&against_folder, path, &other, &best)?;
+    }
     print_answer(&text)?;
     plot_files::print_captions(&folder, &plots, quiet)?;
     Ok(exit)

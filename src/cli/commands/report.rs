@@ -5,8 +5,11 @@ use crate::cli::args::FolderOptions;
 use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
+use bankshot::plots::sweep_difference_map;
+use bankshot::plots::sweep_results::SweepResults;
 use bankshot::report::ReportError;
 use bankshot::report::best_shot_page::best_shot_page;
 use bankshot::report::best_shot_run::{
@@ -14,14 +17,15 @@ use bankshot::report::best_shot_run::{
 };
 use bankshot::report::page::Page;
 use bankshot::report::sweep_page::sweep_page;
+use bankshot::sweep::SweepConfig;
 use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sweep_folder::SweepFolder;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The file of a sweep's folder that `sweep` writes first.
 const SWEEP_MANIFEST: &str = "configuration.json";
-/// The file beside the plots of a sweep that names the sweep's folder; `compare` writes it.
-const SWEEP_LINK: &str = "of_sweep.json";
 
 pub(crate) fn run(options: &FolderOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = &options.folder;
@@ -31,29 +35,68 @@ pub(crate) fn run(options: &FolderOptions, quiet: bool) -> Result<u8, Failure> {
     }
 }
 
-/// The sweep in a folder, or the sweep whose plots are in it.
-fn sweep_of(folder: &Path) -> Option<PathBuf> {
+/// The sweep in a folder, or the sweeps whose plots are in it.
+struct SweepPaths {
+    sweep: PathBuf,
+    against: Option<PathBuf>,
+}
+
+fn sweep_of(folder: &Path) -> Option<SweepPaths> {
     if folder.join(SWEEP_MANIFEST).exists() {
-        return Some(folder.to_owned());
+        return Some(SweepPaths {
+            sweep: folder.to_owned(),
+            against: None,
+        });
     }
     let text = std::fs::read_to_string(folder.join(SWEEP_LINK)).ok()?;
     let link: serde_json::Value = serde_json::from_str(&text).ok()?;
-    Some(PathBuf::from(link.get("sweep")?.as_str()?))
+    let path = |key: &str| Some(PathBuf::from(link.get(key)?.as_str()?));
+    Some(SweepPaths {
+        sweep: path("sweep")?,
+        against: path("against"),
+    })
 }
 
-fn report_sweep(folder: &Path, sweep: &Path, quiet: bool) -> Result<u8, Failure> {
-    let (sweep, config) = SweepFolder::open_read_only(sweep)?;
+fn report_sweep(folder: &Path, paths: &SweepPaths, quiet: bool) -> Result<u8, Failure> {
+    let (sweep, config, rows) = open_sweep(&paths.sweep)?;
+    let refuse = |error: ReportError| failure(folder, &error);
+    let mut page = sweep_page(&config, &rows, (sweep.program(), sweep.hash())).map_err(refuse)?;
+    let mut exit = sweep_summary::exit_code(&Jobs::new(&config), &rows);
+    if let Some(path) = &paths.against {
+        let (other_sweep, other, other_rows) = open_sweep(path)?;
+        let source = (other_sweep.program(), other_sweep.hash());
+        let other_page = sweep_page(&other, &other_rows, source).map_err(refuse)?;
+        let results = SweepResults::new(&config, &rows);
+        let difference =
+            sweep_difference_map::draw(&results, &SweepResults::new(&other, &other_rows));
+        page.add_comparison(other_page, difference);
+        exit = exit.max(sweep_summary::exit_code(&Jobs::new(&other), &other_rows));
+    }
+    write(folder, &page, quiet)?;
+    Ok(exit)
+}
+
+fn open_sweep(
+    path: &Path,
+) -> Result<(SweepFolder, SweepConfig, BTreeMap<u64, ResultRow>), Failure> {
+    let (sweep, config) = SweepFolder::open_read_only(path)?;
     let (rows, remarks) = sweep.union()?;
     for remark in remarks {
         print_remark(&format!("remark: {remark}"));
     }
-    let source = (sweep.program(), sweep.hash());
-    let page = sweep_page(&config, &rows, source).map_err(|error| failure(folder, &error))?;
-    write(folder, &page, quiet)?;
-    Ok(sweep_summary::exit_code(&Jobs::new(&config), &rows))
+    Ok((sweep, config, rows))
 }
 
 fn report_best_shots(folder: &Path, quiet: bool) -> Result<u8, Failure> {
+    let mut page = best_shots_page_of(folder, quiet)?;
+    let against = folder.join(AGAINST_FOLDER);
+    if against.join(BEST_SHOTS_FILE).exists() {
+        page.add_comparison(best_shots_page_of(&against, quiet)?, None);
+    }
+    write(folder, &page, quiet)
+}
+
+fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
     let profile = folder.join(PROFILE_FILE);
     if !profile.exists() {
         return Err(Failure::usage(format!(
@@ -71,10 +114,9 @@ fn report_best_shots(folder: &Path, quiet: bool) -> Result<u8, Failure> {
         curves: read_if_exists(CURVES_FILE)?,
         sensitivity: read_if_exists(SENSITIVITY_FILE)?,
     };
-    let page = BestShotRun::parse(&texts, &profile.display().to_string())
+    BestShotRun::parse(&texts, &profile.display().to_string())
         .and_then(|run| best_shot_page(&run, &ProgressBars::new(quiet)))
-        .map_err(|error| failure(folder, &error))?;
-    write(folder, &page, quiet)
+        .map_err(|error| failure(folder, &error))
 }
 
 fn failure(folder: &Path, error: &ReportError) -> Failure {

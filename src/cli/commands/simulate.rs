@@ -8,28 +8,38 @@ use crate::cli::terminal::print_remark;
 use bankshot::config::parse_physics;
 use bankshot::dynamics::{Integrator, Simulator};
 use bankshot::model::Physics;
-use bankshot::output::atomic_file::AtomicFile;
-use bankshot::output::simulation_csv::{OUTCOME_COLUMNS, ReleaseColumns, RowError, outcome_cells};
+use bankshot::output::atomic_file::{AtomicFile, same_file};
+use bankshot::output::simulation_files::csv_records::{CsvRecords, Row};
+use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
+use bankshot::output::simulation_files::release_columns::{
+    OUTCOME_COLUMNS, OUTCOME_TYPES, ReleaseColumns, RowError, outcome_cells,
+};
 use bankshot::probability::Progress;
-use csv::{ByteRecord, Reader, Writer};
+use csv::{ByteRecord, Writer};
+use parquet::basic::Type as Physical;
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 /// Rows in memory at a time.
-const BATCH: usize = 16_384;
+const BATCH_ROWS: usize = 16_384;
+/// Bytes of rows in memory at a time, about.
+const BATCH_BYTES: usize = 8 << 20;
 /// Bad rows that are reported one by one.
 const MAX_REPORTED: u64 = 20;
 
 pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure> {
+    if same_file(&options.releases, &options.output) {
+        return Err(Failure::usage(format!(
+            "--output {}: this is the input; choose another file",
+            options.output.display()
+        )));
+    }
     let simulator = simulator(options)?;
-    let mut reader = open(&options.releases)?;
-    let header = reader
-        .byte_headers()
-        .map_err(|error| input_failure(options, &error))?
-        .clone();
-    let columns = ReleaseColumns::new(&header)
+    let mut source = Source::open(&options.releases)?;
+    let header = source.header(options)?;
+    let columns = ReleaseColumns::new(&header, &options.carry)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
     let bars = ProgressBars::new(quiet);
     let total = std::fs::metadata(&options.releases).map_or(0, |about| about.len());
@@ -38,24 +48,30 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
         options,
         simulator,
         columns,
+        width: header.len(),
         bars,
         bad_rows: 0,
         rows: 0,
     };
+    let refuse = |error: io::Error| Failure::io(options.output.display(), &error);
     if options.output == Path::new("-") {
-        let out = BufWriter::new(io::stdout().lock());
-        match stream.run(&mut reader, &header, out) {
+        let sink = Sink::csv(BufWriter::with_capacity(1 << 16, io::stdout()), &header);
+        let result = sink
+            .and_then(|sink| stream.run(&mut source, sink))
+            .and_then(|mut out| out.flush().map_err(StreamError::Output));
+        match result {
             Err(StreamError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {}
-            result => {
-                result.map_err(|error| error.failure(options))?;
-            }
+            result => result.map_err(|error| error.failure(options))?,
         }
     } else {
-        let refuse = |error: io::Error| Failure::io(options.output.display(), &error);
-        let file = AtomicFile::new(&options.output).map_err(refuse)?;
-        let out = BufWriter::new(file);
-        let out = stream
-            .run(&mut reader, &header, out)
+        let out = BufWriter::new(AtomicFile::new(&options.output).map_err(refuse)?);
+        let sink = if is_parquet(&options.output) {
+            Sink::parquet(out, &source, &header)
+        } else {
+            Sink::csv(out, &header)
+        };
+        let out = sink
+            .and_then(|sink| stream.run(&mut source, sink))
             .map_err(|error| error.failure(options))?;
         out.into_inner()
             .map_err(|error| refuse(error.into_error()))?
@@ -93,40 +109,161 @@ fn simulator(options: &SimulateOptions) -> Result<Simulator, Failure> {
     Simulator::with_integrator(&physics, integrator).map_err(Failure::usage)
 }
 
-fn open(path: &Path) -> Result<Reader<Box<dyn Read>>, Failure> {
-    let input: Box<dyn Read> = if path == Path::new("-") {
-        Box::new(io::stdin())
-    } else {
+fn is_parquet(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
+}
+
+/// Where the releases come from.
+enum Source {
+    Csv(CsvRecords<Box<dyn Read>>),
+    Parquet(Box<ParquetRows>),
+}
+
+impl Source {
+    fn open(path: &Path) -> Result<Self, Failure> {
         let refuse = |error: io::Error| Failure::usage(format!("{}: {error}", path.display()));
+        if path == Path::new("-") {
+            let records = CsvRecords::new(Box::new(io::stdin()) as Box<dyn Read>);
+            return records.map(Self::Csv).map_err(refuse);
+        }
         let file = File::open(path).map_err(refuse)?;
         if file.metadata().map_err(refuse)?.is_dir() {
             return Err(Failure::usage(format!("{}: is a folder", path.display())));
         }
-        Box::new(file)
-    };
-    Ok(csv::ReaderBuilder::new()
-        .flexible(true)
-        .buffer_capacity(1 << 18)
-        .from_reader(input))
+        if is_parquet(path) {
+            let rows = ParquetRows::open(file)
+                .map_err(|error| Failure::usage(format!("{}: {error}", path.display())))?;
+            return Ok(Self::Parquet(Box::new(rows)));
+        }
+        let records = CsvRecords::new(Box::new(file) as Box<dyn Read>);
+        records.map(Self::Csv).map_err(refuse)
+    }
+
+    fn header(&mut self, options: &SimulateOptions) -> Result<ByteRecord, Failure> {
+        let records = match self {
+            Self::Csv(records) => records,
+            Self::Parquet(rows) => return Ok(rows.header()),
+        };
+        loop {
+            let rows = records
+                .next_rows(1, 1)
+                .map_err(|error| StreamError::Input(error.to_string()).failure(options))?;
+            match rows.into_iter().next() {
+                None => return Ok(ByteRecord::new()),
+                Some(Row {
+                    cells: Ok(cells), ..
+                }) => return Ok(cells),
+                // Empty lines before the header.
+                Some(Row {
+                    cells: Err(reason), ..
+                }) if reason == "is empty" => {}
+                Some(Row {
+                    number,
+                    cells: Err(reason),
+                }) => {
+                    return Err(Failure::usage(format!(
+                        "{}: line {number}: {reason}",
+                        options.releases.display()
+                    )));
+                }
+            }
+        }
+    }
+
+    /// What the number of a row counts.
+    fn row_name(&self) -> &'static str {
+        match self {
+            Self::Csv(_) => "line",
+            Self::Parquet(_) => "row",
+        }
+    }
+
+    fn next_rows(&mut self) -> Result<Vec<Row>, StreamError> {
+        match self {
+            Self::Csv(records) => records
+                .next_rows(BATCH_ROWS, BATCH_BYTES)
+                .map_err(|error| StreamError::Input(error.to_string())),
+            Self::Parquet(rows) => rows
+                .next_rows(BATCH_ROWS)
+                .map_err(|error| StreamError::Input(error.to_string())),
+        }
+    }
 }
 
-fn input_failure(options: &SimulateOptions, error: &csv::Error) -> Failure {
-    Failure {
-        code: code::IO,
-        message: format!("{}: {error}", options.releases.display()),
+/// Where the outcomes go.
+enum Sink<W: Write + Send> {
+    Csv(Box<Writer<W>>),
+    Parquet(Box<ParquetSink<W>>),
+}
+
+impl<W: Write + Send> Sink<W> {
+    fn csv(out: W, header: &ByteRecord) -> Result<Self, StreamError> {
+        let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
+        let added = OUTCOME_COLUMNS.iter().map(|name| name.as_bytes());
+        writer
+            .write_record(header.iter().chain(added))
+            .map_err(output_error)?;
+        Ok(Self::Csv(Box::new(writer)))
+    }
+
+    /// The columns of a Parquet input keep their types; of a CSV input, those of parameters are numbers.
+    fn parquet(out: W, source: &Source, header: &ByteRecord) -> Result<Self, StreamError> {
+        let failed = |error: parquet::errors::ParquetError| StreamError::Input(error.to_string());
+        let mut columns = match source {
+            Source::Parquet(rows) => rows.columns().to_vec(),
+            Source::Csv(_) => header
+                .iter()
+                .map(|cell| {
+                    let name = String::from_utf8_lossy(cell.trim_ascii());
+                    let is_number = ReleaseColumns::is_parameter(&name);
+                    let of = if is_number {
+                        Physical::DOUBLE
+                    } else {
+                        Physical::BYTE_ARRAY
+                    };
+                    column(&name, of)
+                })
+                .collect::<Result<_, _>>()
+                .map_err(failed)?,
+        };
+        for (name, of) in OUTCOME_COLUMNS.iter().zip(OUTCOME_TYPES) {
+            columns.push(column(name, of).map_err(failed)?);
+        }
+        let sink = ParquetSink::new(out, &columns).map_err(failed)?;
+        Ok(Self::Parquet(Box::new(sink)))
+    }
+
+    fn write(&mut self, row: ByteRecord) -> Result<(), StreamError> {
+        match self {
+            Self::Csv(writer) => writer.write_byte_record(&row).map_err(output_error),
+            Self::Parquet(sink) => sink.push(row).map_err(parquet_output_error),
+        }
+    }
+
+    fn finish(self) -> Result<W, StreamError> {
+        match self {
+            Self::Csv(writer) => writer
+                .into_inner()
+                .map_err(|error| StreamError::Output(error.into_error())),
+            Self::Parquet(sink) => sink.finish().map_err(parquet_output_error),
+        }
     }
 }
 
 /// Why a stream ended early.
 enum StreamError {
-    Input(csv::Error),
+    Input(String),
     Output(io::Error),
 }
 
 impl StreamError {
     fn failure(self, options: &SimulateOptions) -> Failure {
         match self {
-            Self::Input(error) => input_failure(options, &error),
+            Self::Input(message) => Failure {
+                code: code::IO,
+                message: format!("{}: {message}", options.releases.display()),
+            },
             Self::Output(error) => Failure::io(options.output.display(), &error),
         }
     }
@@ -139,94 +276,91 @@ fn output_error(error: csv::Error) -> StreamError {
     }
 }
 
+fn parquet_output_error(error: parquet::errors::ParquetError) -> StreamError {
+    StreamError::Output(io::Error::other(error.to_string()))
+}
+
 struct Stream<'a> {
     options: &'a SimulateOptions,
     simulator: Simulator,
     columns: ReleaseColumns,
+    /// Number of columns of the input.
+    width: usize,
     bars: ProgressBars,
     bad_rows: u64,
     rows: u64,
 }
 
 impl Stream<'_> {
-    fn run<W: Write>(
+    fn run<W: Write + Send>(
         &mut self,
-        reader: &mut Reader<Box<dyn Read>>,
-        header: &ByteRecord,
-        out: W,
+        source: &mut Source,
+        mut sink: Sink<W>,
     ) -> Result<W, StreamError> {
-        let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
-        let added = OUTCOME_COLUMNS.iter().map(|name| name.as_bytes());
-        writer
-            .write_record(header.iter().chain(added))
-            .map_err(output_error)?;
-        let mut batch: Vec<ByteRecord> = Vec::with_capacity(BATCH);
+        let mut shown = 0;
         loop {
-            batch.clear();
-            let mut record = ByteRecord::new();
-            let mut bytes = 0;
-            while batch.len() < BATCH
-                && reader
-                    .read_byte_record(&mut record)
-                    .map_err(StreamError::Input)?
-            {
-                bytes += record.as_slice().len() as u64 + record.len() as u64;
-                batch.push(std::mem::take(&mut record));
-            }
+            let batch = source.next_rows()?;
             if batch.is_empty() {
-                break;
+                return sink.finish();
             }
-            self.write(&batch, header.len(), &mut writer)?;
-            self.bars.advance(bytes);
+            let rows = batch.len() as u64;
+            self.write(batch, source.row_name(), &mut sink)?;
+            if let Source::Csv(records) = source {
+                self.bars.advance(records.bytes_read() - shown);
+                shown = records.bytes_read();
+            } else {
+                self.bars.advance(rows);
+            }
         }
-        writer.flush().map_err(StreamError::Output)?;
-        writer
-            .into_inner()
-            .map_err(|error| StreamError::Output(io::Error::other(error.to_string())))
     }
 
-    fn write<W: Write>(
+    fn outcome(&self, row: &Row) -> Result<[String; OUTCOME_COLUMNS.len()], String> {
+        let cells = row.cells.as_ref().map_err(Clone::clone)?;
+        if cells.len() > self.width {
+            let error = RowError::too_many_fields(cells.len(), self.width);
+            return Err(error.to_string());
+        }
+        let release = self
+            .columns
+            .release(cells, self.simulator.physics())
+            .map_err(|error| error.to_string())?;
+        // Its values are finite: they were checked one by one.
+        let outcome = self
+            .simulator
+            .simulate(&release)
+            .map_err(|error| error.to_string())?;
+        Ok(outcome_cells(&outcome))
+    }
+
+    fn write<W: Write + Send>(
         &mut self,
-        batch: &[ByteRecord],
-        columns: usize,
-        writer: &mut Writer<W>,
+        batch: Vec<Row>,
+        row_name: &str,
+        sink: &mut Sink<W>,
     ) -> Result<(), StreamError> {
-        let outcomes: Vec<_> = batch
-            .par_iter()
-            .map(|row| {
-                if row.len() > columns {
-                    return Err(RowError::too_many_fields(row.len(), columns));
-                }
-                let release = self.columns.release(row, self.simulator.physics())?;
-                let outcome = self.simulator.simulate(&release);
-                // Its values are finite: they were checked one by one.
-                outcome
-                    .map(|outcome| outcome_cells(&outcome))
-                    .map_err(|error| RowError {
-                        column: "release".to_owned(),
-                        reason: error.to_string(),
-                    })
-            })
-            .collect();
-        for (row, outcome) in batch.iter().zip(outcomes) {
+        let outcomes: Vec<_> = batch.par_iter().map(|row| self.outcome(row)).collect();
+        for (row, outcome) in batch.into_iter().zip(outcomes) {
             self.rows += 1;
-            let cells = outcome.unwrap_or_else(|error| {
+            let cells = outcome.unwrap_or_else(|reason| {
                 self.bad_rows += 1;
                 if self.bad_rows <= MAX_REPORTED {
                     print_remark(&format!(
-                        "{}: row {}: {error}",
+                        "{}: {row_name} {}: {reason}",
                         self.options.releases.display(),
-                        self.rows
+                        row.number
                     ));
                 }
                 Default::default()
             });
-            // A short row is filled up, so that the added columns keep their positions.
-            let fill = std::iter::repeat_n(&b""[..], columns.saturating_sub(row.len()));
-            let added = cells.iter().map(String::as_bytes);
-            writer
-                .write_record(row.iter().take(columns).chain(fill).chain(added))
-                .map_err(output_error)?;
+            // A short row is filled up and a long one cut, so that the added columns keep their positions. A row
+            // that cannot be read is empty.
+            let mut record = row.cells.unwrap_or_default();
+            record.truncate(self.width);
+            while record.len() < self.width {
+                record.push_field(b"");
+            }
+            record.extend(cells.iter().map(String::as_bytes));
+            sink.write(record)?;
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Summaries of a sweep's results as text.
 
 use crate::cli::failure::code;
+use bankshot::sweep::bank_advantage::BankAdvantage;
 use bankshot::sweep::jobs::Jobs;
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
 use bankshot::sweep::{SweepConfig, columns};
@@ -46,29 +47,22 @@ pub(crate) fn highlights(
     jobs: &Jobs,
     rows: &BTreeMap<u64, ResultRow>,
 ) -> String {
-    let mut best_by_spot: Vec<(f64, &ResultRow)> = Vec::new();
-    let (mut bank_wins, mut compared) = (0, 0);
+    let mut best_by_place: Vec<(f64, &ResultRow)> = Vec::new();
     for source in &jobs.sources {
         let found: Vec<(f64, &ResultRow)> = (0..jobs.kinds.len())
             .filter_map(|kind| rows.get(&jobs.number(source.computed, kind)))
             .filter_map(|row| Some((row.real(columns::PROBABILITY)?, row)))
             .collect();
-        if let [(direct, _), (bank, _)] = found[..] {
-            compared += 1;
-            bank_wins += usize::from(bank > direct);
-        }
-        best_by_spot.extend(found.into_iter().reduce(larger));
+        best_by_place.extend(found.into_iter().reduce(larger));
     }
-    let best = best_by_spot.iter().copied().reduce(larger);
-    let worst = best_by_spot.iter().copied().reduce(smaller);
+    let best = best_by_place.iter().copied().reduce(larger);
+    let worst = best_by_place.iter().copied().reduce(smaller);
     let mut text = String::new();
     for (label, place) in [("best", best), ("worst", worst)] {
         text.extend(place.and_then(|(p, row)| place_text(config, label, p, row)));
     }
-    if compared > 0 {
-        text.push_str(&format!(
-            "the bank shot is better at {bank_wins} of {compared} places\n"
-        ));
+    if let Some(advantage) = BankAdvantage::of(jobs, rows) {
+        text.push_str(&format!("{advantage}\n"));
     }
     text
 }

@@ -1,7 +1,8 @@
 //! Direct and bank shots.
 
+use super::nominal::Nominal;
+use super::profile::Profile;
 use crate::model::SolidId;
-use crate::shooter::{Nominal, Profile};
 use serde::Serialize;
 
 /// The two kinds of nominal shots. The kind depends on the first touch of the error-free flight, not on the
@@ -38,7 +39,7 @@ impl ShotKind {
     }
 
     /// Position in [`ShotKind::ALL`].
-    pub(super) fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self as usize
     }
 }

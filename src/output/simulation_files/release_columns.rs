@@ -1,9 +1,10 @@
-//! Releases from CSV columns, and the columns that a simulation adds.
+//! Releases from the columns of a file, and the columns that a simulation adds.
 
 use crate::dynamics::{Outcome, Release};
 use crate::model::{Physics, SolidId};
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use csv::ByteRecord;
+use parquet::basic::Type as Physical;
 
 /// One parameter of a release.
 struct Parameter {
@@ -52,7 +53,7 @@ const PARAMETERS: [Parameter; 9] = [
 ];
 
 /// The columns that a simulation adds.
-pub const OUTCOME_COLUMNS: [&str; 7] = [
+pub const OUTCOME_COLUMNS: [&str; 8] = [
     "made",
     "kind",
     "contacts",
@@ -60,6 +61,19 @@ pub const OUTCOME_COLUMNS: [&str; 7] = [
     "n_ring",
     "flight_time_s",
     "entry_angle_deg",
+    "first_touch_s",
+];
+
+/// Their types in Parquet.
+pub const OUTCOME_TYPES: [Physical; 8] = [
+    Physical::INT64,
+    Physical::BYTE_ARRAY,
+    Physical::BYTE_ARRAY,
+    Physical::INT64,
+    Physical::INT64,
+    Physical::DOUBLE,
+    Physical::DOUBLE,
+    Physical::DOUBLE,
 ];
 
 /// The columns of the parameters in one file.
@@ -99,8 +113,9 @@ impl ReleaseColumns {
     /// Finds the columns of the parameters in a header.
     ///
     /// # Errors
-    /// All columns that are missing, given twice, misspelt, or have the name of an added column.
-    pub fn new(header: &ByteRecord) -> Result<Self, HeaderError> {
+    /// All columns that are missing, given twice, unknown quantities that are not in `carried`, or have the name of
+    /// an added column; and all of `carried` that do not exist.
+    pub fn new(header: &ByteRecord, carried: &[String]) -> Result<Self, HeaderError> {
         let mut errors = Vec::new();
         let mut columns = [None; 9];
         for (column, parameter) in columns.iter_mut().zip(&PARAMETERS) {
@@ -128,11 +143,27 @@ impl ReleaseColumns {
                 )),
             }
         }
-        for cell in header.iter().filter(|cell| is_misspelt(cell)) {
-            errors.push(format!(
-                "column {} looks like a parameter but is not one; see `bankshot simulate --help` for their names and units",
-                String::from_utf8_lossy(cell)
-            ));
+        for cell in header {
+            let name = String::from_utf8_lossy(cell.trim_ascii());
+            let is_carried = carried.iter().any(|carried| *carried == name);
+            if !is_carried && is_unknown_quantity(&name) {
+                errors.push(format!(
+                    "column {name} looks like a quantity, but no such column is known (is it {}?); rename it, or keep it as it is with --carry {name}",
+                    nearest_column(&name)
+                ));
+            }
+        }
+        for name in carried {
+            if !header
+                .iter()
+                .any(|cell| cell.trim_ascii() == name.as_bytes())
+            {
+                errors.push(format!("--carry {name}: there is no such column"));
+            } else if is_parameter(name) {
+                errors.push(format!(
+                    "--carry {name}: this column is used, not only carried"
+                ));
+            }
         }
         for added in OUTCOME_COLUMNS {
             if header
@@ -149,6 +180,12 @@ impl ReleaseColumns {
         } else {
             Err(HeaderError(errors))
         }
+    }
+
+    /// Whether this is the column of a parameter.
+    #[must_use]
+    pub fn is_parameter(name: &str) -> bool {
+        is_parameter(name)
     }
 
     /// The release of one row.
@@ -212,41 +249,49 @@ impl ReleaseColumns {
     }
 }
 
-/// Whether a column is named like a parameter, but with other case or another unit.
-fn is_misspelt(cell: &[u8]) -> bool {
-    const UNITS: [&str; 14] = [
-        "", "_ft", "_in", "_m", "_cm", "_deg", "_rad", "_ft_s", "_m_s", "_mph", "_km_h", "_rpm",
-        "_hz", "_deg_s",
-    ];
-    const STEMS: [&str; 9] = [
-        "distance",
-        "court_angle",
-        "release_height",
-        "speed",
-        "pitch",
-        "polar",
-        "backspin",
-        "rifle_spin",
-        "side_spin",
-    ];
-    let Ok(name) = std::str::from_utf8(cell.trim_ascii()) else {
-        return false;
-    };
-    let known = PARAMETERS
+/// Whether this is the column of a parameter.
+fn is_parameter(name: &str) -> bool {
+    parameter_columns().any(|column| column == name)
+}
+
+fn parameter_columns() -> impl Iterator<Item = &'static str> {
+    PARAMETERS
         .iter()
-        .flat_map(|p| p.columns)
-        .any(|(column, _)| column == name);
+        .flat_map(|parameter| parameter.columns)
+        .map(|(name, _)| name)
+}
+
+/// Whether a column that is not known is named like a quantity: it has a unit, or the word of a parameter.
+fn is_unknown_quantity(name: &str) -> bool {
+    const UNITS: [&str; 22] = [
+        "ft", "feet", "in", "inch", "inches", "m", "cm", "mm", "deg", "degrees", "rad", "mph",
+        "fps", "mps", "kmh", "rpm", "rps", "hz", "s", "ms", "h", "rev",
+    ];
+    const WORDS: [&str; 9] = [
+        "distance", "angle", "height", "speed", "velocity", "pitch", "polar", "spin", "azimuth",
+    ];
     let lower = name.to_ascii_lowercase();
-    let alike = PARAMETERS
-        .iter()
-        .flat_map(|p| p.columns)
-        .any(|(column, _)| column == lower);
-    let other_unit = STEMS.iter().any(|stem| {
-        lower
-            .strip_prefix(stem)
-            .is_some_and(|unit| UNITS.contains(&unit))
-    });
-    !known && (alike || other_unit)
+    let unit = lower
+        .rsplit(['_', ' ', '(', '['])
+        .next()
+        .unwrap_or_default();
+    let has_unit = lower.len() > unit.len() && UNITS.contains(&unit.trim_end_matches([')', ']']));
+    !is_parameter(name) && (has_unit || WORDS.iter().any(|word| lower.contains(word)))
+}
+
+/// The column of a parameter whose name is most like this one.
+fn nearest_column(name: &str) -> &'static str {
+    let lower = name.to_ascii_lowercase();
+    let likeness = |column: &str| strsim::jaro_winkler(&lower, column);
+    parameter_columns()
+        .reduce(|best, next| {
+            if likeness(next) > likeness(best) {
+                next
+            } else {
+                best
+            }
+        })
+        .unwrap_or_default()
 }
 
 fn cell(row: &ByteRecord, column: usize, name: &str) -> Result<f64, RowError> {
@@ -272,7 +317,7 @@ fn cell(row: &ByteRecord, column: usize, name: &str) -> Result<f64, RowError> {
 
 /// The added cells of a simulated row, in the order of [`OUTCOME_COLUMNS`].
 #[must_use]
-pub fn outcome_cells(outcome: &Outcome) -> [String; 7] {
+pub fn outcome_cells(outcome: &Outcome) -> [String; 8] {
     let contacts = &outcome.verdict.contacts;
     [
         u8::from(outcome.verdict.made).to_string(),
@@ -284,5 +329,49 @@ pub fn outcome_cells(outcome: &Outcome) -> [String; 7] {
         outcome.entry.map_or_else(String::new, |entry| {
             (entry.angle_rad / DEGREE_RAD).to_string()
         }),
+        outcome
+            .first_touch_s
+            .map_or_else(String::new, |time_s| time_s.to_string()),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_unknown_quantities_have_a_nearest_column() {
+        for (name, nearest) in [
+            ("spin_rev_s", "side_spin_rev_s"),
+            ("backspin_rps", "backspin_rev_s"),
+            ("backspin", "backspin_rev_s"),
+            ("Speed_ft_s", "speed_ft_s"),
+            ("pitch_degrees", "pitch_deg"),
+            ("release height (ft)", "release_height_ft"),
+        ] {
+            assert!(is_unknown_quantity(name), "{name}");
+            assert_eq!(nearest_column(name), nearest, "{name}");
+        }
+        for name in [
+            "spin_rpm",
+            "ReleaseSpeed",
+            "velocity",
+            "arc_ft",
+            "hang_time_s",
+        ] {
+            assert!(is_unknown_quantity(name), "{name}");
+        }
+        for name in [
+            "note",
+            "player",
+            "id",
+            "session",
+            "speed_ft_s",
+            "s",
+            "points",
+            "team_s_name",
+        ] {
+            assert!(!is_unknown_quantity(name), "{name}");
+        }
+    }
 }

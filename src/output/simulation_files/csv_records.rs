@@ -1,0 +1,381 @@
+//! Splits a CSV text into records with their line numbers, in bounded memory.
+//!
+//! The `csv` crate decodes the records; this scanner only finds where they end. So it can say on which line a quote
+//! was opened that is never closed, and go on after that line instead of swallowing the rest of the file.
+
+use csv::ByteRecord;
+use std::io::{self, Read};
+
+/// Longest record, bytes.
+pub const MAX_RECORD_BYTES: usize = 1 << 20;
+/// Bytes that are read at a time.
+const READ_BYTES: usize = 1 << 18;
+
+/// One row of a file, and where it stands there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Number of its line in a CSV file, of its row in a Parquet file; from 1.
+    pub number: u64,
+    /// Its cells, or why it cannot be read.
+    pub cells: Result<ByteRecord, String>,
+}
+
+/// The records of a CSV text.
+#[derive(Debug)]
+pub struct CsvRecords<R> {
+    input: R,
+    buffer: Vec<u8>,
+    /// Where the next record starts in the buffer.
+    start: usize,
+    /// The line of that place, from 1.
+    line: u64,
+    at_end: bool,
+    /// Empty lines that were passed and not reported: the first one, and their number.
+    empty_lines: (u64, u64),
+    bytes_read: u64,
+}
+
+/// Where a record ends.
+enum End {
+    /// Length with the line feed, if it has one.
+    Complete(usize),
+    /// A quote on this line is not closed; the length up to the end of that line.
+    OpenQuote { line: u64, length: usize },
+    /// Longer than [`MAX_RECORD_BYTES`].
+    TooLong,
+}
+
+impl<R: Read> CsvRecords<R> {
+    /// The records of a text. A byte order mark at its start is skipped.
+    ///
+    /// # Errors
+    /// The text cannot be read.
+    pub fn new(input: R) -> io::Result<Self> {
+        let mut records = Self {
+            input,
+            buffer: Vec::new(),
+            start: 0,
+            line: 1,
+            at_end: false,
+            empty_lines: (0, 0),
+            bytes_read: 0,
+        };
+        while records.buffer.len() < 3 && !records.at_end {
+            records.read_more()?;
+        }
+        if records.buffer.starts_with(b"\xef\xbb\xbf") {
+            records.start = 3;
+        }
+        Ok(records)
+    }
+
+    /// Bytes read so far.
+    #[must_use]
+    pub fn bytes_read(&self) -> u64 {
+        self.bytes_read
+    }
+
+    fn read_more(&mut self) -> io::Result<()> {
+        self.buffer.drain(..self.start);
+        self.start = 0;
+        let old = self.buffer.len();
+        self.buffer.resize(old + READ_BYTES, 0);
+        let read = loop {
+            match self.input.read(&mut self.buffer[old..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                result => break result,
+            }
+        };
+        self.buffer.truncate(old + *read.as_ref().unwrap_or(&0));
+        self.at_end = read? == 0;
+        self.bytes_read += (self.buffer.len() - old) as u64;
+        Ok(())
+    }
+
+    /// The end of the record at `self.start`, whose bytes are then all in the buffer; `None` at the end of the text.
+    fn find_end(&mut self) -> io::Result<Option<End>> {
+        let mut scan = Scan::default();
+        loop {
+            let record = &self.buffer[self.start..];
+            if let Some(length) = scan.advance(record) {
+                return Ok(Some(End::Complete(length)));
+            }
+            let is_open = scan.is_misplaced || (scan.quote.is_some() && self.at_end);
+            if is_open || record.len() > MAX_RECORD_BYTES {
+                return Ok(Some(match scan.quote {
+                    Some(quote) => {
+                        let line = self.line + count_lines(&record[..quote]);
+                        let rest = memchr::memchr(b'\n', &record[quote..]);
+                        let length = rest.map_or(record.len(), |end| quote + end + 1);
+                        End::OpenQuote { line, length }
+                    }
+                    None => End::TooLong,
+                }));
+            }
+            if self.at_end {
+                return Ok((!record.is_empty()).then_some(End::Complete(record.len())));
+            }
+            self.read_more()?;
+        }
+    }
+
+    /// Skips the rest of a line that is too long to be kept.
+    fn skip_line(&mut self) -> io::Result<()> {
+        loop {
+            if let Some(end) = memchr::memchr(b'\n', &self.buffer[self.start..]) {
+                self.start += end + 1;
+                self.line += 1;
+                return Ok(());
+            }
+            self.start = self.buffer.len();
+            if self.at_end {
+                return Ok(());
+            }
+            self.read_more()?;
+        }
+    }
+
+    /// The bytes of the next record with its line, or why it cannot be read; `None` at the end.
+    fn next_bytes(&mut self) -> io::Result<Option<(u64, Result<&[u8], String>)>> {
+        loop {
+            let Some(end) = self.find_end()? else {
+                // Empty lines at the end are no rows.
+                return Ok(None);
+            };
+            let line = self.line;
+            if let End::Complete(length) = end {
+                let record = &self.buffer[self.start..self.start + length];
+                if matches!(record, b"\n" | b"\r\n" | b"\r" | b"") {
+                    if self.empty_lines.1 == 0 {
+                        self.empty_lines.0 = line;
+                    }
+                    self.empty_lines.1 += 1;
+                    self.start += length;
+                    self.line += 1;
+                    continue;
+                }
+            }
+            if self.empty_lines.1 > 0 {
+                let (line, more) = self.empty_lines;
+                self.empty_lines = (line + 1, more - 1);
+                return Ok(Some((line, Err("is empty".to_owned()))));
+            }
+            return Ok(Some(match end {
+                End::Complete(length) => {
+                    let record = &self.buffer[self.start..self.start + length];
+                    self.start += length;
+                    self.line += count_lines(record);
+                    (line, Ok(record))
+                }
+                End::OpenQuote { line, length } => {
+                    let record = &self.buffer[self.start..self.start + length];
+                    self.line += count_lines(record);
+                    self.start += length;
+                    (
+                        line,
+                        Err("a quote is opened here and not closed".to_owned()),
+                    )
+                }
+                End::TooLong => {
+                    self.skip_line()?;
+                    let reason = format!("is longer than {MAX_RECORD_BYTES} bytes");
+                    (line, Err(reason))
+                }
+            }));
+        }
+    }
+
+    /// The next rows: at most `most`, and about `bytes` bytes.
+    ///
+    /// # Errors
+    /// The text cannot be read.
+    pub fn next_rows(&mut self, most: usize, bytes: usize) -> io::Result<Vec<Row>> {
+        let mut text = Vec::new();
+        let mut rows = Vec::new();
+        while rows.len() < most && text.len() < bytes {
+            let Some((number, record)) = self.next_bytes()? else {
+                break;
+            };
+            let cells = record.map(|record| {
+                text.extend_from_slice(record);
+                if !record.ends_with(b"\n") {
+                    text.push(b'\n');
+                }
+                ByteRecord::new()
+            });
+            rows.push(Row { number, cells });
+        }
+        let mut decoded = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(&text[..])
+            .into_byte_records();
+        for row in &mut rows {
+            if let Ok(cells) = &mut row.cells {
+                match decoded.next() {
+                    Some(Ok(record)) => *cells = record,
+                    _ => row.cells = Err("is not CSV".to_owned()),
+                }
+            }
+        }
+        Ok(rows)
+    }
+}
+
+fn count_lines(bytes: &[u8]) -> u64 {
+    memchr::memchr_iter(b'\n', bytes).count() as u64
+}
+
+/// The scan of one record, from its start as far as its bytes are known.
+#[derive(Default)]
+struct Scan {
+    /// Bytes that have been scanned.
+    position: usize,
+    /// Where the open quote is.
+    quote: Option<usize>,
+    /// A quote that spans lines is followed by more text in its cell: it was not meant to be closed there.
+    is_misplaced: bool,
+}
+
+impl Scan {
+    /// Scans on; returns the length of the record with its line feed, once that is known.
+    fn advance(&mut self, record: &[u8]) -> Option<usize> {
+        while !self.is_misplaced && self.position < record.len() {
+            let rest = &record[self.position..];
+            if let Some(quote) = self.quote {
+                let Some(next) = memchr::memchr(b'"', rest) else {
+                    self.position = record.len();
+                    break;
+                };
+                let at = self.position + next;
+                // What follows decides between a closing quote and a quote in the text.
+                match record.get(at + 1) {
+                    None => {
+                        self.position = at;
+                        break;
+                    }
+                    Some(b'"') => self.position = at + 2,
+                    Some(b',' | b'\n' | b'\r') => {
+                        self.quote = None;
+                        self.position = at + 1;
+                    }
+                    Some(_) => {
+                        self.is_misplaced = memchr::memchr(b'\n', &record[quote..at]).is_some();
+                        if !self.is_misplaced {
+                            self.quote = None;
+                            self.position = at + 1;
+                        }
+                    }
+                }
+                continue;
+            }
+            match memchr::memchr2(b'"', b'\n', rest) {
+                None => self.position = record.len(),
+                Some(next) => {
+                    let at = self.position + next;
+                    self.position = at + 1;
+                    if record[at] == b'\n' {
+                        return Some(at + 1);
+                    }
+                    if at == 0 || record[at - 1] == b',' {
+                        self.quote = Some(at);
+                    }
+                }
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives its bytes one at a time, so that every boundary of a read is tried.
+    struct Drip<'a>(&'a [u8]);
+
+    impl Read for Drip<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let n = self.0.len().min(1);
+            buffer[..n].copy_from_slice(&self.0[..n]);
+            self.0 = &self.0[n..];
+            Ok(n)
+        }
+    }
+
+    fn rows(text: &[u8]) -> Vec<(u64, Result<Vec<String>, String>)> {
+        let read = |input: &mut dyn Read| -> Vec<Row> {
+            let mut records = CsvRecords::new(input).unwrap();
+            let mut all = Vec::new();
+            loop {
+                let rows = records.next_rows(2, 1 << 20).unwrap();
+                if rows.is_empty() {
+                    return all;
+                }
+                all.extend(rows);
+            }
+        };
+        let all = read(&mut &text[..]);
+        assert_eq!(all, read(&mut Drip(text)));
+        let cells = |record: ByteRecord| {
+            let cells = record
+                .iter()
+                .map(|cell| String::from_utf8_lossy(cell).into_owned());
+            cells.collect()
+        };
+        all.into_iter()
+            .map(|row| (row.number, row.cells.map(cells)))
+            .collect()
+    }
+
+    fn cells(cells: &[&str]) -> Result<Vec<String>, String> {
+        Ok(cells.iter().map(|cell| (*cell).to_owned()).collect())
+    }
+
+    #[test]
+    fn contract_rows_have_the_lines_of_the_file() {
+        let text = b"\xef\xbb\xbfa,b\r\n\"x\n\"\"y\",1\n\n\n2,3\nq\"q,4\n5,6";
+        let empty = || Err("is empty".to_owned());
+        let expected = vec![
+            (1, cells(&["a", "b"])),
+            (2, cells(&["x\n\"y", "1"])),
+            (4, empty()),
+            (5, empty()),
+            (6, cells(&["2", "3"])),
+            (7, cells(&["q\"q", "4"])),
+            (8, cells(&["5", "6"])),
+        ];
+        assert_eq!(rows(text), expected);
+        assert_eq!(rows(b"a\n\n\n"), vec![(1, cells(&["a"]))]);
+        assert_eq!(rows(b""), vec![]);
+    }
+
+    #[test]
+    fn contract_an_open_quote_costs_one_line() {
+        let open = || Err("a quote is opened here and not closed".to_owned());
+        let expected = vec![(1, cells(&["1"])), (2, open()), (3, cells(&["3", "4"]))];
+        assert_eq!(rows(b"1\n2,\"x\n3,4\n"), expected);
+        // The quote of another row does not close it.
+        let expected = vec![(1, open()), (2, cells(&["2"])), (3, cells(&["3", "b"]))];
+        assert_eq!(rows(b"1,\"a\n2\n3,\"b\"\n"), expected);
+    }
+
+    #[test]
+    fn contract_a_record_is_of_bounded_length() {
+        let mut text = b"1\n".to_vec();
+        text.resize(MAX_RECORD_BYTES + READ_BYTES + 100, b'x');
+        text.extend_from_slice(b"\n3\n");
+        let found = {
+            let mut records = CsvRecords::new(&text[..]).unwrap();
+            records.next_rows(10, 1 << 22).unwrap()
+        };
+        assert_eq!(found.len(), 3);
+        assert!(
+            found[1]
+                .cells
+                .as_ref()
+                .is_err_and(|reason| reason.contains("longer than"))
+        );
+        assert_eq!(found[2].number, 3);
+    }
+}

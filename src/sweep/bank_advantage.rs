@@ -1,0 +1,68 @@
+//! At how many places of a sweep the bank shot is better than the direct one.
+
+use super::jobs::Jobs;
+use super::result_row::ResultRow;
+use crate::analysis::sensitivity::Difference;
+use crate::shooter::ShotKind;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A difference is significant if it exceeds this many of its standard errors.
+pub const SIGNIFICANT_SIGMAS: f64 = 2.0;
+
+/// `a` minus `b`, two independent estimates of P.
+#[must_use]
+pub fn difference(a: Difference, b: Difference) -> Difference {
+    Difference {
+        value: a.value - b.value,
+        standard_error: libm::hypot(b.standard_error, a.standard_error),
+    }
+}
+
+/// Whether a difference, positive or negative, is significant.
+#[must_use]
+pub fn is_significant(difference: Difference) -> bool {
+    difference.value.abs() > SIGNIFICANT_SIGMAS * difference.standard_error
+}
+
+/// The number of places at which the bank shot is significantly better, of those with a shot of each kind. Mirrored
+/// places count. Its text is one sentence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BankAdvantage {
+    /// Places at which the bank shot is better.
+    pub better: usize,
+    /// Places with both a direct and a bank shot.
+    pub compared: usize,
+}
+
+impl BankAdvantage {
+    /// From the results of a sweep by job; `None` if no place has both kinds of shot.
+    #[must_use]
+    pub fn of(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Option<Self> {
+        let index = |kind| jobs.kinds.iter().position(|&other| other == kind);
+        let (direct, bank) = (index(ShotKind::Direct)?, index(ShotKind::Bank)?);
+        let gains: Vec<Difference> = jobs
+            .sources
+            .iter()
+            .filter_map(|source| {
+                let at = |kind| rows.get(&jobs.number(source.computed, kind))?.probability();
+                Some(difference(at(bank)?, at(direct)?))
+            })
+            .collect();
+        let is_better = |gain: &&Difference| is_significant(**gain) && gain.value > 0.0;
+        (!gains.is_empty()).then(|| Self {
+            better: gains.iter().filter(is_better).count(),
+            compared: gains.len(),
+        })
+    }
+}
+
+impl fmt::Display for BankAdvantage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "The bank shot is better at {} of {} places, by more than {SIGNIFICANT_SIGMAS} standard errors.",
+            self.better, self.compared
+        )
+    }
+}
