@@ -3,6 +3,7 @@
 use super::dispersion::{MAX_SPEED_M_S, MAX_SPIN_RAD_S, ReleaseDispersion};
 use super::identity_hash::{IdentityError, identity_hash};
 use super::location::{Location, LocationError};
+use super::name_check::is_control_or_direction;
 use super::nominal::{Nominal, NominalOverrides};
 use super::release_variable::NominalVariable;
 use super::search_settings::{Search, SearchSettings, TableGrid};
