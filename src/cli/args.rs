@@ -1,7 +1,10 @@
 //! The command line: commands and their options.
 
 use super::nominal_options::NominalOptions;
-use super::value_parsers::{UnitsArg, fault_injection, fraction, sample, shard, standard_error};
+use super::value_parsers::{
+    UnitsArg, fault_injection, fraction, instruction_set, sample, shard, standard_error,
+};
+use bankshot::dynamics::InstructionSet;
 use bankshot::sweep::jobs::Shard;
 use bankshot::sweep::run::FaultInjection;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -36,6 +39,9 @@ pub(crate) struct Arguments {
     /// Number of threads [default: all]; no result depends on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    /// Vector instructions [default: the best of this machine]; no result depends on them.
+    #[arg(long, global = true, value_name = "SET", value_parser = instruction_set, hide = true)]
+    pub(crate) simd: Option<InstructionSet>,
     /// No progress bar and no remarks on standard error.
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
@@ -81,8 +87,11 @@ pub(crate) enum Command {
         #[arg(long, value_name = "DIR", default_value = "figures")]
         out: PathBuf,
     },
-    /// Print the manual page.
-    Man,
+    /// Print the manual page of the program or of a command.
+    Man {
+        /// The command.
+        command: Option<String>,
+    },
 }
 
 #[derive(Args, Debug)]

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use bankshot::config::{MAX_FILE_BYTES, parse_profile};
 use bankshot::shooter::Profile;
-use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, named_files, parse_sweep};
+use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
 
@@ -38,6 +38,12 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
 /// Reads and checks a profile.
 pub(crate) fn load_profile(path: &Path) -> Result<Profile, Failure> {
     let text = read_text(path)?;
+    if is_sweep(&text) {
+        return Err(Failure::usage(format!(
+            "{}: this is a sweep, not a profile: use `bankshot sweep`",
+            path.display()
+        )));
+    }
     Ok(parse_profile(&text, &path.display().to_string())?)
 }
 
@@ -46,10 +52,21 @@ pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Fail
     let sweep = read_text(path)?;
     let files = named_files(&sweep);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let read = |name: Option<String>| name.map(|name| read_text(&folder.join(name))).transpose();
+    // A faulty line is quoted in a message, so only files of the right type are read.
+    let read = |name: Option<String>, key: &str, extension: &str| {
+        let Some(name) = name else { return Ok(None) };
+        let file = folder.join(&name);
+        if !file.extension().is_some_and(|given| given == extension) {
+            return Err(Failure::usage(format!(
+                "{}: sweep.{key} must name a .{extension} file, not \"{name}\"",
+                path.display()
+            )));
+        }
+        read_text(&file).map(Some)
+    };
     let texts = SourceTexts {
-        shooter: read(files.shooter)?,
-        places: read(files.places)?,
+        shooter: read(files.shooter, "shooter", "toml")?,
+        places: read(files.places, "places", "csv")?,
         sweep,
     };
     let config = parse_sweep(&texts, &path.display().to_string())?;

@@ -8,6 +8,7 @@ use bankshot::shooter::{IdentityError, ProfileError};
 use bankshot::sweep::SweepFolderError;
 use bankshot::sweep::result_store::StoreError;
 use std::fmt::Display;
+use std::io::ErrorKind;
 
 /// Exit codes.
 pub(crate) mod code {
@@ -64,6 +65,15 @@ impl Failure {
 impl From<SweepFolderError> for Failure {
     fn from(error: SweepFolderError) -> Self {
         let code = match &error {
+            // A link or a pipe in the place of a file.
+            SweepFolderError::Io { error, .. }
+                if matches!(
+                    error.kind(),
+                    ErrorKind::InvalidData | ErrorKind::InvalidInput
+                ) =>
+            {
+                code::DAMAGED
+            }
             SweepFolderError::Io { .. } => code::IO,
             SweepFolderError::Store(error) => return Self::from(error.clone()),
             SweepFolderError::InUse { .. } => code::STOPPED,

@@ -51,6 +51,9 @@ pub(crate) fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<u8, Failure> {
     let quiet = arguments.quiet;
+    if let Some(instructions) = arguments.simd {
+        instructions.use_by_default();
+    }
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
         Command::Best(options) => best::run(options, quiet),
@@ -72,19 +75,47 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
             clap_complete::generate(*shell, &mut Arguments::command(), "bankshot", &mut script);
             terminal::print_bytes(&script)
         }
-        Command::Man => {
-            let mut page = Vec::new();
-            clap_mangen::Man::new(Arguments::command())
-                .render(&mut page)
-                .map_err(|error| Failure::io("the manual page", &error))?;
-            terminal::print_bytes(&page)
+        Command::Man { command } => {
+            terminal::print_bytes(manual_page(command.as_deref())?.as_bytes())
         }
     })
 }
 
+/// The manual page of the program, or of one of its commands.
+fn manual_page(command: Option<&str>) -> Result<String, Failure> {
+    let mut program = Arguments::command();
+    program.build();
+    let page = match command {
+        None => program,
+        Some(name) => program
+            .find_subcommand(name)
+            .cloned()
+            .ok_or_else(|| Failure::usage(format!("man {name}: there is no such command")))?,
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page)
+        .render(&mut text)
+        .map_err(|error| Failure::io("the manual page", &error))?;
+    // The page of a command is not installed under a name of its own: it is printed by `bankshot man COMMAND`.
+    let mut text = String::from_utf8_lossy(&text).into_owned();
+    for command in Arguments::command().get_subcommands() {
+        let name = command.get_name().replace('-', "\\-");
+        text = text.replace(
+            &format!("bankshot\\-{name}(1)"),
+            &format!("bankshot {name} (see: bankshot man {name})"),
+        );
+    }
+    Ok(text.replace("bankshot\\-help(1)", "bankshot help"))
+}
+
+/// The greatest number of threads for each core. More only cost time and memory.
+const MAX_THREADS_PER_CORE: usize = 4;
+
 fn thread_pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = MAX_THREADS_PER_CORE * cores;
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, usize::from))
+        .num_threads(threads.map_or(0, |threads| usize::from(threads).min(most)))
         .build()
         .map_err(|error| Failure {
             code: code::IO,

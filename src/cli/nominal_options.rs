@@ -1,8 +1,9 @@
 //! The nominal shot of a command: from the flags, then from the profile's `[nominal]` table.
 
 use super::failure::Failure;
+use bankshot::dynamics::OutcomeKind;
 use bankshot::shooter::{Nominal, NominalVariable, Profile};
-use bankshot::units;
+use bankshot::units::{self, DEGREE_RAD};
 use clap::Args;
 
 /// Greatest speed of a release, m/s.
@@ -19,9 +20,13 @@ pub(crate) struct NominalOptions {
     /// Pitch angle of the release, such as '52 deg'.
     #[arg(long, allow_hyphen_values = true)]
     pitch: Option<String>,
-    /// Polar angle of the release [default: the profile's, else that towards the hoop's centre].
+    /// Polar angle of the release, from the court's long axis like the court angle [default: the profile's, else
+    /// that towards the hoop's centre].
     #[arg(long, allow_hyphen_values = true)]
     polar: Option<String>,
+    /// Instead of --polar: the angle of the release from the line to the hoop's centre, such as '0.3 deg'.
+    #[arg(long, allow_hyphen_values = true, conflicts_with = "polar")]
+    aim: Option<String>,
     /// Backspin [default: the profile's, else none].
     #[arg(long, allow_hyphen_values = true)]
     backspin: Option<String>,
@@ -63,7 +68,27 @@ impl NominalOptions {
         }
     }
 
+    /// A warning if the error-free shot touches nothing and misses: such a shot is seldom meant.
+    pub(crate) fn warning(profile: &Profile, nominal: &Nominal) -> Option<String> {
+        let outcome = profile
+            .simulator()
+            .simulate(&profile.release(nominal))
+            .ok()?;
+        (outcome.kind == OutcomeKind::Airball).then(|| {
+            let towards_deg = profile.location().angle_rad / DEGREE_RAD;
+            let polar_deg = nominal.polar_rad / DEGREE_RAD;
+            format!(
+                "warning: without errors this shot touches nothing and misses. Its polar angle is {polar_deg:.2} deg; that towards the hoop's centre is {towards_deg:.2} deg (--aim gives the angle from there)."
+            )
+        })
+    }
+
     fn value(&self, variable: NominalVariable, profile: &Profile) -> Result<f64, String> {
+        if let (NominalVariable::Polar, Some(aim)) = (variable, &self.aim) {
+            let aim_rad = units::parse(aim, variable.dimension())
+                .map_err(|error| format!("--aim: {error}"))?;
+            return Ok(profile.location().angle_rad + aim_rad);
+        }
         let (flag, text) = self.flag(variable);
         if let Some(text) = text {
             let value = units::parse(text, variable.dimension())

@@ -1,8 +1,19 @@
 //! Progress bars on standard error, if it is a terminal.
 
 use bankshot::probability::Progress;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::sync::Mutex;
+
+/// The rate in whole units, such as `1,234/s`; below 10 with one decimal.
+fn write_rate(state: &ProgressState, text: &mut dyn std::fmt::Write) {
+    let rate = state.per_sec();
+    // Writing to the line does not fail.
+    let _ = if rate < 10.0 {
+        write!(text, "{rate:.1}/s")
+    } else {
+        write!(text, "{}/s", HumanCount(rate as u64))
+    };
+}
 
 /// Shows each stage as a progress bar.
 pub(crate) struct ProgressBars {
@@ -38,6 +49,7 @@ impl Progress for ProgressBars {
             .with_style(
                 ProgressStyle::with_template(style)
                     .unwrap_or_else(|_| ProgressStyle::default_bar())
+                    .with_key("per_sec", write_rate)
                     .progress_chars("=> "),
             )
             .with_message(stage.to_owned());

@@ -1,5 +1,6 @@
 //! Parsers of option values.
 
+use bankshot::dynamics::InstructionSet;
 use bankshot::sweep::jobs::Shard;
 use bankshot::sweep::run::FaultInjection;
 use bankshot::units::UnitSystem;
@@ -80,4 +81,14 @@ pub(crate) fn fraction(text: &str) -> Result<f64, String> {
         Some(value) if value > 0.0 && value <= 1.0 => Ok(value),
         _ => Err("must be a fraction such as 1% or 0.01, at most 100%".to_owned()),
     }
+}
+
+/// Vector instructions by name: those of this machine.
+pub(crate) fn instruction_set(text: &str) -> Result<InstructionSet, String> {
+    let available = InstructionSet::available();
+    let found = available.iter().find(|(name, _)| *name == text);
+    found.map(|(_, set)| *set).ok_or_else(|| {
+        let names: Vec<&str> = available.iter().map(|(name, _)| *name).collect();
+        format!("must be one of {}", names.join(", "))
+    })
 }

@@ -27,25 +27,60 @@ pub struct ConfigError {
 
 impl std::error::Error for ConfigError {}
 
+/// Errors that are shown; the others are counted.
+const MAX_SHOWN: usize = 50;
+/// Longest line that is quoted, bytes.
+const LONGEST_QUOTE: usize = 1000;
+
+impl ConfigError {
+    /// One error as text: what is wrong, and the line where. Only that line is given to the renderer, since it walks
+    /// through all of its text.
+    fn render(&self, renderer: &Renderer, diagnostic: &Diagnostic) -> String {
+        let title = if diagnostic.key.is_empty() {
+            diagnostic.message.clone()
+        } else {
+            format!("{}: {}", diagnostic.key, diagnostic.message)
+        };
+        let (start, end) = self.boundaries(&diagnostic.span);
+        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let line_end = self.text[start..]
+            .find('\n')
+            .map_or(self.text.len(), |at| start + at);
+        let line_number = 1 + self.text[..line_start].matches('\n').count();
+        if line_end - line_start > LONGEST_QUOTE {
+            let column = 1 + self.text[line_start..start].chars().count();
+            return format!(
+                "error: {title}\n --> {}:{line_number}:{column}",
+                self.origin
+            );
+        }
+        let span = start - line_start..end.min(line_end) - line_start;
+        let group = Level::ERROR.primary_title(&title).element(
+            Snippet::source(&self.text[line_start..line_end])
+                .line_start(line_number)
+                .path(&self.origin)
+                .annotation(AnnotationKind::Primary.span(span)),
+        );
+        renderer.render(&[group])
+    }
+
+    /// The start and the end of a span, moved to boundaries of characters of the text.
+    fn boundaries(&self, span: &Range<usize>) -> (usize, usize) {
+        let end = self.text.floor_char_boundary(span.end.min(self.text.len()));
+        (self.text.floor_char_boundary(span.start.min(end)), end)
+    }
+}
+
 impl std::fmt::Display for ConfigError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let renderer = Renderer::plain();
-        for (i, diagnostic) in self.diagnostics.iter().enumerate() {
-            let title = if diagnostic.key.is_empty() {
-                diagnostic.message.clone()
-            } else {
-                format!("{}: {}", diagnostic.key, diagnostic.message)
-            };
-            let end = diagnostic.span.end.min(self.text.len());
-            let start = diagnostic.span.start.min(end);
-            let group = Level::ERROR.primary_title(&title).element(
-                Snippet::source(&self.text)
-                    .path(&self.origin)
-                    .annotation(AnnotationKind::Primary.span(start..end)),
-            );
+        for (i, diagnostic) in self.diagnostics.iter().take(MAX_SHOWN).enumerate() {
             let gap = if i == 0 { "" } else { "\n" };
-            write!(f, "{gap}{}", renderer.render(&[group]))?;
+            write!(f, "{gap}{}", self.render(&renderer, diagnostic))?;
         }
-        Ok(())
+        match self.diagnostics.len().saturating_sub(MAX_SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n... and {more} more errors in {}", self.origin),
+        }
     }
 }

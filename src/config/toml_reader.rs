@@ -6,6 +6,11 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+/// Unknown keys of one table that are reported one by one.
+const MAX_UNKNOWN: usize = 1000;
+/// Errors of the syntax that are kept.
+const MAX_SYNTAX_ERRORS: usize = 1000;
+
 /// A table that is being read. A key that is never asked for is reported as unknown.
 #[derive(Clone)]
 pub(crate) struct TableReader<'t, 'i> {
@@ -27,6 +32,7 @@ pub(crate) fn parse_toml<T>(
     let (table, errors) = DeTable::parse_recoverable(text);
     let mut diagnostics: Vec<Diagnostic> = errors
         .into_iter()
+        .take(MAX_SYNTAX_ERRORS)
         .map(|error| Diagnostic {
             span: error.span().unwrap_or(0..0),
             key: String::new(),
@@ -290,20 +296,31 @@ impl<'t, 'i> TableReader<'t, 'i> {
     /// Reports the keys that were never asked for, with those that are known.
     pub(crate) fn report_unknown_keys(self, diagnostics: &mut Vec<Diagnostic>) {
         let Some(table) = self.table else { return };
+        let mut known = self.asked.clone();
+        known.sort_unstable();
+        let known_names = known.join(", ");
+        let mut unknown = 0;
         for (key, _) in table.iter() {
             let name: &str = key.get_ref();
-            if self.asked.contains(&name) {
+            if known.binary_search(&name).is_ok() {
                 continue;
             }
-            let mut known = self.asked.clone();
-            known.sort_unstable();
-            let message = format!("is not a key here; known are {}", known.join(", "));
+            unknown += 1;
+            if unknown > MAX_UNKNOWN {
+                continue;
+            }
+            let message = format!("is not a key here; known are {known_names}");
             let shown: String = name.chars().take(60).collect();
             diagnostics.push(Diagnostic {
                 span: key.span(),
                 key: self.full_name(&shown),
                 message,
             });
+        }
+        if unknown > MAX_UNKNOWN {
+            let more = unknown - MAX_UNKNOWN;
+            let message = format!("{more} more keys are not known");
+            diagnostics.push(self.table_diagnostic(message));
         }
     }
 }

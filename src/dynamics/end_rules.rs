@@ -15,6 +15,8 @@ pub(crate) struct ShotLimits {
     pub(crate) time_limit_s: f64,
     /// A ball that rolls on two solids for this long is lodged, s; 0 for never.
     pub(crate) lodged_after_s: f64,
+    /// A shot that takes this many steps in contact is given up as unresolved.
+    pub(crate) max_steps: u32,
 }
 
 /// Whether a step in contact ends the shot, and how; lane by lane.

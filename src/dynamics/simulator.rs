@@ -73,6 +73,20 @@ impl Integrator {
     }
 }
 
+/// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
+/// steps; some constants that are far from any ball would take steps without end.
+fn max_steps(integrator: Integrator) -> u32 {
+    const STEPS: u32 = 100_000;
+    const AT_STEPS_PER_CONTACT: u32 = 8;
+    match integrator {
+        Integrator::EventDriven { steps_per_contact } => {
+            let factor = steps_per_contact.div_ceil(AT_STEPS_PER_CONTACT).max(1);
+            STEPS.saturating_mul(factor)
+        }
+        Integrator::PaperRk4 { .. } => u32::MAX,
+    }
+}
+
 impl Default for Integrator {
     fn default() -> Self {
         Self::EVENT_DRIVEN
@@ -182,8 +196,9 @@ impl Simulator {
                 longest_step_s: physics.contact_time_s() / steps,
                 time_limit_s: physics.time_limit_s,
                 lodged_after_s: physics.lodged_after_s,
+                max_steps: max_steps(integrator),
             },
-            instructions: InstructionSet::best(),
+            instructions: InstructionSet::default(),
         })
     }
 

@@ -113,45 +113,84 @@ impl Physics {
     #[must_use]
     pub fn errors(&self) -> Vec<PhysicsError> {
         let mut errors = Vec::new();
-        let positive = [
-            ("ball_radius", self.ball_radius_m),
-            ("ball_mass", self.ball_mass_kg),
-            ("inertia_ratio", self.inertia_ratio),
-            ("ring_radius", self.ring_radius_m),
-            ("board_distance", self.board_distance_m),
-            ("board_width", self.board_width_m),
-            ("board_height", self.board_height_m),
-            ("hoop_height", self.hoop_height_m),
-            ("gravity", self.gravity_m_s2),
-            ("stiffness", self.stiffness_n_m),
-            ("time_limit", self.time_limit_s),
-        ];
-        for (key, value) in positive {
-            if !(value > 0.0 && value.is_finite()) {
-                errors.push(PhysicsError::new(key, value, "above 0 and finite"));
+        for (key, value, (low, high), allowed) in self.ranges() {
+            if !(low..=high).contains(&value) {
+                errors.push(PhysicsError::new(key, value, allowed));
             }
-        }
-        let not_negative = [
-            ("damping", self.damping_kg_s),
-            ("friction", self.friction),
-            ("lodged_after", self.lodged_after_s),
-        ];
-        for (key, value) in not_negative {
-            if !(value >= 0.0 && value.is_finite()) {
-                errors.push(PhysicsError::new(key, value, "0 or more, and finite"));
-            }
-        }
-        if !self.board_centre_height_m.is_finite() {
-            errors.push(PhysicsError::new(
-                "board_centre_height",
-                self.board_centre_height_m,
-                "finite",
-            ));
         }
         if errors.is_empty() {
             self.check_proportions(&mut errors);
         }
         errors
+    }
+
+    /// The range of each constant. They are wide: what is outside is a slip of units, or a body whose bounces the
+    /// integrator would follow without end.
+    fn ranges(&self) -> [(&'static str, f64, (f64, f64), &'static str); 15] {
+        const LENGTH: (f64, f64) = (0.01, 10.0);
+        const LENGTH_TEXT: &str = "from 0.01 m to 10 m";
+        [
+            ("ball_radius", self.ball_radius_m, LENGTH, LENGTH_TEXT),
+            (
+                "ball_mass",
+                self.ball_mass_kg,
+                (0.001, 100.0),
+                "from 1 g to 100 kg",
+            ),
+            (
+                "inertia_ratio",
+                self.inertia_ratio,
+                (0.1, 1.0),
+                "from 0.1 to 1 (a solid sphere has 0.4, a thin shell 0.667)",
+            ),
+            ("ring_radius", self.ring_radius_m, LENGTH, LENGTH_TEXT),
+            ("board_distance", self.board_distance_m, LENGTH, LENGTH_TEXT),
+            ("board_width", self.board_width_m, LENGTH, LENGTH_TEXT),
+            ("board_height", self.board_height_m, LENGTH, LENGTH_TEXT),
+            (
+                "board_centre_height",
+                self.board_centre_height_m,
+                (-10.0, 10.0),
+                "within 10 m",
+            ),
+            ("hoop_height", self.hoop_height_m, LENGTH, LENGTH_TEXT),
+            (
+                "gravity",
+                self.gravity_m_s2,
+                (0.01, 1000.0),
+                "from 0.01 to 1000 m/s^2",
+            ),
+            (
+                "stiffness",
+                self.stiffness_n_m,
+                (0.1, 1e9),
+                "from 0.1 to 1e9 N/m, with a bounce that lasts 0.1 ms to 0.5 s",
+            ),
+            (
+                "damping",
+                self.damping_kg_s,
+                (0.0, 1e6),
+                "from 0 to 1e6 kg/s",
+            ),
+            (
+                "friction",
+                self.friction,
+                (0.0, 10.0),
+                "from 0 to 10 (rubber on a dry board has about 1)",
+            ),
+            (
+                "time_limit",
+                self.time_limit_s,
+                (0.01, 60.0),
+                "from 0.01 s to 60 s",
+            ),
+            (
+                "lodged_after",
+                self.lodged_after_s,
+                (0.0, 60.0),
+                "from 0 to 60 s",
+            ),
+        ]
     }
 
     fn check_proportions(&self, errors: &mut Vec<PhysicsError>) {
@@ -175,6 +214,12 @@ impl Physics {
                 "damping",
                 self.damping_kg_s,
                 "less than critical (2 sqrt(k m)), else the ball never rebounds",
+            ));
+        } else if !(1e-4..=0.5).contains(&self.contact_time_s()) {
+            errors.push(PhysicsError::new(
+                "stiffness",
+                self.stiffness_n_m,
+                "such that a head-on bounce, pi/omega, lasts from 0.1 ms to 0.5 s",
             ));
         }
     }

@@ -148,6 +148,29 @@ pub fn same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
+/// Refuses a path that is a link.
+///
+/// # Errors
+/// It is a link, whatever it leads to.
+pub fn refuse_link(path: &Path) -> io::Result<()> {
+    match fs::symlink_metadata(path) {
+        Ok(found) if found.is_symlink() => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is a link, and the folder of a sweep is not written through links; remove it",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// As [`write()`], but refuses to write through a link.
+///
+/// # Errors
+/// It is a link, or cannot be written.
+pub fn write_unlinked(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    refuse_link(path)?;
+    write(path, bytes)
+}
+
 /// Removes every temporary file, for a program that is about to end.
 pub fn discard_temporary_files() {
     if let Ok(pending) = TEMPORARY_FILES.lock() {

@@ -42,20 +42,22 @@ impl MadeShares {
 }
 
 impl Estimate {
-    /// The 95 % interval of P. It comes from the scatter of the replicates. If no shot or every shot was
-    /// made, it is as wide as the number of shots leaves open. Its upper end is raised by the share of
-    /// unresolved shots, for these could have been made.
+    /// The 95 % interval of P. It comes from the scatter of the replicates; where few shots were made, or few
+    /// missed, it is Wilson's interval for the number of independent shots with the same standard error. Its upper
+    /// end is raised by the share of unresolved shots, for these could have been made.
     #[must_use]
     pub fn interval_95(&self) -> (f64, f64) {
-        // Student's distribution with 31 degrees of freedom.
-        let half = 2.04 * self.standard_error;
         let shots = self.shots.max(1) as f64;
-        // The rule of three: what n shots do not show happens in less than 3 of n.
-        let unseen = if self.certain { 0.0 } else { 3.0 / shots };
-        let all = self.probability >= 1.0;
-        let none = self.probability <= 0.0;
-        let low = self.probability - half.max(if all { unseen } else { 0.0 });
-        let high = self.probability + half.max(if none { unseen } else { 0.0 });
+        let (low, high) = if is_rare(self.probability, shots) && self.standard_error > 0.0 {
+            let centre = shrunk(self.probability, shots);
+            let independent_shots =
+                centre * (1.0 - centre) / (self.standard_error * self.standard_error);
+            wilson_interval(self.probability, independent_shots)
+        } else {
+            // Student's distribution with 31 degrees of freedom.
+            let half = 2.04 * self.standard_error;
+            (self.probability - half, self.probability + half)
+        };
         let unresolved = self.unresolved as f64 / shots;
         (low.max(0.0), (high + unresolved).min(1.0))
     }
@@ -73,9 +75,10 @@ impl Estimate {
             .iter()
             .fold(Counts::default(), |sum, &count| sum.plus(count));
         let share = |count: u64| count as f64 / (n * per_replicate);
+        let scatter = standard_error_of_mean(&means, probability);
         Self {
             probability,
-            standard_error: standard_error_of_mean(&means, probability),
+            standard_error: standard_error(scatter, probability, n * per_replicate),
             shots: points * counts.len() as u64,
             shares: MadeShares {
                 swish: share(all.swish),
@@ -87,6 +90,43 @@ impl Estimate {
             certain: false,
         }
     }
+}
+
+/// Shots of the rarer outcome, made or missed, below which the scatter of the replicates is not trusted alone.
+const RARE: f64 = 200.0;
+/// Shots of the rarer outcome at which the scatter and the binomial variance have the same weight.
+const EVEN_WEIGHT: f64 = 50.0;
+
+/// Whether few shots were made, or few missed.
+fn is_rare(probability: f64, shots: f64) -> bool {
+    probability.min(1.0 - probability) * shots < RARE
+}
+
+/// P with two more shots made and two more missed (Agresti and Coull 1998): never 0 or 1.
+fn shrunk(probability: f64, shots: f64) -> f64 {
+    (probability * shots + 2.0) / (shots + 4.0)
+}
+
+/// The standard error of P. Sobol points gain little where few shots are made or few missed, and the scatter of few
+/// counts says little: there it is drawn towards the binomial standard error, the more the fewer they are.
+pub(super) fn standard_error(scatter: f64, probability: f64, shots: f64) -> f64 {
+    if !is_rare(probability, shots) {
+        return scatter;
+    }
+    let centre = shrunk(probability, shots);
+    let binomial = centre * (1.0 - centre) / shots;
+    let rarer = probability.min(1.0 - probability) * shots;
+    let weight = EVEN_WEIGHT / (EVEN_WEIGHT + rarer);
+    (weight * binomial + (1.0 - weight) * scatter * scatter).sqrt()
+}
+
+/// Wilson's 95 % interval for a share of independent shots.
+fn wilson_interval(share: f64, shots: f64) -> (f64, f64) {
+    const Z: f64 = 1.96;
+    let z2 = Z * Z / shots;
+    let centre = share + 0.5 * z2;
+    let half = Z * (share * (1.0 - share) / shots + 0.25 * z2 / shots).sqrt();
+    ((centre - half) / (1.0 + z2), (centre + half) / (1.0 + z2))
 }
 
 /// Standard error of the mean of independent values.

@@ -5,7 +5,7 @@
 //! number of threads.
 
 use super::counts::Counts;
-use super::estimate::Estimate;
+use super::estimate::{Estimate, standard_error};
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, Release};
 use crate::model::BallState;
@@ -69,10 +69,12 @@ pub fn estimate(
         .reduce(Counts::default, Counts::plus);
     progress.end();
     let found = Estimate::from_replicates(&[counts], samples);
-    let p = found.probability;
+    let (p, n) = (found.probability, samples as f64);
+    let certain = distribution.is_certain();
+    let binomial = standard_error((p * (1.0 - p) / n).sqrt(), p, n);
     Estimate {
-        standard_error: (p * (1.0 - p) / samples as f64).sqrt(),
-        certain: distribution.is_certain(),
+        standard_error: if certain { 0.0 } else { binomial },
+        certain,
         ..found
     }
 }

@@ -161,7 +161,11 @@ impl<'a> Sampler<'a> {
             points += more;
             let mut estimate = Estimate::from_replicates(&counts, u64::from(points));
             estimate.certain = certain;
-            estimate.standard_error = estimate.standard_error.max(0.5 * last_error);
+            estimate.standard_error = if certain {
+                0.0
+            } else {
+                estimate.standard_error.max(0.5 * last_error)
+            };
             last_error = estimate.standard_error;
             if estimate.standard_error <= target || points > max_points / 2 {
                 return estimate;

@@ -8,6 +8,7 @@ use crate::plots::plotted_shot::PlottedShot;
 use crate::shooter::{Nominal, Profile};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;
+use std::f64::consts::PI;
 
 /// Name of the profile in the folder of a run.
 pub const PROFILE_FILE: &str = "profile.toml";
@@ -66,6 +67,7 @@ impl BestShotRun {
         };
         let profile = profile.with(|settings| settings.output.units = units)?;
         let shots = read_shots(&profile, &best);
+        check_shots(&shots)?;
         Ok(Self {
             aim: describe_aim(&profile, &best, &shots),
             shots,
@@ -105,6 +107,32 @@ fn read_shots(profile: &Profile, best: &Value) -> Vec<ReportShot> {
             })
         })
         .collect()
+}
+
+/// Refuses values that no run writes: the file was edited.
+fn check_shots(shots: &[ReportShot]) -> Result<(), ReportError> {
+    for ReportShot { shot, .. } in shots {
+        let nominal = &shot.nominal;
+        let checks = [
+            ("probability", (0.0..=1.0).contains(&shot.probability)),
+            ("standard_error", (0.0..=1.0).contains(&shot.standard_error)),
+            ("speed", (0.0..=1000.0).contains(&nominal.speed_m_s)),
+            ("pitch", nominal.pitch_rad.abs() <= PI),
+            ("polar", nominal.polar_rad.abs() <= PI),
+            ("backspin", nominal.backspin_rad_s.abs() <= 1e4),
+            ("side_spin", nominal.side_spin_rad_s.abs() <= 1e4),
+        ];
+        if let Some((name, _)) = checks.into_iter().find(|(_, holds)| !holds) {
+            return Err(ReportError::File {
+                file: BEST_SHOTS_FILE,
+                message: format!(
+                    "{}.{name} is out of range; the file was changed, run `best` again",
+                    shot.kind.name()
+                ),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Where the better shot is aimed.

@@ -2,7 +2,7 @@
 
 use crate::plots::plotted_shot::PlottedShot;
 use crate::shooter::Location;
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, at_most_two_decimals};
 
 /// A best shot on a page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +44,8 @@ impl ReportShot {
 pub(super) fn describe_location(location: &Location, units: UnitSystem) -> String {
     let (long, unit_m) = units.length();
     format!(
-        "{:.1} {long} from the hoop at {:.0} deg",
-        location.distance_m / unit_m,
+        "{} {long} from the hoop at {:.0} deg",
+        at_most_two_decimals(location.distance_m / unit_m),
         location.angle_rad / DEGREE_RAD + 0.0
     )
 }

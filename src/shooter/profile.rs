@@ -10,7 +10,7 @@ use super::search_settings::{Search, SearchSettings, TableGrid};
 use super::setting_error::{SettingChecks, SettingError};
 use crate::dynamics::{InstructionSet, Integrator, Release, Simulator, SimulatorError};
 use crate::model::Physics;
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde::{Serialize, Serializer};
 use std::f64::consts::PI;
 
@@ -121,6 +121,19 @@ impl ProfileSettings {
             .dispersion
             .check(&mut checks, shooter.max_backspin_rad_s);
         check_nominal(&self.nominal, &mut checks);
+        if let Some(backspin) = self.nominal.backspin_rad_s
+            && backspin > shooter.max_backspin_rad_s
+        {
+            let (fixed, most) = (backspin / REV_RAD, shooter.max_backspin_rad_s / REV_RAD);
+            checks.refuse(
+                "nominal.backspin",
+                format!("is {fixed:.3} rev/s, more than shooter.max_backspin ({most:.3} rev/s)"),
+            );
+            checks.refuse(
+                "shooter.max_backspin",
+                format!("is {most:.3} rev/s, less than nominal.backspin ({fixed:.3} rev/s)"),
+            );
+        }
         for error in self.physics.errors() {
             checks.refuse(
                 &format!("physics.{}", error.key),

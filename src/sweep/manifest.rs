@@ -55,6 +55,17 @@ impl Manifest {
     }
 
     pub(super) fn read(path: &Path) -> io::Result<ManifestFile> {
+        // A dangling link would be missing and yet in the way, and a pipe would be waited for.
+        let not_a_file = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what);
+        match (std::fs::symlink_metadata(path), std::fs::metadata(path)) {
+            (Ok(_), Err(error)) if error.kind() == io::ErrorKind::NotFound => {
+                return Err(not_a_file("is a link that leads nowhere; remove it"));
+            }
+            (_, Ok(found)) if !found.is_file() => {
+                return Err(not_a_file("is not a file"));
+            }
+            _ => {}
+        }
         let mut text = String::new();
         let file = match File::open(path) {
             Ok(file) => file,

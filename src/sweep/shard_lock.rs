@@ -20,6 +20,16 @@ pub struct ShardLock {
     pub aborted: PathBuf,
 }
 
+impl ShardLock {
+    /// Removes the note of an abort if it is empty, after a run without one.
+    pub fn remove_empty_note(&self) {
+        if fs::metadata(&self.aborted).is_ok_and(|note| note.len() == 0) {
+            // What stays is harmless.
+            let _ = fs::remove_file(&self.aborted);
+        }
+    }
+}
+
 /// Whether another process holds this lock.
 #[must_use]
 pub fn is_locked(path: &Path) -> bool {

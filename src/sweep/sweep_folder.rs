@@ -48,6 +48,7 @@ impl SweepFolder {
         texts: &SourceTexts,
     ) -> Result<Self, SweepFolderError> {
         let store = path.join("store");
+        atomic_file::refuse_link(&store).map_err(io_error_at(&store))?;
         fs::create_dir_all(&store).map_err(io_error_at(&store))?;
         tempfile::tempfile_in(&store).map_err(io_error_at(&store))?;
         let file = path.join(manifest::FILE_NAME);
@@ -171,7 +172,12 @@ impl SweepFolder {
             .take(60)
             .collect();
         let name = format!("{}-of-{}.{host}", shard.index + 1, shard.count);
-        let path = store.join(format!("{name}.lock"));
+        let named = |ending: &str| store.join(format!("{name}.{ending}"));
+        let path = named("lock");
+        for ending in ["lock", "sqlite", "sqlite-journal", "aborted"] {
+            let file = named(ending);
+            atomic_file::refuse_link(&file).map_err(io_error_at(&file))?;
+        }
         let mut file = File::options()
             .create(true)
             .truncate(false)
@@ -192,8 +198,8 @@ impl SweepFolder {
         let _ = write!(file, "process {} on {host}", std::process::id());
         Ok(ShardLock {
             _file: file,
-            store: store.join(format!("{name}.sqlite")),
-            aborted: store.join(format!("{name}.aborted")),
+            store: named("sqlite"),
+            aborted: named("aborted"),
         })
     }
 

@@ -17,6 +17,13 @@ pub fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
+/// A length for people: one decimal, or two where the second is not zero.
+#[must_use]
+pub fn at_most_two_decimals(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.strip_suffix('0').map_or(text.clone(), str::to_owned)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,5 +36,12 @@ mod tests {
         assert_eq!(rounded(1.0 / 3.0).to_string(), "0.333333333333");
         assert_eq!(rounded(0.0), 0.0);
         assert!(rounded(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn contract_lengths_keep_the_second_decimal() {
+        for (value, text) in [(13.75, "13.75"), (6.0, "6.0"), (13.7, "13.7")] {
+            assert_eq!(at_most_two_decimals(value), text);
+        }
     }
 }

@@ -4,6 +4,7 @@ use super::trace;
 use crate::cli::args::{Method, ProbabilityOptions};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
+use crate::cli::nominal_options::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::analysis::miss_breakdown::classify_misses;
@@ -36,6 +37,9 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     if let Some((seed, index)) = options.replay {
         let release = replayed(options.method, &profile, &nominal, seed, index)?;
         return trace::show(&profile, &release, options.json);
+    }
+    if !quiet && let Some(warning) = NominalOptions::warning(&profile, &nominal) {
+        print_remark(&warning);
     }
     let precision = Precision {
         target: options.target.unwrap_or(profile.search().standard_error),

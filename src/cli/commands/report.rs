@@ -134,7 +134,7 @@ fn failure(folder: &Path, error: &ReportError) -> Failure {
 fn write(folder: &Path, page: &Page, quiet: bool) -> Result<u8, Failure> {
     let target = folder.join("report.html");
     let html = page.html()?;
-    atomic_file::write(&target, html.as_bytes())
+    atomic_file::write_unlinked(&target, html.as_bytes())
         .map_err(|error| Failure::io(target.display(), &error))?;
     print_answer(&format!("{}\n", page.answer))?;
     if !quiet {

@@ -57,6 +57,7 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
         failure
     })?;
     drop(run);
+    lock.remove_empty_note();
     if shard == Shard::WHOLE {
         return write_tables(&folder, &config, &jobs, None, quiet);
     }
@@ -113,7 +114,8 @@ fn write_tables(
         ("provenance.json", tables.provenance(config)),
     ] {
         let path = folder.path().join(name);
-        atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+        atomic_file::write_unlinked(&path, &bytes)
+            .map_err(|error| Failure::io(path.display(), &error))?;
     }
     print_answer(&(job_summary(jobs, &rows) + &highlights(config, jobs, &rows)))?;
     if !quiet {

@@ -5,7 +5,7 @@ use bankshot::sweep::bank_advantage::BankAdvantage;
 use bankshot::sweep::jobs::Jobs;
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
 use bankshot::sweep::{SweepConfig, columns};
-use bankshot::units::DEGREE_RAD;
+use bankshot::units::{DEGREE_RAD, at_most_two_decimals};
 use std::collections::BTreeMap;
 
 /// Greatest number of listed failures.
@@ -83,7 +83,8 @@ fn place_text(config: &SweepConfig, label: &str, p: f64, row: &ResultRow) -> Opt
     let distance = row.real(columns::DISTANCE)? / metre;
     let angle_deg = row.real(columns::COURT_ANGLE)? / DEGREE_RAD;
     Some(format!(
-        "{label:5} P {p:.3}, {kind}, {distance:.1} {long} from the hoop at {angle_deg:.0} deg\n"
+        "{label:5} P {p:.3}, {kind}, {} {long} from the hoop at {angle_deg:.0} deg\n",
+        at_most_two_decimals(distance)
     ))
 }
 

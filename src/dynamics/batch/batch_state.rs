@@ -72,12 +72,11 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         block.occupied() != T::ALL && self.workspace.other_phase_fills(Wide::<S>::LANES, phase)
     }
 
-    /// Records the end of a shot in contact.
+    /// Records the end of a shot in contact: by a rule, or given up if none of them holds.
     #[inline(always)]
     pub(super) fn finish_shot_in_contact(&mut self, slot: u32, end: [bool; 3], made: bool) {
-        if let Some(ending) = ShotEndFlags::first_ending(end) {
-            let made = ending == Ending::Fell && made;
-            self.workspace.finish(slot, ending, made);
-        }
+        let ending = ShotEndFlags::first_ending(end).unwrap_or(Ending::Unresolved);
+        let made = ending == Ending::Fell && made;
+        self.workspace.finish(slot, ending, made);
     }
 }

@@ -73,7 +73,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 #[inline(always)]
                 |mask| T::mask_to_bits(mask),
             );
-            let done = ended | lodged | separated[0] | separated[1];
+            let given_up = block.count_step(self.limits.max_steps);
+            let done = ended | lodged | given_up | separated[0] | separated[1];
             for lane in lanes_in(done & block.occupied()) {
                 let slot = block.slot(lane);
                 let shot = &mut self.workspace.slots[slot as usize];
@@ -86,6 +87,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                     );
                 } else if bit(lodged, lane) {
                     self.workspace.finish(slot, Ending::Lodged, false);
+                } else if bit(given_up, lane) {
+                    self.workspace.finish(slot, Ending::Unresolved, false);
                 } else {
                     let friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
                     let separated = separated.map(|separated| bit(separated, lane));

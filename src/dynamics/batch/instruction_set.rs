@@ -1,11 +1,14 @@
 //! The vector instructions that a batch runs on.
 
 use fearless_simd::Level;
+use std::sync::OnceLock;
 
 /// The vector instructions of a batch, and with them the number of lanes. Every choice gives the same
 /// bits.
 #[derive(Clone, Copy, Debug)]
 pub struct InstructionSet(pub(super) Option<Level>);
+
+static DEFAULT: OnceLock<InstructionSet> = OnceLock::new();
 
 impl InstructionSet {
     /// One shot at a time.
@@ -37,6 +40,12 @@ impl InstructionSet {
         found
     }
 
+    /// Makes this the set of the simulators that are built from now on, in place of [`InstructionSet::best`]. Only the
+    /// first call counts.
+    pub fn use_by_default(self) {
+        let _ = DEFAULT.set(self);
+    }
+
     pub(crate) fn level(self) -> Option<Level> {
         self.0
     }
@@ -44,6 +53,6 @@ impl InstructionSet {
 
 impl Default for InstructionSet {
     fn default() -> Self {
-        Self::best()
+        DEFAULT.get().copied().unwrap_or_else(Self::best)
     }
 }

@@ -21,6 +21,8 @@ pub(super) struct LaneBlock {
     slip_tolerances: [LaneArray; SolidId::COUNT],
     rolling_times_s: LaneArray,
     slots: [u32; ZEROS.len()],
+    /// [`ShotProgress::steps`].
+    steps: [u32; ZEROS.len()],
     flags: LaneFlags,
 }
 
@@ -74,6 +76,7 @@ impl LaneBlock {
             slip_tolerances: [ZEROS; SolidId::COUNT],
             rolling_times_s: ZEROS,
             slots: [0; ZEROS.len()],
+            steps: [0; ZEROS.len()],
             flags: LaneFlags::default(),
         }
     }
@@ -121,6 +124,7 @@ impl LaneBlock {
         }
         self.times_s[lane] = shot.time_s;
         self.slots[lane] = slot;
+        self.steps[lane] = shot.steps;
         set_bit(
             &mut flags.has_been_above,
             lane,
@@ -161,6 +165,18 @@ impl LaneBlock {
         self.flags = flags;
     }
 
+    /// Counts a step of every lane; returns the lanes that have reached `max_steps`. (A lane without a shot may be
+    /// among them.)
+    #[inline(always)]
+    pub(super) fn count_step(&mut self, max_steps: u32) -> LaneBits {
+        let mut reached = 0;
+        for (lane, steps) in self.steps.iter_mut().enumerate() {
+            *steps = steps.wrapping_add(1);
+            reached |= LaneBits::from(*steps >= max_steps) << lane;
+        }
+        reached
+    }
+
     /// Takes the shot out of a lane; its contacts are left as they were.
     #[inline(always)]
     pub(super) fn remove(&mut self, lane: usize, shot: &mut ShotProgress) {
@@ -177,6 +193,7 @@ impl LaneBlock {
             spin_rad_s: vector(6),
         };
         shot.time_s = self.times_s[lane];
+        shot.steps = self.steps[lane];
         shot.crossing = HoopCrossing {
             has_been_above: bit(self.flags.has_been_above, lane),
             rose_through: bit(self.flags.rose_through, lane),

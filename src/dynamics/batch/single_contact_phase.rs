@@ -70,7 +70,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             let end = shots.after_step(params, &before, step.dt, self.limits.time_limit_s);
             block.store(&shots);
             block.store_friction(A::ID, &friction);
-            let done = T::mask_to_bits(step.separated | end.any()) & block.occupied();
+            let given_up = block.count_step(self.limits.max_steps);
+            let done = (T::mask_to_bits(step.separated | end.any()) | given_up) & block.occupied();
             if done == 0 {
                 continue;
             }

@@ -75,6 +75,8 @@ pub(crate) struct ShotProgress {
     pub(crate) crossing: HoopCrossing,
     /// Segments so far. (In a batch, a contact in the lanes is not counted; the limit is far away in any case.)
     pub(crate) segments: u32,
+    /// Steps in contact so far.
+    pub(crate) steps: u32,
 }
 
 impl ShotProgress {
@@ -88,6 +90,7 @@ impl ShotProgress {
             contacts: ContactSequence::default(),
             crossing: HoopCrossing::at_release(params, &start),
             segments: 0,
+            steps: 0,
         }
     }
 
@@ -299,6 +302,7 @@ impl<O: Observer> Run<'_, O> {
                 longest,
                 |state, acceleration| time_to_touch(params, &approach, state, acceleration),
             );
+            self.shot.steps += 1;
             if step.separated {
                 self.part(S::ID);
                 self.shot.contact = ContactState::Free;
@@ -308,6 +312,9 @@ impl<O: Observer> Run<'_, O> {
             impulses[S::ID.index()] = self.impulse_since(&before, step.dt);
             if let Some(ending) = self.after_step(step.dt, &before, impulses) {
                 return Some(ending);
+            }
+            if self.shot.steps >= self.limits.max_steps {
+                return Some(Ending::Unresolved);
             }
         }
     }
@@ -347,6 +354,10 @@ impl<O: Observer> Run<'_, O> {
                 if is_lodged(rolling_time_s, self.limits.lodged_after_s) {
                     return Some(Ending::Lodged);
                 }
+            }
+            self.shot.steps += 1;
+            if self.shot.steps >= self.limits.max_steps {
+                return Some(Ending::Unresolved);
             }
             if separated.contains(&true) {
                 self.shot.contact = ContactState::after_double(separated, friction, rolling_time_s);

@@ -57,6 +57,9 @@ pub(crate) struct BoardApproach<T: Real> {
     /// [`Board::touch_x`].
     touch_x: T,
     arrived: T::Mask,
+    /// The ball overlaps the plane of the board, but its centre is not in front of the rectangle: it cannot touch
+    /// the board before it comes in front of it.
+    beside: T::Mask,
     longest: T,
 }
 
@@ -72,7 +75,7 @@ impl<T: Real> Approach<T> for BoardApproach<T> {
         let gap = Real::max(distance, distance.splat(TOUCH_GAP_M));
         let (rate, second_derivative) = (state.velocity_m_s.x, acceleration.x);
         let least = gap + self.longest * (rate - second_derivative.abs() * self.longest * 0.5);
-        let relevant = least.le(gap.zero());
+        let relevant = least.le(gap.zero()) & !self.beside;
         if !relevant.any() {
             return None;
         }
@@ -134,11 +137,12 @@ impl<T: Real> Solid<T> for Board<T> {
         longest: T,
     ) -> BoardApproach<T> {
         let gap = state.position_m.x - self.touch_x;
+        let overlaps = gap.le(gap.splat(TOUCH_GAP_M));
+        let faces = self.faces(state);
         BoardApproach {
             touch_x: self.touch_x,
-            arrived: gap.le(gap.splat(TOUCH_GAP_M))
-                & state.velocity_m_s.x.is_negative()
-                & self.faces(state),
+            arrived: overlaps & state.velocity_m_s.x.is_negative() & faces,
+            beside: overlaps & !faces,
             longest,
         }
     }
