@@ -77,9 +77,14 @@ impl NominalOptions {
         (outcome.kind == OutcomeKind::Airball).then(|| {
             let towards_deg = profile.location().angle_rad / DEGREE_RAD;
             let polar_deg = nominal.polar_rad / DEGREE_RAD;
-            format!(
-                "warning: without errors this shot touches nothing and misses. Its polar angle is {polar_deg:.2} deg; that towards the hoop's centre is {towards_deg:.2} deg (--aim gives the angle from there)."
-            )
+            let mut text =
+                "warning: without errors this shot touches nothing and misses.".to_owned();
+            if (polar_deg - towards_deg).abs() > 0.005 {
+                text += &format!(
+                    " Its polar angle is {polar_deg:.2} deg; that towards the hoop's centre is {towards_deg:.2} deg (--aim gives the angle from there)."
+                );
+            }
+            text
         })
     }
 

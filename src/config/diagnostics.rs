@@ -46,7 +46,8 @@ impl ConfigError {
         let line_end = self.text[start..]
             .find('\n')
             .map_or(self.text.len(), |at| start + at);
-        let line_number = 1 + self.text[..line_start].matches('\n').count();
+        let before = &self.text.as_bytes()[..line_start];
+        let line_number = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
         if line_end - line_start > LONGEST_QUOTE {
             let column = 1 + self.text[line_start..start].chars().count();
             return format!(

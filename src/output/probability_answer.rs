@@ -161,8 +161,9 @@ pub fn answer_text(answer: &ProbabilityAnswer<'_>) -> String {
     let (low, high) = estimate.interval_95();
     let shots = estimate.shots;
     let mut text = if answer.has_error() {
+        let digits = decimals(estimate.standard_error);
         format!(
-            "P = {:.4} ± {:.4} (95 %: {low:.4} to {high:.4}), {shots} shots by {}\n",
+            "P = {:.digits$} ± {:.digits$} (95 %: {low:.digits$} to {high:.digits$}), {shots} shots by {}\n",
             estimate.probability, estimate.standard_error, answer.method
         )
     } else {
@@ -197,6 +198,13 @@ pub fn answer_text(answer: &ProbabilityAnswer<'_>) -> String {
         }
     }
     text
+}
+
+/// Decimals that show a digit of the standard error, 4 to 9.
+fn decimals(standard_error: f64) -> usize {
+    (4..9)
+        .find(|&digits| standard_error * libm::pow(10.0, digits as f64) >= 0.95)
+        .unwrap_or(if standard_error > 0.0 { 9 } else { 4 })
 }
 
 /// `speed_ft_s` as `speed` and `ft/s`.

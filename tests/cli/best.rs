@@ -2,6 +2,7 @@
 
 use super::support::{Answer, best, file_names, small_profile, too_slow_profile, write_file};
 use std::fs;
+use std::path::Path;
 use tempfile::TempDir;
 
 #[test]
@@ -119,4 +120,97 @@ fn contract_names_of_shooters_never_become_paths() {
     let names = file_names(&out);
     assert_eq!(names.len(), 1);
     assert!(names[0].starts_with("script-"), "{names:?}");
+}
+
+/// A shooter near the ring whose best direct shot is at the limit of its kind.
+const LOW_RELEASE: &str = r#"
+[shooter]
+release_height = "3 ft"
+max_backspin = "2 rev/s"
+[shooter.errors]
+c10 = "0.3 ft/s"
+c20 = "0.5 deg"
+c30 = "0.7 deg"
+c40 = "0 rev/s"
+[nominal]
+pitch = "55 deg"
+backspin = "2 rev/s"
+[search]
+choose = ["speed"]
+[location]
+distance = "12 ft"
+angle = "0 deg"
+"#;
+
+#[test]
+fn contract_the_sensitivity_of_a_shot_keeps_its_kind() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "p.toml", LOW_RELEASE);
+    let text = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
+    assert!(
+        text.stdout().contains("direct: at the limit of its kind"),
+        "{text:?}"
+    );
+    let answer = Answer::of(best(&profile, folder.path()).args(["--json", "--quiet"])).json();
+    let direct = &answer["direct"];
+    // The bank shot is better by 7 points: a direct shot that turned into one would gain them.
+    let gain =
+        answer["bank"]["probability"].as_f64().unwrap() - direct["probability"].as_f64().unwrap();
+    assert!(gain > 0.05, "{gain}");
+    let variations = |name: &str| direct["sensitivity"][name].as_array().unwrap().clone();
+    let own = variations("backspins").into_iter().next_back().unwrap();
+    assert!(own["gain"].as_f64().unwrap().abs() < 0.02, "{own}");
+    let heights = variations("heights");
+    assert!(
+        heights
+            .iter()
+            .any(|height| height["gain"].as_f64().unwrap() < 0.01),
+        "{heights:?}"
+    );
+}
+
+#[test]
+fn contract_a_fixed_backspin_above_the_greatest_is_refused_at_both_places() {
+    let folder = TempDir::new().unwrap();
+    let text = LOW_RELEASE.replace(
+        "backspin = \"2 rev/s\"\n[search]",
+        "backspin = \"5 rev/s\"\n[search]",
+    );
+    let profile = write_file(&folder, "p.toml", text);
+    let answer = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(2);
+    for words in [
+        "nominal.backspin: is 5.000 rev/s, more than shooter.max_backspin",
+        "shooter.max_backspin: is 2.000 rev/s, less than nominal.backspin",
+        "p.toml:4:16",
+        "p.toml:12:12",
+    ] {
+        assert!(
+            answer.stderr.contains(words),
+            "{words} in {}",
+            answer.stderr
+        );
+    }
+}
+
+#[test]
+fn contract_a_sweep_is_no_profile() {
+    let folder = TempDir::new().unwrap();
+    Answer::of(&mut best(
+        Path::new("configs/quick_sweep.toml"),
+        folder.path(),
+    ))
+    .exits(2)
+    .says("this is a sweep, not a profile: use `bankshot sweep`");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn contract_a_shot_that_misses_without_errors_is_no_best_shot() {
+    let folder = TempDir::new().unwrap();
+    let text = small_profile().replace("\"13.75 ft\"", "\"NEAR ft\"");
+    assert!(text.contains("NEAR"));
+    // From under the ring, made shots are accidents.
+    let profile = write_file(&folder, "p.toml", text.replace("NEAR", "1.3"));
+    let answer = Answer::of(best(&profile, folder.path()).arg("--quiet"));
+    assert!(answer.stdout().contains("no clean"), "{answer:?}");
 }

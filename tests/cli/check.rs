@@ -91,7 +91,7 @@ const ERRORS: [(&str, &str, &[&str]); 17] = [
     (
         "preset = \"paper\"",
         "friction = -1.0",
-        &["physics.friction", "0 or more"],
+        &["physics.friction", "from 0 to 10"],
     ),
     (
         "preset = \"paper\"",

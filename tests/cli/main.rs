@@ -3,6 +3,7 @@
 
 mod best;
 mod check;
+mod man;
 mod outputs;
 mod probability;
 mod simulate;

@@ -1,6 +1,7 @@
 //! `probability`: P of one shot, and the replay of its samples.
 
 use super::support::{Answer, bankshot};
+use bankshot::dynamics::InstructionSet;
 
 /// `probability` of the nine errors with the given flags.
 fn probability(flags: &[&str]) -> Answer {
@@ -59,4 +60,127 @@ fn contract_replay_traces_the_sample() {
     assert_eq!(traced.json()["events"][0]["event"], "release");
     assert_eq!(replay("1:2049").stdout, traced.stdout);
     assert_ne!(replay("1:2050").stdout, traced.stdout);
+}
+
+#[test]
+fn contract_aim_is_measured_from_the_line_to_the_hoop() {
+    let p = |flags: &[&str]| {
+        let mut command = bankshot();
+        command.args([
+            "probability",
+            "configs/bank_wing.toml",
+            "--speed",
+            "25 ft/s",
+            "--pitch",
+            "52 deg",
+        ]);
+        command.args(["--target", "0.004", "--json", "--quiet"]);
+        Answer::of(command.args(flags)).exits(0).json()
+    };
+    let location = p(&[]);
+    let towards = location["nominal"]["polar_deg"].as_f64().unwrap();
+    assert!(
+        towards.abs() > 10.0,
+        "the wing is not straight on: {towards}"
+    );
+    assert_eq!(p(&["--aim", "0 deg"])["nominal"]["polar_deg"], location["nominal"]["polar_deg"]);
+    let aside = p(&["--aim", "0.3 deg"]);
+    assert!((aside["nominal"]["polar_deg"].as_f64().unwrap() - towards - 0.3).abs() < 1e-9);
+    let polar = format!("{} deg", towards + 0.3);
+    let same = p(&["--polar", &polar])["probability"].as_f64().unwrap();
+    assert!((aside["probability"].as_f64().unwrap() - same).abs() < 1e-3);
+    probability(&["--aim", "1 deg", "--polar", "1 deg"])
+        .exits(2)
+        .says("cannot be used with");
+}
+
+#[test]
+fn contract_a_shot_that_touches_nothing_is_warned_about() {
+    let flags = |polar| {
+        [
+            "--speed",
+            "23.6 ft/s",
+            "--pitch",
+            "53.5 deg",
+            "--polar",
+            polar,
+        ]
+    };
+    let probability = |flags: &[&str]| {
+        let mut command = bankshot();
+        Answer::of(command.args(["probability", "configs/free_throw.toml"]).args(flags))
+    };
+    let aside = probability(&flags("20 deg"));
+    assert!(
+        aside.stderr.contains("touches nothing and misses"),
+        "{aside:?}"
+    );
+    assert!(
+        aside.stderr.contains("hoop's centre is 0.00 deg"),
+        "{aside:?}"
+    );
+    let straight = probability(&flags("0 deg"));
+    assert!(!straight.stderr.contains("touches nothing"), "{straight:?}");
+}
+
+#[test]
+fn contract_a_small_probability_is_printed_with_its_digits() {
+    let flags = [
+        "--speed",
+        "22.32 ft/s",
+        "--pitch",
+        "53.5 deg",
+        "--backspin",
+        "3 rev/s",
+    ];
+    let mut flags = flags.to_vec();
+    flags.extend(["--target", "1e-6", "--budget", "262144", "--seed", "2001"]);
+    let mut command = bankshot();
+    let answer = Answer::of(command.args(["probability", "configs/free_throw.toml"]).args(&flags));
+    let answer = answer.exits(1);
+    let line = answer.stdout().lines().next().unwrap();
+    assert!(
+        line.starts_with("P = 0.0001") && !line.contains("0.0000 "),
+        "{line}"
+    );
+    assert!(
+        line.contains("± 0.00001") || line.contains("± 0.00002"),
+        "{line}"
+    );
+}
+
+#[test]
+fn contract_vector_instructions_and_threads_change_no_byte() {
+    let answers: Vec<_> = [
+        &["--simd", "scalar"][..],
+        &["--simd", "baseline"],
+        &["--threads", "1000"],
+        &[],
+    ]
+    .into_iter()
+    .chain(
+        InstructionSet::available()
+            .iter()
+            .map(|(name, _)| match *name {
+                "avx2" => &["--simd", "avx2"][..],
+                "avx512" => &["--simd", "avx512"],
+                _ => &["--simd", "scalar"],
+            }),
+    )
+    .map(|options| {
+        let mut command = bankshot();
+        command.args([
+            "probability",
+            "configs/nine_errors.toml",
+            "--json",
+            "--quiet",
+        ]);
+        let answer = Answer::of(command.args(options).args(["--target", "0.003"]));
+        answer.exits(0).stdout
+    })
+    .collect();
+    assert!(answers.windows(2).all(|pair| pair[0] == pair[1]));
+    probability(&["--simd", "mmx"])
+        .exits(2)
+        .says("must be one of scalar, baseline");
 }

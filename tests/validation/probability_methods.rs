@@ -221,3 +221,75 @@ fn val_one_common_grid_aliases_and_shifted_grids_do_not() {
         with_error(&sobol)
     ));
 }
+
+/// Shots with P near 0.0005, 0.002, 0.7, 0.995 and 0.9995: the factor of all errors of `free_throw`, and the speed in
+/// ft/s.
+const COVERED: [(f64, f64); 5] = [
+    (1.0, 22.405),
+    (1.0, 22.518),
+    (1.0, 23.6),
+    (0.43, 23.6),
+    (0.33, 23.6),
+];
+
+/// The share of `seeds` whose 95 % interval holds P, for each of [`COVERED`].
+fn coverages(seeds: u64) -> Vec<f64> {
+    let cover = |(factor, speed): (f64, f64)| {
+        let profile = load("free_throw")
+            .with(|settings| {
+                let dispersion = &mut settings.shooter.dispersion;
+                for variable in ReleaseVariable::ALL {
+                    *dispersion = dispersion.scaled(variable, factor);
+                }
+            })
+            .unwrap();
+        let shot = nominal(speed, 53.5, 0.0, 3.0);
+        let sampler = Sampler::new(&profile);
+        let truth = sampler.estimate(&shot, 1e-5, 77_777, &Silent).probability;
+        let covered = (0..seeds)
+            .filter(|seed| {
+                let estimate = sampler.estimate(&shot, 0.002, *seed, &Silent);
+                let (low, high) = estimate.interval_95();
+                (low..=high).contains(&truth)
+            })
+            .count();
+        let coverage = covered as f64 / seeds as f64;
+        println!(
+            "P {truth:.6}: {:.1} % of {seeds} intervals",
+            100.0 * coverage
+        );
+        coverage
+    };
+    COVERED.into_iter().map(cover).collect()
+}
+
+#[test]
+fn val_intervals_cover_small_and_large_probabilities() {
+    // Of 60 intervals with a coverage of 95 %, 51 or more cover for all but 1 of 3,700 choices of seeds.
+    for coverage in coverages(60) {
+        assert!(coverage >= 51.0 / 60.0, "{coverage}");
+    }
+}
+
+#[test]
+#[ignore = "two minutes: cargo test --test validation campaign_coverage -- --ignored --nocapture"]
+fn campaign_coverage() {
+    for coverage in coverages(1000) {
+        assert!((0.93..=0.97).contains(&coverage), "{coverage}");
+    }
+}
+
+#[test]
+fn val_a_rare_shot_is_not_certain_to_miss() {
+    // Not one of the first 16,384 shots of this seed goes in, and P is 1.4e-4.
+    let profile = load("free_throw");
+    let shot = nominal(22.32, 53.5, 0.0, 3.0);
+    let sampler = Sampler::new(&profile);
+    let first = sampler.estimate_within(&shot, 1e-6, 16_384, 2001, &Silent);
+    assert!(first.standard_error > 5e-5, "{first:?}");
+    assert!(first.interval_95().1 > 1.4e-4, "{first:?}");
+    let found = sampler.estimate_within(&shot, 1e-6, 1 << 19, 2001, &Silent);
+    assert_eq!(found.shots, 1 << 19);
+    let (low, high) = found.interval_95();
+    assert!(low > 0.5e-4 && high < 3e-4, "{found:?}");
+}

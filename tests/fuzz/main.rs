@@ -1,0 +1,250 @@
+//! Attacks with mutated input: nothing may panic, run on without end or take memory without bound.
+//!
+//! Each target turns random bytes into mutations of a small corpus; a failure is shrunk. An ordinary run tries a few
+//! hundred. `BANKSHOT_FUZZ_TRIES=2000000 cargo test --test fuzz -- --nocapture` is the campaign of
+//! `docs/reliability.md`; its random numbers differ from run to run.
+
+mod mutation;
+
+use bankshot::config::{parse_locations, parse_physics, parse_profile};
+use bankshot::dynamics::{Release, Simulator};
+use bankshot::model::Physics;
+use bankshot::output::simulation_files::csv_records::{CsvRecords, MAX_RECORD_BYTES};
+use bankshot::output::simulation_files::release_columns::{ReleaseColumns, outcome_cells};
+use bankshot::sweep::result_store::{self, ResultStore};
+use bankshot::sweep::sweep_toml::{SourceTexts, named_files, parse_sweep};
+use mutation::Script;
+use proptest::test_runner::{Config as ProptestConfig, RngAlgorithm, TestRng, TestRunner};
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+const PROFILES: [&str; 4] = [
+    include_str!("../../configs/free_throw.toml"),
+    include_str!("../../configs/nine_errors.toml"),
+    include_str!("../../configs/bank_wing.toml"),
+    include_str!("../../configs/paper/fig_12.toml"),
+];
+const SWEEPS: [&str; 3] = [
+    include_str!("../../configs/quick_sweep.toml"),
+    include_str!("../../configs/half_court.toml"),
+    include_str!("../small_sweep.toml"),
+];
+const RELEASES: &str = "\
+note,pitch_deg,speed_ft_s,distance_ft,court_angle_deg,release_height_ft,polar_deg,backspin_rev_s
+swish,52,23.5,13.75,0,7,0,0
+\"a \"\"bank\"\" shot,
+on two lines\",52,24.7,13.75,0,7,0,3
+
+short,5.2e1,22.0,13.75,-0.0,7,0,3
+";
+const PLACES: &str = "name,x_ft,y_ft\nelbow,11,8\ncorner,1,-20\n\"the, line\",13.75,0\n";
+/// Tries of a target in an ordinary test run.
+const TRIES: u32 = 300;
+/// Most random bytes of a try.
+const MAX_SCRIPT: usize = 64;
+
+/// Runs a target on random bytes. A `slow` target has one of so many tries.
+fn attack(slow: u32, target: impl Fn(&[u8])) {
+    let tries = std::env::var("BANKSHOT_FUZZ_TRIES").ok();
+    let is_campaign = tries.is_some();
+    let tries: u32 = tries.map_or(TRIES, |tries| tries.parse().unwrap());
+    let config = ProptestConfig {
+        cases: tries.div_ceil(slow),
+        failure_persistence: None,
+        max_shrink_iters: 2000,
+        ..ProptestConfig::default()
+    };
+    // An ordinary run tries the same bytes every time.
+    let mut runner = if is_campaign {
+        TestRunner::new(config)
+    } else {
+        let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+        TestRunner::new_with_rng(config, rng)
+    };
+    let bytes = proptest::collection::vec(proptest::num::u8::ANY, 0..MAX_SCRIPT);
+    let result = runner.run(&bytes, |bytes| {
+        target(&bytes);
+        Ok(())
+    });
+    if let Err(failure) = result {
+        panic!("{failure}");
+    }
+}
+
+#[test]
+fn fuzz_profiles() {
+    attack(1, |bytes| {
+        let mut script = Script::new(bytes);
+        let base = script.choose(&PROFILES);
+        let text = String::from_utf8_lossy(&script.mutate(base.as_bytes())).into_owned();
+        match parse_profile(&text, "profile") {
+            Ok(profile) => assert!(profile.settings().errors().is_empty()),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+        if let Err(error) = parse_physics(&text, "physics") {
+            assert!(!error.to_string().is_empty());
+        }
+    });
+}
+
+#[test]
+fn fuzz_sweeps() {
+    attack(1, |bytes| {
+        let mut script = Script::new(bytes);
+        let base = script.choose(&SWEEPS);
+        let mut mutated =
+            |text: &str| String::from_utf8_lossy(&script.mutate(text.as_bytes())).into_owned();
+        let (sweep, places) = (mutated(base), mutated(PLACES));
+        let files = named_files(&sweep);
+        let texts = SourceTexts {
+            shooter: files.shooter.map(|_| PROFILES[0].to_owned()),
+            places: files.places.map(|_| places.clone()),
+            sweep,
+        };
+        match parse_sweep(&texts, "sweep") {
+            Ok(config) => assert!(!config.places.is_empty()),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+        if let Ok(locations) = parse_locations(&places) {
+            let names = locations.names.len();
+            assert!(names == 0 || names == locations.points_m.len());
+        }
+    });
+}
+
+#[test]
+fn fuzz_releases() {
+    let simulator = Simulator::new(&Physics::paper()).unwrap();
+    attack(1, |bytes| {
+        let mut script = Script::new(bytes);
+        let text = script.mutate(RELEASES.as_bytes());
+        let mut records = CsvRecords::new(&text[..]).unwrap();
+        let mut rows = Vec::new();
+        loop {
+            let more = records.next_rows(3, MAX_RECORD_BYTES).unwrap();
+            if more.is_empty() {
+                break;
+            }
+            rows.extend(more);
+        }
+        // The lines are in order, and none is beyond the end.
+        let lines = 1 + text.iter().filter(|&&byte| byte == b'\n').count() as u64;
+        assert!(rows.windows(2).all(|pair| pair[0].number <= pair[1].number));
+        assert!(rows.iter().all(|row| row.number <= lines));
+        let Some(Ok(header)) = rows.first().map(|row| row.cells.clone()) else {
+            return;
+        };
+        let Ok(columns) = ReleaseColumns::new(&header, &[]) else {
+            return;
+        };
+        for cells in rows.into_iter().skip(1).filter_map(|row| row.cells.ok()) {
+            if let Ok(release) = columns.release(&cells, simulator.physics()) {
+                let outcome = simulator.simulate(&release).unwrap();
+                assert_eq!(outcome_cells(&outcome).len(), 8);
+            }
+        }
+    });
+}
+
+/// The bytes of a store without a row.
+static STORE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("a.sqlite");
+    drop(ResultStore::open(&path, "hash").unwrap());
+    std::fs::read(path).unwrap()
+});
+
+#[test]
+fn fuzz_stores() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("fuzzed.sqlite");
+    attack(10, |bytes| {
+        std::fs::write(&path, Script::new(bytes).mutate(&STORE)).unwrap();
+        // Damaged or empty, but never a result that was not saved.
+        let mut rows = 0;
+        let _ = result_store::read_rows(&path, "hash", 10, |_| rows += 1);
+        assert_eq!(rows, 0);
+        let _ = ResultStore::open(&path, "hash");
+    });
+}
+
+/// The slowest shot so far, microseconds.
+static SLOWEST_US: AtomicU64 = AtomicU64::new(0);
+
+#[test]
+fn fuzz_physics() {
+    attack(1, |bytes| {
+        let mut script = Script::new(bytes);
+        let physics = random_physics(&mut script);
+        let Ok(simulator) = Simulator::new(&physics) else {
+            return;
+        };
+        for _ in 0..4 {
+            let release = random_release(&mut script);
+            let start = Instant::now();
+            let outcome = simulator.simulate(&release).unwrap();
+            let us = start.elapsed().as_micros() as u64;
+            if SLOWEST_US.fetch_max(us, Ordering::Relaxed) < us && us > 5000 {
+                println!(
+                    "{} ms: {:?} {physics:?} {release:?}",
+                    us / 1000,
+                    outcome.verdict.ending
+                );
+            }
+            assert!(outcome.verdict.time_s <= physics.time_limit_s * 1.001 + 1.0);
+            let state = release.state();
+            let mut workspace = Default::default();
+            let verdicts = simulator.verdicts(&[state], &mut workspace).unwrap();
+            assert_eq!(verdicts[0], outcome.verdict);
+        }
+    });
+}
+
+/// The paper's physics with some constants at random within their ranges or at their ends.
+fn random_physics(script: &mut Script<'_>) -> Physics {
+    let mut physics = Physics::paper();
+    let constants: [(&mut f64, f64, f64); 13] = [
+        (&mut physics.ball_radius_m, 0.01, 10.0),
+        (&mut physics.ball_mass_kg, 0.001, 100.0),
+        (&mut physics.inertia_ratio, 0.1, 1.0),
+        (&mut physics.ring_radius_m, 0.01, 10.0),
+        (&mut physics.board_distance_m, 0.01, 10.0),
+        (&mut physics.board_width_m, 0.01, 10.0),
+        (&mut physics.board_height_m, 0.01, 10.0),
+        (&mut physics.gravity_m_s2, 0.01, 1000.0),
+        (&mut physics.stiffness_n_m, 0.1, 1e9),
+        (&mut physics.damping_kg_s, 1e-6, 1e6),
+        (&mut physics.friction, 1e-6, 10.0),
+        (&mut physics.time_limit_s, 0.01, 60.0),
+        (&mut physics.lodged_after_s, 1e-6, 60.0),
+    ];
+    for (constant, low, high) in constants {
+        match script.byte() % 8 {
+            0 => *constant = low,
+            1 => *constant = high,
+            2 | 3 => *constant = low * (high / low).powf(script.fraction()),
+            4 => *constant *= 0.5 + script.fraction(),
+            _ => {}
+        }
+    }
+    if script.byte() % 8 == 0 {
+        physics.damping_kg_s = 0.0;
+    }
+    physics
+}
+
+fn random_release(script: &mut Script<'_>) -> Release {
+    let mut between = |low: f64, high: f64| low + (high - low) * script.fraction();
+    Release {
+        distance_m: between(0.1, 20.0),
+        court_angle_rad: between(-1.5, 1.5),
+        height_above_hoop_m: between(-3.0, 3.0),
+        speed_m_s: between(0.0, 30.0),
+        pitch_rad: between(-1.6, 1.6),
+        polar_rad: between(-1.6, 1.6),
+        backspin_rad_s: between(-200.0, 200.0),
+        rifle_spin_rad_s: between(-200.0, 200.0),
+        side_spin_rad_s: between(-200.0, 200.0),
+    }
+}
