@@ -95,7 +95,7 @@ impl Estimate {
 /// Shots of the rarer outcome, made or missed, below which the scatter of the replicates is not trusted alone.
 const RARE: f64 = 200.0;
 /// Shots of the rarer outcome at which the scatter and the binomial variance have the same weight.
-const EVEN_WEIGHT: f64 = 2.0;
+const EVEN_WEIGHT: f64 = 2.5;
 
 /// Whether few shots were made, or few missed.
 fn is_rare(probability: f64, shots: f64) -> bool {

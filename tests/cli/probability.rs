@@ -83,7 +83,10 @@ fn contract_aim_is_measured_from_the_line_to_the_hoop() {
         towards.abs() > 10.0,
         "the wing is not straight on: {towards}"
     );
-    assert_eq!(p(&["--aim", "0 deg"])["nominal"]["polar_deg"], location["nominal"]["polar_deg"]);
+    assert_eq!(
+        p(&["--aim", "0 deg"])["nominal"]["polar_deg"],
+        location["nominal"]["polar_deg"]
+    );
     let aside = p(&["--aim", "0.3 deg"]);
     assert!((aside["nominal"]["polar_deg"].as_f64().unwrap() - towards - 0.3).abs() < 1e-9);
     let polar = format!("{} deg", towards + 0.3);
@@ -108,7 +111,11 @@ fn contract_a_shot_that_touches_nothing_is_warned_about() {
     };
     let probability = |flags: &[&str]| {
         let mut command = bankshot();
-        Answer::of(command.args(["probability", "configs/free_throw.toml"]).args(flags))
+        Answer::of(
+            command
+                .args(["probability", "configs/free_throw.toml"])
+                .args(flags),
+        )
     };
     let aside = probability(&flags("20 deg"));
     assert!(
@@ -136,7 +143,11 @@ fn contract_a_small_probability_is_printed_with_its_digits() {
     let mut flags = flags.to_vec();
     flags.extend(["--target", "1e-6", "--budget", "262144", "--seed", "2001"]);
     let mut command = bankshot();
-    let answer = Answer::of(command.args(["probability", "configs/free_throw.toml"]).args(&flags));
+    let answer = Answer::of(
+        command
+            .args(["probability", "configs/free_throw.toml"])
+            .args(&flags),
+    );
     let answer = answer.exits(1);
     let line = answer.stdout().lines().next().unwrap();
     assert!(

@@ -2,7 +2,7 @@
 
 use crate::common::{free_throw_uniform, on_threads, states};
 use bankshot::dynamics::{
-    BatchWorkspace, InstructionSet, Integrator, Release, Simulator, SimulatorError,
+    BatchWorkspace, Ending, InstructionSet, Integrator, Release, Simulator, SimulatorError, Verdict,
 };
 use bankshot::math::vector::Vec3;
 use bankshot::model::{BallState, Physics};
@@ -151,4 +151,101 @@ fn contract_physics_that_cannot_be_simulated_is_refused() {
     };
     let error = Simulator::new(&physics).unwrap_err();
     assert!(matches!(&error, SimulatorError::Physics(error) if error.key == "gravity"));
+}
+
+#[test]
+fn contract_every_constant_has_a_range() {
+    // Each of these was accepted once, and its shots took minutes.
+    let paper = Physics::paper;
+    for (physics, key) in [
+        (
+            Physics {
+                friction: 1e6,
+                ..paper()
+            },
+            "friction",
+        ),
+        (
+            Physics {
+                inertia_ratio: 1e-6,
+                ..paper()
+            },
+            "inertia_ratio",
+        ),
+        (
+            Physics {
+                stiffness_n_m: 1e308,
+                ..paper()
+            },
+            "stiffness",
+        ),
+        (
+            Physics {
+                stiffness_n_m: 1e9,
+                ball_mass_kg: 0.01,
+                ..paper()
+            },
+            "stiffness",
+        ),
+        (
+            Physics {
+                time_limit_s: 1e6,
+                ..paper()
+            },
+            "time_limit",
+        ),
+        (
+            Physics {
+                ball_radius_m: 1e-6,
+                ..paper()
+            },
+            "ball_radius",
+        ),
+    ] {
+        let errors = physics.errors();
+        assert!(
+            errors.iter().any(|error| error.key == key),
+            "{key}: {errors:?}"
+        );
+    }
+}
+
+#[test]
+fn contract_a_shot_without_end_is_given_up_as_unresolved_in_the_lanes_too() {
+    // A ball that lies on ring and board for a minute, under a great gravity and with no rule of lodging.
+    let physics = Physics {
+        ball_mass_kg: 0.008,
+        gravity_m_s2: 1000.0,
+        time_limit_s: 60.0,
+        lodged_after_s: 0.0,
+        board_width_m: 10.0,
+        ..Physics::paper()
+    };
+    let simulator = Simulator::new(&physics).unwrap();
+    let starts: Vec<BallState> = (0..40)
+        .map(|i| {
+            let release = Release {
+                distance_m: 4.96,
+                court_angle_rad: 0.861,
+                height_above_hoop_m: -0.766,
+                speed_m_s: 81.03 + 0.1 * f64::from(i - 20),
+                pitch_rad: 0.652,
+                polar_rad: 0.796,
+                backspin_rad_s: 4.0,
+                rifle_spin_rad_s: 17.1,
+                side_spin_rad_s: -10.2,
+            };
+            release.state()
+        })
+        .collect();
+    let alone: Vec<Verdict> = starts
+        .iter()
+        .map(|start| simulator.simulate_state(*start).unwrap().verdict)
+        .collect();
+    let given_up = alone
+        .iter()
+        .filter(|verdict| verdict.ending == Ending::Unresolved);
+    assert!(given_up.count() > 0, "{:?}", alone[0]);
+    let mut workspace = BatchWorkspace::default();
+    assert_eq!(simulator.verdicts(&starts, &mut workspace).unwrap(), alone);
 }

@@ -67,3 +67,66 @@ fn contract_a_sweep_is_not_compared_with_a_profile_and_other_folders_have_no_rep
     be_refused(&mut compare(&sweep, Some(profile), &sweep.path("plots")));
     be_refused(bankshot().arg("report").arg(sweep.folder()));
 }
+
+#[test]
+fn contract_the_report_of_a_comparison_has_both() {
+    let sweep = SweepRun::new(SMALL_SWEEP);
+    let plots = sweep.path("plots");
+    let steadier = SMALL_SWEEP.replace("0.25 ft/s", "0.15 ft/s");
+    let steadier = SweepRun::new(&steadier.replace("[shooter]", "[shooter]\nname = \"steadier\""));
+    succeed(&mut compare(&sweep, Some(&steadier.results()), &plots));
+    let page = fs::read_to_string(write_report(&plots)).unwrap();
+    for words in [
+        "small: shooter against small: steadier",
+        "minus shooter (small)",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    // Two shooters at one location.
+    let (_, shooter) = SMALL_SWEEP.split_once("[shooter]").unwrap();
+    let location = "[location]\ndistance = \"12 ft\"\nangle = \"50 deg\"\n";
+    let profile = |name: &str| {
+        let path = sweep.path(&format!("{name}.toml"));
+        let text = format!("{location}[shooter]\nname = \"{name}\"{shooter}");
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let (first, second) = (profile("Ann"), profile("Bob"));
+    let out = sweep.path("pair");
+    let mut command = bankshot();
+    command
+        .arg("compare")
+        .arg(&first)
+        .arg("--against")
+        .arg(&second);
+    succeed(command.arg("--out").arg(&out));
+    let page = fs::read_to_string(write_report(&out)).unwrap();
+    for words in [
+        "Ann against Bob",
+        "Ann: From 12.0 ft",
+        "Bob: From 12.0 ft",
+        "Bob: Best shots",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    // A comparison without another shooter forgets the one before.
+    let mut command = bankshot();
+    succeed(command.arg("compare").arg(&first).arg("--out").arg(&out));
+    let page = fs::read_to_string(write_report(&out)).unwrap();
+    assert!(!page.contains("Bob"));
+    // An edited file is refused.
+    let file = out.join("best_shots.json");
+    let text = fs::read_to_string(&file).unwrap();
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let p = value["direct"]["probability"].to_string();
+    fs::write(
+        &file,
+        text.replace(&format!("\"probability\": {p}"), "\"probability\": 7.0"),
+    )
+    .unwrap();
+    let output = be_refused(bankshot().arg("report").arg(&out));
+    assert!(
+        printed(&output).contains("direct.probability is out of range"),
+        "{output:?}"
+    );
+}

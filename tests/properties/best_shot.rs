@@ -70,7 +70,8 @@ fn prop_the_best_shot_with_fixed_angles_is_found_again() {
             settings.nominal.polar_rad = Some(free.nominal.polar_rad);
         })
         .unwrap();
-    let [_, fixed] = find(&profile);
+    // The direct shot at these angles is no clean one.
+    let fixed = best_shot::find(&profile, &Silent).unwrap().bank.unwrap();
     assert!((fixed.nominal.speed_m_s - free.nominal.speed_m_s).abs() < 0.02);
     let difference = (fixed.estimate.probability - free.estimate.probability).abs();
     assert!(difference < 4.5 * error_of_difference(&fixed, free) + SEARCH_LOSS);

@@ -291,3 +291,22 @@ fn contract_a_ball_released_below_the_ring_and_falling_ends_at_once() {
         assert!(verdict.time_s < 0.1, "{integrator:?}");
     }
 }
+
+#[test]
+fn prop_a_board_that_ends_above_the_ring_takes_no_more_steps() {
+    // A ball on the ring below the board is not about to touch it. Steps that waited for the touch made this board
+    // 40 times slower.
+    let steps = |board_height_m: f64| {
+        let physics = Physics {
+            board_height_m,
+            ..Physics::paper()
+        };
+        let simulator = Simulator::new(&physics).unwrap();
+        let shots = free_throw_uniform(3000, 8);
+        let samples = |release: &Release| simulator.trace(release, 10.0).unwrap().samples.len();
+        shots.iter().map(samples).max().unwrap()
+    };
+    let (standard, short) = (steps(Physics::paper().board_height_m), steps(0.31));
+    println!("most steps of a shot: {standard}, with the short board {short}");
+    assert!(short < 2 * standard, "{standard} {short}");
+}

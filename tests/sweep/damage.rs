@@ -165,3 +165,93 @@ fn contract_verify_finds_a_result_that_was_never_computed() {
     assert_code(&output, 4);
     assert_printed(&output, &format!("differs: job {job}"));
 }
+
+/// Everything in a folder that must stay as it is.
+#[cfg(unix)]
+fn precious(folder: &Path) -> std::path::PathBuf {
+    let file = folder.join("precious.txt");
+    fs::write(&file, "precious").unwrap();
+    file
+}
+
+#[cfg(unix)]
+#[test]
+fn contract_the_folder_of_a_sweep_is_never_written_through_a_link() {
+    use std::os::unix::fs::symlink;
+    let test = TestFolder::new();
+    let (complete, _) = test.undisturbed();
+    let lock_name = fs::read_dir(complete.join("store"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .find(|name| name.ends_with(".lock"))
+        .unwrap();
+    let aborted = lock_name.replace(".lock", ".aborted");
+    let store = lock_name.replace(".lock", ".sqlite");
+    for (i, name) in [
+        format!("store/{lock_name}"),
+        format!("store/{aborted}"),
+        format!("store/{store}"),
+        "store".to_owned(),
+        "best_shots.csv".to_owned(),
+        "best_shots.parquet".to_owned(),
+        "provenance.json".to_owned(),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let target = precious(test.folder.path());
+        let out = test.out(&format!("linked-{i}"));
+        fs::create_dir_all(out.join("store")).unwrap();
+        let link = out.join(&name);
+        if name == "store" {
+            fs::remove_dir(&link).unwrap();
+            symlink(test.folder.path(), &link).unwrap();
+        } else {
+            symlink(&target, &link).unwrap();
+        }
+        let output = test.run(&out, &["--quiet"]);
+        assert!(
+            matches!(output.status.code(), Some(4 | 74)),
+            "{name}: {output:?}"
+        );
+        assert_printed(&output, "it is a link");
+        assert_printed(&output, &link.display().to_string());
+        assert_eq!(fs::read_to_string(&target).unwrap(), "precious", "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn contract_a_manifest_that_is_no_file_is_refused_at_once() {
+    let test = TestFolder::new();
+    for (kind, words) in [
+        ("link", "leads nowhere"),
+        ("pipe", "is not a file"),
+        ("folder", "is not a file"),
+    ] {
+        let out = test.out(kind);
+        fs::create_dir_all(&out).unwrap();
+        let manifest = out.join("configuration.json");
+        match kind {
+            "link" => std::os::unix::fs::symlink("nowhere", &manifest).unwrap(),
+            "pipe" => {
+                let made = std::process::Command::new("mkfifo").arg(&manifest).status();
+                assert!(made.unwrap().success());
+            }
+            _ => fs::create_dir(&manifest).unwrap(),
+        }
+        let sweep = test.run(&out, &["--quiet"]);
+        let mut others = vec![sweep];
+        for command in ["status", "report"] {
+            others.push(bankshot().arg(command).arg(&out).output().unwrap());
+        }
+        for output in others {
+            assert!(
+                matches!(output.status.code(), Some(2 | 4)),
+                "{kind}: {output:?}"
+            );
+            assert_printed(&output, words);
+            assert_printed(&output, &manifest.display().to_string());
+        }
+    }
+}

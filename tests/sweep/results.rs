@@ -1,6 +1,6 @@
 //! The results: nothing that happens to the outputs loses one, and a mirrored one is right.
 
-use crate::support::{SWEEP, TestFolder, assert_code, bankshot, tables};
+use crate::support::{SWEEP, TestFolder, assert_code, assert_printed, bankshot, printed, tables};
 use bankshot::best_shot;
 use bankshot::config::parse_profile;
 use bankshot::probability::Silent;
@@ -87,4 +87,123 @@ fn prop_a_mirrored_result_agrees_with_a_search_at_its_place() {
             "{kind}: {difference} +- {error}"
         );
     }
+}
+
+#[test]
+fn contract_sweep_report_and_compare_count_with_one_rule() {
+    let test = TestFolder::new();
+    let out = test.out("counted");
+    let sweep = test.run(&out, &["--quiet"]);
+    let sentence = printed(&sweep)
+        .lines()
+        .find(|line| line.starts_with("The bank shot is better at"))
+        .unwrap()
+        .to_owned();
+    assert!(
+        sentence.ends_with("by more than 2 standard errors."),
+        "{sentence}"
+    );
+    for command in ["compare", "report"] {
+        let output = bankshot().arg(command).arg(&out).output().unwrap();
+        assert_printed(&output, &sentence);
+    }
+    // The rule, again from the table: independent estimates, two standard errors, every place.
+    let table = fs::read_to_string(out.join("best_shots.csv")).unwrap();
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let column = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let (place, p, error) = (
+        column("place"),
+        column("probability"),
+        column("standard_error"),
+    );
+    let mut values: std::collections::BTreeMap<String, Vec<(f64, f64)>> = Default::default();
+    for row in reader.records().map(Result::unwrap) {
+        let number = |i: usize| row[i].parse::<f64>().unwrap();
+        values
+            .entry(row[place].to_owned())
+            .or_default()
+            .push((number(p), number(error)));
+    }
+    let better = values.values().filter(|pair| {
+        let [(direct, a), (bank, b)] = pair[..] else {
+            panic!("{pair:?}")
+        };
+        bank - direct > 2.0 * (a * a + b * b).sqrt()
+    });
+    let expected = format!("better at {} of {} places", better.count(), values.len());
+    assert!(sentence.contains(&expected), "{sentence}: {expected}");
+}
+
+#[test]
+fn contract_names_of_places_reach_the_tables() {
+    let shooter = crate::support::SWEEP.split_once("[shooter]").unwrap().1;
+    let sweep = format!(
+        "[sweep]\nname = \"named\"\nregion = \"places\"\nplaces = \"places.csv\"\n[shooter]{shooter}"
+    );
+    let test = TestFolder::with(&sweep);
+    let places = "name,x_ft,y_ft\nleft elbow,11,8\n\"the, line\",13.75,0\nright elbow,11,-8\n";
+    fs::write(test.folder.path().join("places.csv"), places).unwrap();
+    let out = test.out("named");
+    assert_code(&test.run(&out, &["--quiet"]), 0);
+    let table = fs::read_to_string(out.join("best_shots.csv")).unwrap();
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    assert_eq!(&reader.headers().unwrap()[2], "name");
+    let names: Vec<String> = reader
+        .records()
+        .map(|row| row.unwrap()[2].to_owned())
+        .collect();
+    let expected = ["left elbow", "the, line", "right elbow"];
+    assert_eq!(
+        names,
+        expected
+            .into_iter()
+            .flat_map(|name| [name; 2])
+            .collect::<Vec<_>>()
+    );
+    let parquet = fs::read(out.join("best_shots.parquet")).unwrap();
+    assert!(parquet.windows(11).any(|window| window == b"right elbow"));
+    // A length is 11 and not 11.000000000000002.
+    let digits = |cell: &str| {
+        let digits = cell.split('e').next().unwrap().replace(['.', '-'], "");
+        digits.trim_start_matches('0').len()
+    };
+    let numbers = table
+        .split([',', '\n'])
+        .filter(|cell| cell.parse::<f64>().is_ok());
+    assert!(numbers.clone().count() > 50 && numbers.clone().all(|cell| digits(cell) <= 12));
+    fs::write(
+        test.folder.path().join("places.csv"),
+        "name,x_ft,y_ft\na\u{202e}b,11,8\n",
+    )
+    .unwrap();
+    let output = test.run(&test.out("refused"), &[]);
+    assert_code(&output, 2);
+    assert_printed(&output, "row 1: name");
+}
+
+#[test]
+fn contract_a_clean_run_leaves_no_note_of_an_abort() {
+    let test = TestFolder::new();
+    let (out, _) = test.undisturbed();
+    let notes = fs::read_dir(out.join("store")).unwrap().filter(|entry| {
+        let path = entry.as_ref().unwrap().path();
+        path.extension().is_some_and(|end| end == "aborted")
+    });
+    assert_eq!(notes.count(), 0);
+}
+
+#[test]
+fn contract_a_sweep_reads_files_of_the_right_type_only() {
+    let sweep = "[sweep]\nregion = \"arcs\"\nshooter = \"secret.txt\"\n";
+    let test = TestFolder::with(sweep);
+    fs::write(
+        test.folder.path().join("secret.txt"),
+        "password = hunter2\n",
+    )
+    .unwrap();
+    let output = test.run(&test.out("out"), &[]);
+    assert_code(&output, 2);
+    assert_printed(&output, "sweep.shooter must name a .toml file");
+    assert!(!printed(&output).contains("hunter2"), "{output:?}");
 }

@@ -42,7 +42,8 @@ struct SweepPaths {
 }
 
 fn sweep_of(folder: &Path) -> Option<SweepPaths> {
-    if folder.join(SWEEP_MANIFEST).exists() {
+    // Also a link that leads nowhere: it is refused with its path later.
+    if folder.join(SWEEP_MANIFEST).symlink_metadata().is_ok() {
         return Some(SweepPaths {
             sweep: folder.to_owned(),
             against: None,
