@@ -1,8 +1,8 @@
 //! Attacks with mutated input: nothing may panic, run on without end or take memory without bound.
 //!
 //! Each target turns random bytes into mutations of a small corpus; a failure is shrunk. An ordinary run tries a few
-//! hundred. `BANKSHOT_FUZZ_TRIES=2000000 cargo test --test fuzz -- --nocapture` is the campaign of
-//! `docs/reliability.md`; its random numbers differ from run to run.
+//! hundred, always the same. `BANKSHOT_FUZZ_TRIES=10000000 cargo test --release --test fuzz -- --nocapture` is the
+//! campaign of `docs/reliability.md`; its random numbers differ from run to run.
 
 mod mutation;
 
@@ -39,18 +39,18 @@ on two lines\",52,24.7,13.75,0,7,0,3
 short,5.2e1,22.0,13.75,-0.0,7,0,3
 ";
 const PLACES: &str = "name,x_ft,y_ft\nelbow,11,8\ncorner,1,-20\n\"the, line\",13.75,0\n";
-/// Tries of a target in an ordinary test run.
-const TRIES: u32 = 300;
+/// Tries of all targets in an ordinary test run.
+const TRIES: u32 = 3000;
 /// Most random bytes of a try.
 const MAX_SCRIPT: usize = 200;
 
-/// Runs a target on random bytes. A `slow` target has one of so many tries.
-fn attack(slow: u32, target: impl Fn(&[u8])) {
+/// Runs a target on random bytes, with its share of the tries, in thousandths.
+fn attack(share: u32, target: impl Fn(&[u8])) {
     let tries = std::env::var("BANKSHOT_FUZZ_TRIES").ok();
     let is_campaign = tries.is_some();
     let tries: u32 = tries.map_or(TRIES, |tries| tries.parse().unwrap());
     let config = ProptestConfig {
-        cases: tries.div_ceil(slow),
+        cases: (u64::from(tries) * u64::from(share) / 1000) as u32,
         failure_persistence: None,
         max_shrink_iters: 2000,
         ..ProptestConfig::default()
@@ -74,7 +74,7 @@ fn attack(slow: u32, target: impl Fn(&[u8])) {
 
 #[test]
 fn fuzz_profiles() {
-    attack(1, |bytes| {
+    attack(110, |bytes| {
         let mut script = Script::new(bytes);
         let base = script.choose(&PROFILES);
         let text = String::from_utf8_lossy(&script.mutate(base.as_bytes())).into_owned();
@@ -90,7 +90,7 @@ fn fuzz_profiles() {
 
 #[test]
 fn fuzz_sweeps() {
-    attack(1, |bytes| {
+    attack(89, |bytes| {
         let mut script = Script::new(bytes);
         let base = script.choose(&SWEEPS);
         let mut mutated =
@@ -116,7 +116,7 @@ fn fuzz_sweeps() {
 #[test]
 fn fuzz_releases() {
     let simulator = Simulator::new(&Physics::paper()).unwrap();
-    attack(1, |bytes| {
+    attack(300, |bytes| {
         let mut script = Script::new(bytes);
         let text = script.mutate(RELEASES.as_bytes());
         let mut records = CsvRecords::new(&text[..]).unwrap();
@@ -159,7 +159,7 @@ static STORE: LazyLock<Vec<u8>> = LazyLock::new(|| {
 fn fuzz_stores() {
     let folder = tempfile::TempDir::new().unwrap();
     let path = folder.path().join("fuzzed.sqlite");
-    attack(10, |bytes| {
+    attack(1, |bytes| {
         std::fs::write(&path, Script::new(bytes).mutate(&STORE)).unwrap();
         // Damaged or empty, but never a result that was not saved.
         let mut rows = 0;
@@ -175,7 +175,7 @@ static SIMULATED: AtomicU64 = AtomicU64::new(0);
 
 #[test]
 fn fuzz_physics() {
-    attack(1, |bytes| {
+    attack(500, |bytes| {
         let mut script = Script::new(bytes);
         let physics = random_physics(&mut script);
         let Ok(simulator) = Simulator::new(&physics) else {
@@ -184,9 +184,8 @@ fn fuzz_physics() {
         SIMULATED.fetch_add(4, Ordering::Relaxed);
         for _ in 0..4 {
             let release = random_release(&mut script, &physics);
-            let start = Instant::now();
             let outcome = simulator.simulate(&release).unwrap();
-            let us = start.elapsed().as_micros() as u64;
+            let us = time_us(&simulator, &release);
             if SLOWEST_US.fetch_max(us, Ordering::Relaxed) < us && us > 5000 {
                 println!(
                     "{} ms: {:?} {physics:?} {release:?}",
@@ -206,6 +205,23 @@ fn fuzz_physics() {
         SIMULATED.load(Ordering::Relaxed),
         SLOWEST_US.load(Ordering::Relaxed) as f64 / 1000.0
     );
+    // Only of optimised code.
+    if cfg!(not(debug_assertions)) {
+        assert!(SLOWEST_US.load(Ordering::Relaxed) < 50_000);
+    }
+}
+
+/// The time of a shot, microseconds: the least of several if it seems long, for the machine may do other work.
+fn time_us(simulator: &Simulator, release: &Release) -> u64 {
+    let once = || {
+        let start = Instant::now();
+        let _ = simulator.simulate(release);
+        start.elapsed().as_micros() as u64
+    };
+    match once() {
+        us if us < 5000 => us,
+        us => (0..5).map(|_| once()).fold(us, u64::min),
+    }
 }
 
 /// The paper's physics with some constants at random within their ranges or at their ends.

@@ -276,3 +276,27 @@ fn contract_no_files_import_each_other_in_a_circle() {
         visit(file, &imports, &mut state, &mut Vec::new());
     }
 }
+
+#[test]
+fn contract_every_dependency_is_in_the_notices() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let notices = fs::read_to_string(repository.join("THIRD-PARTY-NOTICES.md")).unwrap();
+    let lock: toml::Table = fs::read_to_string(repository.join("Cargo.lock"))
+        .unwrap()
+        .parse()
+        .unwrap();
+    let packages = lock["package"].as_array().unwrap();
+    let missing: Vec<String> = packages
+        .iter()
+        .filter(|package| package.get("source").is_some())
+        .map(|package| {
+            let text = |key: &str| package[key].as_str().unwrap();
+            format!("| {} {} |", text("name"), text("version"))
+        })
+        .filter(|row| !notices.contains(row))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "run python3 packaging/third_party_notices.py: {missing:?}"
+    );
+}

@@ -1,12 +1,14 @@
 //! Shards, threads, and several processes in one folder.
 
 use crate::support::{TestFolder, assert_code, assert_printed, bankshot, printed, stores, tables};
+use bankshot::dynamics::InstructionSet;
 use std::fs;
 
 #[test]
-fn contract_threads_shards_and_missing_instructions_change_no_byte() {
+fn contract_threads_shards_and_vector_instructions_change_no_byte() {
     let test = TestFolder::new();
     let (_, bytes) = test.undisturbed();
+    let sets = InstructionSet::available();
     for (shards, threads) in [(1, 1), (2, 1), (3, 2), (7, 64)] {
         let out = test.out(&format!("{shards}"));
         for shard in 1..=shards {
@@ -14,10 +16,8 @@ fn contract_threads_shards_and_missing_instructions_change_no_byte() {
             command
                 .args(["--quiet", "--threads", &threads.to_string()])
                 .args(["--shard", &format!("{shard}/{shards}")]);
-            if threads == 1 {
-                // The C library then works without these instructions.
-                command.env("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-FMA");
-            }
+            let instructions = sets[(shards + shard) % sets.len()].0;
+            command.args(["--simd", instructions]);
             assert_code(&command.output().unwrap(), 0);
         }
         let output = bankshot().arg("merge").arg(&out).output().unwrap();
