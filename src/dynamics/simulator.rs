@@ -76,7 +76,7 @@ impl Integrator {
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
 /// steps; some constants that are far from any ball would take steps without end.
 fn max_steps(integrator: Integrator) -> u32 {
-    const STEPS: u32 = 40_000;
+    const STEPS: u32 = 20_000;
     const AT_STEPS_PER_CONTACT: u32 = 8;
     match integrator {
         Integrator::EventDriven { steps_per_contact } => {
