@@ -117,7 +117,7 @@ pub enum NoShot {
     #[error("no {} shot within the limits can go in from this place", .0.name())]
     Impossible(ShotKind),
     /// The most probable shot goes in only with errors.
-    #[error("no clean {} shot from this place: the most probable release, P {}, misses when it has no errors", .kind.name(), probability_text(*.probability_per_million))]
+    #[error("no clean {} shot is given: the most probable one from this place, P {}, misses when it has no errors", .kind.name(), probability_text(*.probability_per_million))]
     NotClean {
         /// The kind.
         kind: ShotKind,

@@ -36,7 +36,7 @@ Examples:
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Number of threads [default: all]; no result depends on it.
+    /// Number of threads, at most 4 for each core [default: one for each]; no result depends on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Vector instructions [default: the best of this machine]; no result depends on them.
@@ -60,7 +60,7 @@ pub(crate) enum Command {
     Plan(PlanOptions),
     /// Compute the probability of making one nominal shot, under up to nine errors.
     Probability(ProbabilityOptions),
-    /// Simulate the releases of a CSV file.
+    /// Simulate the releases of a CSV or Parquet file.
     Simulate(SimulateOptions),
     /// Find the best shots at every place of a region; run the same command again to continue.
     Sweep(SweepOptions),
@@ -300,11 +300,11 @@ pub(crate) enum IntegratorName {
 #[command(after_help = "\
 Columns, by name and in any order: distance_ft, court_angle_deg, release_height_ft, speed_ft_s,
 pitch_deg, polar_deg; optional backspin_rev_s, rifle_spin_rev_s, side_spin_rev_s. The suffixes _m,
-_m_s, _rad and _rad_s are accepted instead. Other columns are copied; one that is named like a quantity
-must be given with --carry, so that no misspelt column is overlooked. The columns made, kind, contacts,
+_m_s, _rad and _rad_s are accepted instead. Other columns are copied. One that is named like a
+quantity needs --carry, so that no misspelt column is overlooked. The columns made, kind, contacts,
 n_board, n_ring, flight_time_s (to the end of the shot, bounces included), entry_angle_deg and
-first_touch_s are added. A row that cannot be simulated is reported with its line and has empty results;
-the exit code is then 3. Files named *.parquet are Parquet, others CSV.
+first_touch_s are added. A row that cannot be simulated is reported with its line and has empty
+results; the exit code is then 3. Files named *.parquet are Parquet, others CSV.
 
 Examples:
   bankshot simulate releases.csv --output outcomes.csv

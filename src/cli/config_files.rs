@@ -1,14 +1,22 @@
 //! Reads configuration files.
 
 use super::failure::Failure;
-use bankshot::config::{MAX_FILE_BYTES, parse_profile};
+use bankshot::config::{MAX_FILE_BYTES, MAX_TOML_BYTES, parse_profile};
 use bankshot::shooter::Profile;
 use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
 
-/// Reads a text file of at most [`MAX_FILE_BYTES`].
+/// Reads a text file of at most [`MAX_FILE_BYTES`], a TOML file of at most [`MAX_TOML_BYTES`].
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
+    let is_toml = path
+        .extension()
+        .is_some_and(|extension| extension == "toml");
+    let most = if is_toml {
+        MAX_TOML_BYTES
+    } else {
+        MAX_FILE_BYTES
+    };
     let shown = path.display();
     let refuse = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
     let metadata = std::fs::metadata(path).map_err(refuse)?;
@@ -17,15 +25,15 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
             "{shown}: is not a file; give a TOML file"
         )));
     }
-    if metadata.len() > MAX_FILE_BYTES {
+    if metadata.len() > most {
         return Err(Failure::usage(format!(
-            "{shown}: has {} bytes; at most {MAX_FILE_BYTES} are read",
+            "{shown}: has {} bytes; at most {most} are read",
             metadata.len()
         )));
     }
     let mut bytes = Vec::new();
     std::fs::File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut bytes))
+        .and_then(|file| file.take(most).read_to_end(&mut bytes))
         .map_err(refuse)?;
     String::from_utf8(bytes).map_err(|error| {
         let position = error.utf8_error().valid_up_to();
@@ -56,7 +64,10 @@ pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Fail
     let read = |name: Option<String>, key: &str, extension: &str| {
         let Some(name) = name else { return Ok(None) };
         let file = folder.join(&name);
-        if !file.extension().is_some_and(|given| given == extension) {
+        if !file
+            .extension()
+            .is_some_and(|given| given.eq_ignore_ascii_case(extension))
+        {
             return Err(Failure::usage(format!(
                 "{}: sweep.{key} must name a .{extension} file, not \"{name}\"",
                 path.display()

@@ -89,6 +89,7 @@ fn manual_page(command: Option<&str>) -> Result<String, Failure> {
         None => program,
         Some(name) => program
             .find_subcommand(name)
+            .filter(|_| name != "help")
             .cloned()
             .ok_or_else(|| Failure::usage(format!("man {name}: there is no such command")))?,
     };

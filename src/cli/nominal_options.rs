@@ -1,7 +1,6 @@
 //! The nominal shot of a command: from the flags, then from the profile's `[nominal]` table.
 
 use super::failure::Failure;
-use bankshot::dynamics::OutcomeKind;
 use bankshot::shooter::{Nominal, NominalVariable, Profile};
 use bankshot::units::{self, DEGREE_RAD};
 use clap::Args;
@@ -74,7 +73,8 @@ impl NominalOptions {
             .simulator()
             .simulate(&profile.release(nominal))
             .ok()?;
-        (outcome.kind == OutcomeKind::Airball).then(|| {
+        let verdict = &outcome.verdict;
+        (!verdict.made && verdict.contacts.count() == 0).then(|| {
             let towards_deg = profile.location().angle_rad / DEGREE_RAD;
             let polar_deg = nominal.polar_rad / DEGREE_RAD;
             let mut text =

@@ -12,12 +12,14 @@ pub(crate) const PNG_SCALE: f32 = 1.5;
 
 /// Writes each plot as SVG and as PNG.
 pub(crate) fn write(folder: &Path, plots: &[Plot]) -> Result<(), Failure> {
+    atomic_file::refuse_linked_folder(folder)
+        .map_err(|error| Failure::io(folder.display(), &error))?;
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), &error))?;
     for plot in plots {
         let png = to_png(&plot.svg, PNG_SCALE).map_err(Failure::bug)?;
         for (extension, bytes) in [("svg", plot.svg.as_bytes()), ("png", &png[..])] {
             let path = folder.join(format!("{}.{extension}", plot.name));
-            atomic_file::write(&path, bytes)
+            atomic_file::write_unlinked(&path, bytes)
                 .map_err(|error| Failure::io(path.display(), &error))?;
         }
     }

@@ -1,6 +1,7 @@
 //! Standard output and standard error, without panics if they are closed.
 
 use super::failure::{Failure, code};
+use bankshot::shooter::is_control_or_direction;
 use std::io::{self, Write};
 
 /// Prints an answer. A closed reader (`| head -1`) is not a failure.
@@ -20,7 +21,20 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<u8, Failure> {
 
 /// Prints a remark on standard error. A failure to print it is ignored.
 pub(crate) fn print_remark(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
+}
+
+/// The text without characters that steer a terminal or turn the direction of text: a message can quote any file.
+fn harmless(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        if !matches!(c, '\n' | '\t') && is_control_or_direction(c) {
+            safe.extend(c.escape_unicode());
+        } else {
+            safe.push(c);
+        }
+    }
+    safe
 }
 
 /// Prints an error on standard error.

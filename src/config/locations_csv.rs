@@ -76,7 +76,7 @@ pub fn parse_locations(text: &str) -> Result<NamedLocations, String> {
             let is_long = name.chars().count() > LONGEST_NAME;
             if is_long || name.chars().any(is_control_or_direction) {
                 return Err(format!(
-                    "row {}: name must have at most {LONGEST_NAME} characters, none of them a control character",
+                    "row {}: name must have at most {LONGEST_NAME} characters, none of which controls the terminal or the direction of text",
                     row + 1
                 ));
             }

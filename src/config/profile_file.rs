@@ -10,6 +10,8 @@ use crate::shooter::{Profile, ProfileError, ProfileSettings};
 
 /// Largest file that is read, in bytes.
 pub const MAX_FILE_BYTES: u64 = 16 * 1024 * 1024;
+/// Largest TOML file that is read, in bytes: what the parser reads in a second.
+pub const MAX_TOML_BYTES: u64 = 1024 * 1024;
 
 /// Parses a profile. `origin` names the file in messages.
 ///

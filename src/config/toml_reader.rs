@@ -6,11 +6,6 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Unknown keys of one table that are reported one by one.
-const MAX_UNKNOWN: usize = 1000;
-/// Errors of the syntax that are kept.
-const MAX_SYNTAX_ERRORS: usize = 1000;
-
 /// A table that is being read. A key that is never asked for is reported as unknown.
 #[derive(Clone)]
 pub(crate) struct TableReader<'t, 'i> {
@@ -32,7 +27,6 @@ pub(crate) fn parse_toml<T>(
     let (table, errors) = DeTable::parse_recoverable(text);
     let mut diagnostics: Vec<Diagnostic> = errors
         .into_iter()
-        .take(MAX_SYNTAX_ERRORS)
         .map(|error| Diagnostic {
             span: error.span().unwrap_or(0..0),
             key: String::new(),
@@ -299,14 +293,9 @@ impl<'t, 'i> TableReader<'t, 'i> {
         let mut known = self.asked.clone();
         known.sort_unstable();
         let known_names = known.join(", ");
-        let mut unknown = 0;
         for (key, _) in table.iter() {
             let name: &str = key.get_ref();
             if known.binary_search(&name).is_ok() {
-                continue;
-            }
-            unknown += 1;
-            if unknown > MAX_UNKNOWN {
                 continue;
             }
             let message = format!("is not a key here; known are {known_names}");
@@ -316,11 +305,6 @@ impl<'t, 'i> TableReader<'t, 'i> {
                 key: self.full_name(&shown),
                 message,
             });
-        }
-        if unknown > MAX_UNKNOWN {
-            let more = unknown - MAX_UNKNOWN;
-            let message = format!("{more} more keys are not known");
-            diagnostics.push(self.table_diagnostic(message));
         }
     }
 }

@@ -148,26 +148,46 @@ pub fn same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Refuses a path that is a link.
+/// Refuses a path that exists and is no regular file: a link would lead elsewhere, and a pipe would be waited for.
 ///
 /// # Errors
-/// It is a link, whatever it leads to.
-pub fn refuse_link(path: &Path) -> io::Result<()> {
+/// It is a link, whatever it leads to, a pipe, a device or a folder.
+pub fn refuse_special(path: &Path) -> io::Result<()> {
+    refuse_unless(path, "a regular file", fs::FileType::is_file)
+}
+
+/// Refuses a path that exists and is no folder, or a link to one.
+///
+/// # Errors
+/// It is a link, or no folder.
+pub fn refuse_linked_folder(path: &Path) -> io::Result<()> {
+    refuse_unless(path, "a folder", fs::FileType::is_dir)
+}
+
+fn refuse_unless(
+    path: &Path,
+    wanted: &str,
+    holds: impl Fn(&fs::FileType) -> bool,
+) -> io::Result<()> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            "it is a link, and the folder of a sweep is not written through links; remove it",
+            "it is a link, and results are not written through links; remove it",
+        )),
+        Ok(found) if !holds(&found.file_type()) => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("it is not {wanted}; remove it"),
         )),
         _ => Ok(()),
     }
 }
 
-/// As [`write()`], but refuses to write through a link.
+/// As [`write()`], but refuses what [`refuse_special`] refuses.
 ///
 /// # Errors
-/// It is a link, or cannot be written.
+/// It is a link or no regular file, or cannot be written.
 pub fn write_unlinked(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    refuse_link(path)?;
+    refuse_special(path)?;
     write(path, bytes)
 }
 

@@ -66,6 +66,7 @@ impl BestShotRun {
             UnitSystem::Imperial
         };
         let profile = profile.with(|settings| settings.output.units = units)?;
+        check_records(&best)?;
         let shots = read_shots(&profile, &best);
         check_shots(&shots)?;
         Ok(Self {
@@ -109,6 +110,22 @@ fn read_shots(profile: &Profile, best: &Value) -> Vec<ReportShot> {
         .collect()
 }
 
+/// Refuses a shot whose probability is no number: it would be left out in silence.
+fn check_records(best: &Value) -> Result<(), ReportError> {
+    for kind in ShotKind::ALL {
+        let record = best.get(kind.name());
+        let is_shot = record.is_some_and(|record| record.get("pitch_deg").is_some());
+        let probability = record.and_then(|record| record.get("probability")?.as_f64());
+        if is_shot && probability.is_none() {
+            return Err(ReportError::File {
+                file: BEST_SHOTS_FILE,
+                message: format!("{}.probability must be a number", kind.name()),
+            });
+        }
+    }
+    Ok(())
+}
+
 /// Refuses values that no run writes: the file was edited.
 fn check_shots(shots: &[ReportShot]) -> Result<(), ReportError> {
     for ReportShot { shot, .. } in shots {
@@ -116,7 +133,7 @@ fn check_shots(shots: &[ReportShot]) -> Result<(), ReportError> {
         let checks = [
             ("probability", (0.0..=1.0).contains(&shot.probability)),
             ("standard_error", (0.0..=1.0).contains(&shot.standard_error)),
-            ("speed", (0.0..=1000.0).contains(&nominal.speed_m_s)),
+            ("speed", (0.0..=500.0).contains(&nominal.speed_m_s)),
             ("pitch", nominal.pitch_rad.abs() <= PI),
             ("polar", nominal.polar_rad.abs() <= PI),
             ("backspin", nominal.backspin_rad_s.abs() <= 1e4),

@@ -52,7 +52,7 @@ pub fn sweep_page(
             units: settings.output.units,
         },
         footer: format!(
-            "bankshot {program}, configuration {}; {} of {} jobs: {} found, {} without a shot that can go in, {} failed; P to {}.",
+            "bankshot {program}, configuration {}; {} of {} jobs: {} found, {} without a best shot, {} failed; P to {}.",
             hash.get(..12).unwrap_or(hash),
             rows.len(),
             jobs.count(),

@@ -17,7 +17,7 @@ pub use correlation::Correlation;
 pub use dispersion::ReleaseDispersion;
 pub use identity_hash::{IdentityError, identity_hash};
 pub use location::{Location, LocationError};
-pub(crate) use name_check::is_control_or_direction;
+pub use name_check::is_control_or_direction;
 pub use nominal::{Nominal, NominalOverrides};
 pub use profile::{OutputSettings, Profile, ProfileError, ProfileSettings, Shooter};
 pub use release_distribution::ReleaseDistribution;

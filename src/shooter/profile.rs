@@ -190,7 +190,7 @@ impl Shooter {
             checks.refuse("shooter.name", message);
         }
         if self.name.chars().any(is_control_or_direction) {
-            checks.refuse("shooter.name", "must not contain control characters");
+            checks.refuse("shooter.name", "must not contain control characters, or characters that turn the direction of text");
         }
         checks.require(
             "shooter.release_height",

@@ -48,7 +48,7 @@ impl SweepFolder {
         texts: &SourceTexts,
     ) -> Result<Self, SweepFolderError> {
         let store = path.join("store");
-        atomic_file::refuse_link(&store).map_err(io_error_at(&store))?;
+        atomic_file::refuse_linked_folder(&store).map_err(io_error_at(&store))?;
         fs::create_dir_all(&store).map_err(io_error_at(&store))?;
         tempfile::tempfile_in(&store).map_err(io_error_at(&store))?;
         let file = path.join(manifest::FILE_NAME);
@@ -57,7 +57,14 @@ impl SweepFolder {
         // Other processes may open the folder at the same time: the first one writes, and all read the result.
         loop {
             match Manifest::read(&file).map_err(io_error_at(&file))? {
-                ManifestFile::Valid(old) if old.hash == new.hash => break,
+                ManifestFile::Valid(old) if old.hash == new.hash => {
+                    if old.texts != new.texts {
+                        // Names of places, or another format of the same sweep: `merge` reads them here.
+                        let written = atomic_file::write(&file, text.as_bytes());
+                        written.map_err(io_error_at(&file))?;
+                    }
+                    break;
+                }
                 ManifestFile::Valid(old) => {
                     return Err(SweepFolderError::OtherSweep {
                         path: path.to_owned(),
@@ -176,7 +183,7 @@ impl SweepFolder {
         let path = named("lock");
         for ending in ["lock", "sqlite", "sqlite-journal", "aborted"] {
             let file = named(ending);
-            atomic_file::refuse_link(&file).map_err(io_error_at(&file))?;
+            atomic_file::refuse_special(&file).map_err(io_error_at(&file))?;
         }
         let mut file = File::options()
             .create(true)
@@ -208,7 +215,15 @@ impl SweepFolder {
     /// # Errors
     /// The folder cannot be read.
     pub fn stores(&self) -> Result<Vec<PathBuf>, SweepFolderError> {
-        files_with_extension(&self.path.join("store"), "sqlite")
+        let stores = files_with_extension(&self.path.join("store"), "sqlite")?;
+        for store in &stores {
+            // SQLite would wait for a pipe in the place of the journal.
+            let mut journal = store.clone().into_os_string();
+            journal.push("-journal");
+            let journal = PathBuf::from(journal);
+            atomic_file::refuse_special(&journal).map_err(io_error_at(&journal))?;
+        }
+        Ok(stores)
     }
 
     /// Gives every valid result of this sweep to `receive`, store by store; returns the damaged files with the

@@ -196,7 +196,7 @@ fn read_name(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>)
         .unwrap_or_else(|| "sweep".into());
     let is_too_long = name.chars().count() > LONGEST_NAME;
     if name.is_empty() || is_too_long || name.chars().any(is_control_or_direction) {
-        let message = "must have 1 to 500 characters, none of them a control character";
+        let message = "must have 1 to 500 characters, none of which controls the terminal or the direction of text";
         diagnostics.push(table.diagnostic("name", message));
     }
     name

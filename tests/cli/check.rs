@@ -204,3 +204,19 @@ fn contract_impossible_correlations_are_refused_with_their_file() {
         check(&profile).exits(2).says(reason).says("p.toml");
     }
 }
+
+#[test]
+fn contract_thousands_of_errors_are_counted_and_the_first_shown() {
+    let folder = TempDir::new().unwrap();
+    let keys: String = (0..40_000).map(|i| format!("key_{i} = 1\n")).collect();
+    let profile = write_file(&folder, "many.toml", format!("{keys}{FREE_THROW}"));
+    let answer = check(&profile).exits(2);
+    assert_eq!(answer.stderr.matches("is not a key here").count(), 50);
+    assert!(
+        answer.stderr.contains("... and 39950 more errors"),
+        "{}",
+        &answer.stderr[answer.stderr.len() - 200..]
+    );
+    let large = write_file(&folder, "large.toml", "#".repeat(2_000_000));
+    check(&large).exits(2).says("at most 1048576 are read");
+}

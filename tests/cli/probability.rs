@@ -126,6 +126,19 @@ fn contract_a_shot_that_touches_nothing_is_warned_about() {
         aside.stderr.contains("hoop's centre is 0.00 deg"),
         "{aside:?}"
     );
+    // Aimed along the court's axis from the wing, the ball goes behind the board.
+    let mut command = bankshot();
+    command.args([
+        "probability",
+        "configs/bank_wing.toml",
+        "--speed",
+        "25 ft/s",
+    ]);
+    let behind = Answer::of(command.args(["--pitch", "55.1 deg", "--polar", "0 deg"]));
+    assert!(
+        behind.stderr.contains("touches nothing and misses"),
+        "{behind:?}"
+    );
     let straight = probability(&flags("0 deg"));
     assert!(!straight.stderr.contains("touches nothing"), "{straight:?}");
 }

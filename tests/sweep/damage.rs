@@ -255,3 +255,51 @@ fn contract_a_manifest_that_is_no_file_is_refused_at_once() {
         }
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn contract_pipes_and_linked_plots_are_refused_at_once() {
+    let test = TestFolder::new();
+    let (out, _) = test.undisturbed();
+    let store_name = store(&out)
+        .file_name()
+        .unwrap()
+        .to_str()
+        .unwrap()
+        .to_owned();
+    let pipe = |name: &str| {
+        let path = out.join(name);
+        let _ = fs::remove_file(&path);
+        let made = std::process::Command::new("mkfifo").arg(&path).status();
+        assert!(made.unwrap().success());
+        path
+    };
+    let journal = format!("store/{store_name}-journal");
+    let aborted = format!("store/{}", store_name.replace(".sqlite", ".aborted"));
+    for (name, commands) in [
+        ("best_shots.csv", &["sweep"][..]),
+        ("report.html", &["report"]),
+        (journal.as_str(), &["sweep", "status", "report"]),
+        (aborted.as_str(), &["sweep"]),
+    ] {
+        let path = pipe(name);
+        for command in commands {
+            let output = match *command {
+                "sweep" => test.run(&out, &["--quiet"]),
+                command => bankshot().arg(command).arg(&out).output().unwrap(),
+            };
+            assert!(
+                matches!(output.status.code(), Some(4 | 74)),
+                "{name}: {output:?}"
+            );
+            assert_printed(&output, "not a regular file");
+        }
+        fs::remove_file(path).unwrap();
+    }
+    let target = precious(test.folder.path());
+    fs::create_dir_all(out.join("plots")).unwrap();
+    std::os::unix::fs::symlink(&target, out.join("plots/bank_and_direct.svg")).unwrap();
+    let output = bankshot().arg("compare").arg(&out).output().unwrap();
+    assert_code(&output, 74);
+    assert_eq!(fs::read_to_string(&target).unwrap(), "precious");
+}

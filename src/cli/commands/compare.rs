@@ -111,7 +111,7 @@ fn compare_on_court(
         link["against"] = path.display().to_string().into();
     }
     let file = folder.join(SWEEP_LINK);
-    atomic_file::write(&file, format!("{link:#}\n").as_bytes())
+    atomic_file::write_unlinked(&file, format!("{link:#}\n").as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
     plot_files::print_captions(&folder, &plots, quiet)?;
     let exit = sweep

@@ -49,7 +49,8 @@ fn sweep_of(folder: &Path) -> Option<SweepPaths> {
             against: None,
         });
     }
-    let text = std::fs::read_to_string(folder.join(SWEEP_LINK)).ok()?;
+    let link = folder.join(SWEEP_LINK);
+    let text = link.is_file().then(|| read_text(&link).ok()).flatten()?;
     let link: serde_json::Value = serde_json::from_str(&text).ok()?;
     let path = |key: &str| Some(PathBuf::from(link.get(key)?.as_str()?));
     Some(SweepPaths {

@@ -30,7 +30,12 @@ const BATCH_BYTES: usize = 8 << 20;
 const MAX_REPORTED: u64 = 20;
 
 pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure> {
-    if same_file(&options.releases, &options.output) {
+    let input = if options.releases == Path::new("-") {
+        Path::new("/dev/stdin")
+    } else {
+        &options.releases
+    };
+    if same_file(input, &options.output) {
         return Err(Failure::usage(format!(
             "--output {}: this is the input; choose another file",
             options.output.display()
@@ -132,8 +137,11 @@ impl Source {
             return Err(Failure::usage(format!("{}: is a folder", path.display())));
         }
         if is_parquet(path) {
-            let rows = ParquetRows::open(file)
-                .map_err(|error| Failure::usage(format!("{}: {error}", path.display())))?;
+            let rows = ParquetRows::open(file).map_err(|error| {
+                let reason = error.to_string();
+                let reason = reason.strip_prefix("Parquet error: ").unwrap_or(&reason);
+                Failure::usage(format!("{}: {reason}", path.display()))
+            })?;
             return Ok(Self::Parquet(Box::new(rows)));
         }
         let records = CsvRecords::new(Box::new(file) as Box<dyn Read>);
@@ -185,7 +193,7 @@ impl Source {
                 .next_rows(BATCH_ROWS, BATCH_BYTES)
                 .map_err(|error| StreamError::Input(error.to_string())),
             Self::Parquet(rows) => rows
-                .next_rows(BATCH_ROWS)
+                .next_rows(BATCH_ROWS, BATCH_BYTES)
                 .map_err(|error| StreamError::Input(error.to_string())),
         }
     }

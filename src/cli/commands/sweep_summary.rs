@@ -18,7 +18,7 @@ pub(crate) fn job_summary(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Strin
             .filter(move |row| row.status() == Some(status))
     };
     let mut text = format!(
-        "{} of {} jobs done: {} found, {} without a shot that can go in, {} failed\n",
+        "{} of {} jobs done: {} found, {} without a best shot, {} failed\n",
         rows.len(),
         jobs.count(),
         with_status(JobStatus::Found).count(),

@@ -51,7 +51,7 @@ impl<T: Real> ContactKinematics<T> {
         Vec2::new(v.x - self.lever * w.y, v.y + self.lever * w.x)
     }
 
-    /// Normal acceleration (k u + c u')/m (Eqs. 2 and 12); negative just before the ball parts.
+    /// Normal force per unit of mass, (k u + c u')/m (Eqs. 2 and 12); negative just before the ball separates.
     #[inline(always)]
     pub(crate) fn normal_force(&self, material: &Material<T>) -> T {
         material.stiffness * self.compression - material.damping * self.velocity.normal

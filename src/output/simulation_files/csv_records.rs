@@ -32,12 +32,15 @@ pub struct CsvRecords<R> {
     at_end: bool,
     /// Empty lines that were passed and not reported: the first one, and their number.
     empty_lines: (u64, u64),
+    /// The end of the next record, found while empty lines before it were not reported yet.
+    found: Option<End>,
     bytes_read: u64,
 }
 
 /// Where a record ends.
+#[derive(Debug)]
 enum End {
-    /// Length with the line feed, if it has one.
+    /// Length with the end of its line, if it has one.
     Complete(usize),
     /// A quote on this line is not closed; the length up to the end of that line.
     OpenQuote { line: u64, length: usize },
@@ -58,6 +61,7 @@ impl<R: Read> CsvRecords<R> {
             line: 1,
             at_end: false,
             empty_lines: (0, 0),
+            found: None,
             bytes_read: 0,
         };
         while records.buffer.len() < 3 && !records.at_end {
@@ -97,7 +101,7 @@ impl<R: Read> CsvRecords<R> {
         let mut scan = Scan::default();
         loop {
             let record = &self.buffer[self.start..];
-            if let Some(length) = scan.advance(record) {
+            if let Some(length) = scan.advance(record, self.at_end) {
                 return Ok(Some(End::Complete(length)));
             }
             let is_open = scan.is_misplaced || (scan.quote.is_some() && self.at_end);
@@ -105,8 +109,7 @@ impl<R: Read> CsvRecords<R> {
                 return Ok(Some(match scan.quote {
                     Some(quote) => {
                         let line = self.line + count_lines(&record[..quote]);
-                        let rest = memchr::memchr(b'\n', &record[quote..]);
-                        let length = rest.map_or(record.len(), |end| quote + end + 1);
+                        let length = line_end(record, quote);
                         End::OpenQuote { line, length }
                     }
                     None => End::TooLong,
@@ -122,8 +125,9 @@ impl<R: Read> CsvRecords<R> {
     /// Skips the rest of a line that is too long to be kept.
     fn skip_line(&mut self) -> io::Result<()> {
         loop {
-            if let Some(end) = memchr::memchr(b'\n', &self.buffer[self.start..]) {
-                self.start += end + 1;
+            if let Some(end) = memchr::memchr2(b'\n', b'\r', &self.buffer[self.start..]) {
+                let is_pair = self.buffer[self.start + end..].starts_with(b"\r\n");
+                self.start += end + 1 + usize::from(is_pair);
                 self.line += 1;
                 return Ok(());
             }
@@ -138,9 +142,13 @@ impl<R: Read> CsvRecords<R> {
     /// The bytes of the next record with its line, or why it cannot be read; `None` at the end.
     fn next_bytes(&mut self) -> io::Result<Option<(u64, Result<&[u8], String>)>> {
         loop {
-            let Some(end) = self.find_end()? else {
-                // Empty lines at the end are no rows.
-                return Ok(None);
+            let end = match self.found.take() {
+                Some(end) => end,
+                None => match self.find_end()? {
+                    Some(end) => end,
+                    // Empty lines at the end are no rows.
+                    None => return Ok(None),
+                },
             };
             let line = self.line;
             if let End::Complete(length) = end {
@@ -158,6 +166,7 @@ impl<R: Read> CsvRecords<R> {
             if self.empty_lines.1 > 0 {
                 let (line, more) = self.empty_lines;
                 self.empty_lines = (line + 1, more - 1);
+                self.found = Some(end);
                 return Ok(Some((line, Err("is empty".to_owned()))));
             }
             return Ok(Some(match end {
@@ -197,10 +206,9 @@ impl<R: Read> CsvRecords<R> {
                 break;
             };
             let cells = record.map(|record| {
-                text.extend_from_slice(record);
-                if !record.ends_with(b"\n") {
-                    text.push(b'\n');
-                }
+                let end = record.strip_suffix(b"\n").unwrap_or(record);
+                text.extend_from_slice(end.strip_suffix(b"\r").unwrap_or(end));
+                text.push(b'\n');
                 ByteRecord::new()
             });
             rows.push(Row { number, cells });
@@ -222,8 +230,20 @@ impl<R: Read> CsvRecords<R> {
     }
 }
 
+/// The number of ends of lines: a line feed, a carriage return, or both.
 fn count_lines(bytes: &[u8]) -> u64 {
-    memchr::memchr_iter(b'\n', bytes).count() as u64
+    let ends = memchr::memchr2_iter(b'\n', b'\r', bytes);
+    ends.filter(|&at| bytes[at] == b'\n' || bytes.get(at + 1) != Some(&b'\n'))
+        .count() as u64
+}
+
+/// The length of a record up to the end of the line on which position `from` stands.
+fn line_end(record: &[u8], from: usize) -> usize {
+    let rest = &record[from..];
+    memchr::memchr2(b'\n', b'\r', rest).map_or(record.len(), |end| {
+        let is_pair = rest[end..].starts_with(b"\r\n");
+        from + end + 1 + usize::from(is_pair)
+    })
 }
 
 /// The scan of one record, from its start as far as its bytes are known.
@@ -238,8 +258,9 @@ struct Scan {
 }
 
 impl Scan {
-    /// Scans on; returns the length of the record with its line feed, once that is known.
-    fn advance(&mut self, record: &[u8]) -> Option<usize> {
+    /// Scans on; returns the length of the record with the end of its line, once that is known. `at_end`: the record
+    /// has all bytes of the text.
+    fn advance(&mut self, record: &[u8], at_end: bool) -> Option<usize> {
         while !self.is_misplaced && self.position < record.len() {
             let rest = &record[self.position..];
             if let Some(quote) = self.quote {
@@ -248,35 +269,46 @@ impl Scan {
                     break;
                 };
                 let at = self.position + next;
-                // What follows decides between a closing quote and a quote in the text.
-                match record.get(at + 1) {
-                    None => {
+                if record.get(at + 1) == Some(&b'"') {
+                    self.position = at + 2;
+                    continue;
+                }
+                // What follows decides whether this quote closes the cell. Blanks may stand between.
+                let is_blank = |byte: &&u8| matches!(byte, b' ' | b'\t');
+                let blanks = record[at + 1..].iter().take_while(is_blank).count();
+                let closes = match record.get(at + 1 + blanks) {
+                    None if !at_end => {
                         self.position = at;
                         break;
                     }
-                    Some(b'"') => self.position = at + 2,
-                    Some(b',' | b'\n' | b'\r') => {
-                        self.quote = None;
-                        self.position = at + 1;
-                    }
-                    Some(_) => {
-                        self.is_misplaced = memchr::memchr(b'\n', &record[quote..at]).is_some();
-                        if !self.is_misplaced {
-                            self.quote = None;
-                            self.position = at + 1;
-                        }
-                    }
+                    None | Some(b',' | b'\n' | b'\r') => true,
+                    Some(_) => memchr::memchr2(b'\n', b'\r', &record[quote..at]).is_none(),
+                };
+                if closes {
+                    self.quote = None;
+                    self.position = at + 1;
+                } else {
+                    self.is_misplaced = true;
                 }
                 continue;
             }
-            match memchr::memchr2(b'"', b'\n', rest) {
-                None => self.position = record.len(),
-                Some(next) => {
-                    let at = self.position + next;
-                    self.position = at + 1;
-                    if record[at] == b'\n' {
-                        return Some(at + 1);
+            let Some(next) = memchr::memchr3(b'"', b'\n', b'\r', rest) else {
+                self.position = record.len();
+                break;
+            };
+            let at = self.position + next;
+            match record[at] {
+                b'\n' => return Some(at + 1),
+                b'\r' => match record.get(at + 1) {
+                    Some(b'\n') => return Some(at + 2),
+                    None if !at_end => {
+                        self.position = at;
+                        break;
                     }
+                    _ => return Some(at + 1),
+                },
+                _ => {
+                    self.position = at + 1;
                     if at == 0 || record[at - 1] == b',' {
                         self.quote = Some(at);
                     }
@@ -358,6 +390,28 @@ mod tests {
         // The quote of another row does not close it.
         let expected = vec![(1, open()), (2, cells(&["2"])), (3, cells(&["3", "b"]))];
         assert_eq!(rows(b"1,\"a\n2\n3,\"b\"\n"), expected);
+    }
+
+    #[test]
+    fn contract_every_end_of_a_line_and_of_the_text_is_known() {
+        let expected = vec![
+            (1, cells(&["a", "b"])),
+            (2, cells(&["1", "x"])),
+            (3, cells(&["2", "y"])),
+        ];
+        for text in [
+            &b"a,b\n1,x\n2,y\n"[..],
+            b"a,b\r1,x\r2,y",
+            b"a,b\r\n1,x\r\n2,\"y\"",
+            b"a,b\r1,\"x\"\r\n2,\"y\"\r",
+        ] {
+            assert_eq!(rows(text), expected, "{}", text.escape_ascii());
+        }
+        let blank = (2, Err("is empty".to_owned()));
+        assert_eq!(rows(b"a\n\r\r\nb\n")[1], blank);
+        // Text after a closing quote, on one line and after blanks.
+        assert_eq!(rows(b"\"a\" ,b\n")[0].1, cells(&["a ", "b"]));
+        assert_eq!(rows(b"\"a\nc\" ,b\n2\n")[1], (3, cells(&["2"])));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Rows of text cells from and to Parquet files. Columns that are carried through keep their types.
 
-use super::csv_records::Row;
+use super::csv_records::{MAX_RECORD_BYTES, Row};
 use csv::ByteRecord;
-use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{
     BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int32Type, Int64Type,
@@ -18,6 +18,10 @@ use std::sync::Arc;
 
 /// Rows of one row group of an output file.
 const GROUP_ROWS: usize = 1 << 16;
+/// Bytes of the cells of a row group of an output file, about.
+const GROUP_BYTES: usize = 16 << 20;
+/// Rows that are read from every column at a time.
+const BLOCK_ROWS: usize = 256;
 
 /// The rows of a Parquet file.
 pub struct ParquetRows {
@@ -37,7 +41,9 @@ impl ParquetRows {
     /// # Errors
     /// It is no Parquet file, or has a column that is nested or of an unsupported type.
     pub fn open(file: File) -> Result<Self> {
+        let bytes = file.metadata()?.len();
         let file = SerializedFileReader::new(file)?;
+        check_chunks(&file, bytes)?;
         let columns: Vec<TypePtr> = file
             .metadata()
             .file_metadata()
@@ -51,6 +57,12 @@ impl ParquetRows {
                     column.get_physical_type(),
                     Physical::INT96 | Physical::FIXED_LEN_BYTE_ARRAY
                 );
+            if is_decimal(column) {
+                return Err(ParquetError::General(format!(
+                    "column {} is a decimal number; store it as a double",
+                    column.name()
+                )));
+            }
             if !is_supported {
                 return Err(ParquetError::General(format!(
                     "column {} is nested or of a type that is not supported; leave it out",
@@ -80,11 +92,26 @@ impl ParquetRows {
         &self.columns
     }
 
-    /// The next rows, at most `most`; none at the end.
+    /// The next rows: at most `most`, and about `bytes` bytes; none at the end.
     ///
     /// # Errors
-    /// The file is damaged, or compressed in a way that is not supported.
-    pub fn next_rows(&mut self, most: usize) -> Result<Vec<Row>> {
+    /// The file is damaged, or has a cell of more than [`MAX_RECORD_BYTES`].
+    pub fn next_rows(&mut self, most: usize, bytes: usize) -> Result<Vec<Row>> {
+        let mut rows = Vec::new();
+        let mut read = 0;
+        while rows.len() < most && read < bytes {
+            let more = self.next_block(BLOCK_ROWS.min(most - rows.len()))?;
+            if more.is_empty() {
+                break;
+            }
+            let cells = more.iter().filter_map(|row| row.cells.as_ref().ok());
+            read += cells.map(|cells| cells.as_slice().len()).sum::<usize>();
+            rows.extend(more);
+        }
+        Ok(rows)
+    }
+
+    fn next_block(&mut self, most: usize) -> Result<Vec<Row>> {
         while self.rows_left == 0 {
             if self.group == self.file.num_row_groups() {
                 return Ok(Vec::new());
@@ -98,8 +125,8 @@ impl ParquetRows {
         }
         let count = most.min(self.rows_left);
         let mut rows = vec![ByteRecord::new(); count];
-        for reader in &mut self.readers {
-            read_cells(reader, &mut rows)?;
+        for (reader, column) in self.readers.iter_mut().zip(&self.columns) {
+            read_cells(reader, &mut rows, is_unsigned(column))?;
         }
         self.rows_left -= count;
         Ok(rows
@@ -115,18 +142,69 @@ impl ParquetRows {
     }
 }
 
+/// Refuses a file whose chunks are compressed in a way that is not supported, or do not lie within the file.
+fn check_chunks(file: &SerializedFileReader<File>, bytes: u64) -> Result<()> {
+    let lies_within = |offset: i64, length: i64| {
+        let (offset, length) = (u64::try_from(offset).ok(), u64::try_from(length).ok());
+        let end = offset.zip(length).and_then(|(a, b)| a.checked_add(b));
+        end.is_some_and(|end| end <= bytes)
+    };
+    for group in file.metadata().row_groups() {
+        if group.num_rows() < 0 {
+            return Err(ParquetError::General("the file is damaged".into()));
+        }
+        for chunk in group.columns() {
+            if !matches!(
+                chunk.compression(),
+                Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::GZIP(_)
+            ) {
+                return Err(ParquetError::General(format!(
+                    "compressed with {}; write it uncompressed, or with Snappy or gzip",
+                    chunk.compression()
+                )));
+            }
+            let start = chunk
+                .dictionary_page_offset()
+                .unwrap_or_else(|| chunk.data_page_offset());
+            let is_valid = lies_within(start, chunk.compressed_size())
+                && lies_within(chunk.data_page_offset(), 0)
+                && chunk.num_values() >= 0;
+            if !is_valid {
+                return Err(ParquetError::General("the file is damaged".into()));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_decimal(column: &Type) -> bool {
+    let about = column.get_basic_info();
+    matches!(about.logical_type_ref(), Some(LogicalType::Decimal { .. }))
+        || about.converted_type() == ConvertedType::DECIMAL
+}
+
+fn is_unsigned(column: &Type) -> bool {
+    use ConvertedType::{UINT_8, UINT_16, UINT_32, UINT_64};
+    matches!(
+        column.get_basic_info().converted_type(),
+        UINT_8 | UINT_16 | UINT_32 | UINT_64
+    )
+}
+
 /// Appends the next cell of a column to each row.
-fn read_cells(reader: &mut ColumnReader, rows: &mut [ByteRecord]) -> Result<()> {
+fn read_cells(reader: &mut ColumnReader, rows: &mut [ByteRecord], is_unsigned: bool) -> Result<()> {
     match reader {
         ColumnReader::BoolColumnReader(reader) => {
             read_typed(reader, rows, |value| value.to_string().into_bytes())
         }
-        ColumnReader::Int32ColumnReader(reader) => {
-            read_typed(reader, rows, |value| value.to_string().into_bytes())
-        }
-        ColumnReader::Int64ColumnReader(reader) => {
-            read_typed(reader, rows, |value| value.to_string().into_bytes())
-        }
+        ColumnReader::Int32ColumnReader(reader) => read_typed(reader, rows, |value| {
+            let unsigned = is_unsigned.then(|| value.cast_unsigned().to_string());
+            unsigned.unwrap_or_else(|| value.to_string()).into_bytes()
+        }),
+        ColumnReader::Int64ColumnReader(reader) => read_typed(reader, rows, |value| {
+            let unsigned = is_unsigned.then(|| value.cast_unsigned().to_string());
+            unsigned.unwrap_or_else(|| value.to_string()).into_bytes()
+        }),
         // The shortest text of the double that the float is: simulated as it stands in the file.
         ColumnReader::FloatColumnReader(reader) => read_typed(reader, rows, |value| {
             f64::from(*value).to_string().into_bytes()
@@ -164,7 +242,15 @@ fn read_typed<T: DataType>(
         for (i, row) in rows[done..done + count].iter_mut().enumerate() {
             let is_null = has_nulls && levels.get(i) == Some(&0);
             match if is_null { None } else { values.next() } {
-                Some(value) => row.push_field(&text(value)),
+                Some(value) => {
+                    let text = text(value);
+                    if text.len() > MAX_RECORD_BYTES {
+                        return Err(ParquetError::General(format!(
+                            "a cell has more than {MAX_RECORD_BYTES} bytes"
+                        )));
+                    }
+                    row.push_field(&text);
+                }
                 None => row.push_field(b""),
             }
         }
@@ -191,6 +277,8 @@ pub struct ParquetSink<W: Write + Send> {
     writer: SerializedFileWriter<W>,
     columns: Vec<TypePtr>,
     rows: Vec<ByteRecord>,
+    /// Bytes of their cells.
+    bytes: usize,
 }
 
 impl<W: Write + Send> ParquetSink<W> {
@@ -213,6 +301,7 @@ impl<W: Write + Send> ParquetSink<W> {
             writer: SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties))?,
             columns,
             rows: Vec::new(),
+            bytes: 0,
         })
     }
 
@@ -221,8 +310,9 @@ impl<W: Write + Send> ParquetSink<W> {
     /// # Errors
     /// The file cannot be written.
     pub fn push(&mut self, row: ByteRecord) -> Result<()> {
+        self.bytes += row.as_slice().len();
         self.rows.push(row);
-        if self.rows.len() >= GROUP_ROWS {
+        if self.rows.len() >= GROUP_ROWS || self.bytes >= GROUP_BYTES {
             self.write_group()?;
         }
         Ok(())
@@ -235,6 +325,7 @@ impl<W: Write + Send> ParquetSink<W> {
         }
         group.close()?;
         self.rows.clear();
+        self.bytes = 0;
         Ok(())
     }
 
@@ -275,8 +366,12 @@ fn write_cells<W: Write + Send>(
     }
     match of {
         Physical::BOOLEAN => write_typed::<BoolType, _>(group, i, rows, parsed),
-        Physical::INT32 => write_typed::<Int32Type, _>(group, i, rows, parsed),
-        Physical::INT64 => write_typed::<Int64Type, _>(group, i, rows, parsed),
+        Physical::INT32 => write_typed::<Int32Type, _>(group, i, rows, |cell| {
+            parsed(cell).or_else(|| parsed::<u32>(cell).map(u32::cast_signed))
+        }),
+        Physical::INT64 => write_typed::<Int64Type, _>(group, i, rows, |cell| {
+            parsed(cell).or_else(|| parsed::<u64>(cell).map(u64::cast_signed))
+        }),
         Physical::DOUBLE => write_typed::<DoubleType, _>(group, i, rows, parsed),
         _ => write_typed::<ByteArrayType, _>(group, i, rows, |cell| {
             (!cell.is_empty()).then(|| ByteArray::from(cell.to_vec()))

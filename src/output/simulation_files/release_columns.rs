@@ -143,28 +143,7 @@ impl ReleaseColumns {
                 )),
             }
         }
-        for cell in header {
-            let name = String::from_utf8_lossy(cell.trim_ascii());
-            let is_carried = carried.iter().any(|carried| *carried == name);
-            if !is_carried && is_unknown_quantity(&name) {
-                errors.push(format!(
-                    "column {name} looks like a quantity, but no such column is known (is it {}?); rename it, or keep it as it is with --carry {name}",
-                    nearest_column(&name)
-                ));
-            }
-        }
-        for name in carried {
-            if !header
-                .iter()
-                .any(|cell| cell.trim_ascii() == name.as_bytes())
-            {
-                errors.push(format!("--carry {name}: there is no such column"));
-            } else if is_parameter(name) {
-                errors.push(format!(
-                    "--carry {name}: this column is used, not only carried"
-                ));
-            }
-        }
+        check_other_columns(header, carried, &mut errors);
         for added in OUTCOME_COLUMNS {
             if header
                 .iter()
@@ -246,6 +225,33 @@ impl ReleaseColumns {
             rifle_spin_rad_s: rifle,
             side_spin_rad_s: side,
         })
+    }
+}
+
+/// Adds an error for each unknown quantity that is not carried, and for each carried column that cannot be.
+fn check_other_columns(header: &ByteRecord, carried: &[String], errors: &mut Vec<String>) {
+    for cell in header {
+        let name = String::from_utf8_lossy(cell.trim_ascii());
+        let is_carried = carried.iter().any(|carried| *carried == name);
+        let is_outcome = OUTCOME_COLUMNS.contains(&&*name);
+        if !is_carried && !is_outcome && is_unknown_quantity(&name) {
+            errors.push(format!(
+                "column {name} looks like a quantity, but no such column is known (is it {}?); rename it, or keep it as it is with --carry {name}",
+                nearest_column(&name)
+            ));
+        }
+    }
+    for name in carried {
+        if !header
+            .iter()
+            .any(|cell| cell.trim_ascii() == name.as_bytes())
+        {
+            errors.push(format!("--carry {name}: there is no such column"));
+        } else if is_parameter(name) {
+            errors.push(format!(
+                "--carry {name}: this column is used, not only carried"
+            ));
+        }
     }
 }
 
