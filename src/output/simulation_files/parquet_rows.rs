@@ -12,9 +12,11 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
+use std::cell::Cell;
 use std::fs::File;
 use std::io::Write;
-use std::sync::Arc;
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::{Arc, Once};
 
 /// Rows of one row group of an output file.
 const GROUP_ROWS: usize = 1 << 16;
@@ -41,6 +43,10 @@ impl ParquetRows {
     /// # Errors
     /// It is no Parquet file, or has a column that is nested or of an unsupported type.
     pub fn open(file: File) -> Result<Self> {
+        without_panic(|| Self::open_file(file))
+    }
+
+    fn open_file(file: File) -> Result<Self> {
         let bytes = file.metadata()?.len();
         let file = SerializedFileReader::new(file)?;
         check_chunks(&file, bytes)?;
@@ -100,7 +106,8 @@ impl ParquetRows {
         let mut rows = Vec::new();
         let mut read = 0;
         while rows.len() < most && read < bytes {
-            let more = self.next_block(BLOCK_ROWS.min(most - rows.len()))?;
+            let count = BLOCK_ROWS.min(most - rows.len());
+            let more = without_panic(|| self.next_block(count))?;
             if more.is_empty() {
                 break;
             }
@@ -140,6 +147,29 @@ impl ParquetRows {
             })
             .collect())
     }
+}
+
+thread_local! {
+    /// This thread is in the Parquet library.
+    static IN_LIBRARY: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs a part of the Parquet library, which panics at some damaged files; that is an error here. The message of such a
+/// panic is not printed.
+fn without_panic<T>(read: impl FnOnce() -> Result<T>) -> Result<T> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let usual = panic::take_hook();
+        panic::set_hook(Box::new(move |about| {
+            if !IN_LIBRARY.get() {
+                usual(about);
+            }
+        }));
+    });
+    IN_LIBRARY.set(true);
+    let result = panic::catch_unwind(AssertUnwindSafe(read));
+    IN_LIBRARY.set(false);
+    result.unwrap_or_else(|_| Err(ParquetError::General("the file is damaged".into())))
 }
 
 /// Refuses a file whose chunks are compressed in a way that is not supported, or do not lie within the file.
