@@ -140,11 +140,10 @@ fn fuzz_releases() {
         assert!(rows.iter().all(|row| row.number <= lines));
         // Where every row can be read, the rows are those of the csv crate.
         if rows.iter().all(|row| row.cells.is_ok()) {
-            let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
             let plain = csv::ReaderBuilder::new()
                 .has_headers(false)
                 .flexible(true)
-                .from_reader(text);
+                .from_reader(&text[..]);
             let plain: Vec<_> = plain.into_byte_records().map(Result::unwrap).collect();
             let ours: Vec<_> = rows.iter().map(|row| row.cells.clone().unwrap()).collect();
             assert_eq!(ours, plain);

@@ -199,9 +199,10 @@ impl<R: Read> CsvRecords<R> {
     /// # Errors
     /// The text cannot be read.
     pub fn next_rows(&mut self, most: usize, bytes: usize) -> io::Result<Vec<Row>> {
-        let mut text = Vec::new();
+        // The reader skips the empty line. At the start it would also skip the bytes of a byte order mark.
+        let mut text = b"\n".to_vec();
         let mut rows = Vec::new();
-        while rows.len() < most && text.len() < bytes {
+        while rows.len() < most && text.len() <= bytes {
             let Some((number, record)) = self.next_bytes()? else {
                 break;
             };
