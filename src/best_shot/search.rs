@@ -116,8 +116,8 @@ pub enum NoShot {
     /// No shot within the limits can go in.
     #[error("no {} shot within the limits can go in from this place", .0.name())]
     Impossible(ShotKind),
-    /// The most probable shot goes in only with errors.
-    #[error("no clean {} shot is given: the most probable one from this place, P {}, misses when it has no errors", .kind.name(), probability_text(*.probability_per_million))]
+    /// No shot near the most probable one goes in without errors.
+    #[error("no clean {} shot: the most probable ones from this place, P {}, miss when they have no errors", .kind.name(), probability_text(*.probability_per_million))]
     NotClean {
         /// The kind.
         kind: ShotKind,
@@ -283,6 +283,15 @@ impl BestShotSearch<'_> {
             window.curves =
                 probability_curves::from_samples(self.profile, &sampler, &scramble, plan, nominal);
         }
+        if !self.is_made(&window.nominal) {
+            // The most probable shot goes in only with errors: take the best one that needs none.
+            let table = self.table(&window.plan);
+            if let Some((p, clean)) = self.best_clean(kind, &table) {
+                window.table_probability = p;
+                window.nominal = clean;
+                window.curves = probability_curves::from_table(&table, &clean);
+            }
+        }
         let nominal = window.nominal;
         let estimate =
             sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
@@ -308,6 +317,31 @@ impl BestShotSearch<'_> {
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
             at_limits: self.limits_at(&nominal),
         }))
+    }
+
+    fn is_made(&self, nominal: &Nominal) -> bool {
+        let start = self.profile.release(nominal).state();
+        self.profile.simulator().verdict(start).made
+    }
+
+    /// The most probable nominal shot of a table that is made without errors.
+    fn best_clean(&self, kind: ShotKind, table: &NominalProbabilities) -> Option<Candidate> {
+        let mut shots: Vec<Candidate> = Vec::new();
+        for pitch in 0..table.pitch_rad.len() {
+            for polar in 0..table.polar_rad.len() {
+                for spin in 0..table.backspin_rad_s.len() {
+                    let speeds = 0..table.speed_m_s.len();
+                    shots.extend(speeds.map(|speed| table.at([pitch, polar, spin, speed])));
+                }
+            }
+        }
+        shots.sort_by(|a, b| b.0.total_cmp(&a.0));
+        shots
+            .into_iter()
+            .take_while(|(p, _)| *p > 0.0)
+            .find(|(_, nominal)| {
+                ShotKind::of(self.profile, nominal) == kind && self.is_made(nominal)
+            })
     }
 
     /// Climbs from every start; returns the highest optimum, if any shot of it is made.

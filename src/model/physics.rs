@@ -157,8 +157,8 @@ impl Physics {
             (
                 "gravity",
                 self.gravity_m_s2,
-                (0.01, 1000.0),
-                "from 0.01 to 1000 m/s^2",
+                (1e-9, 1000.0),
+                "from 1e-9 to 1000 m/s^2",
             ),
             (
                 "stiffness",

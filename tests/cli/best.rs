@@ -213,7 +213,9 @@ fn contract_a_shot_that_misses_without_errors_is_no_best_shot() {
     let profile = write_file(&folder, "p.toml", text.replace("NEAR", "1.3"));
     let answer = Answer::of(best(&profile, folder.path()).arg("--quiet"));
     assert!(
-        answer.stdout().contains("no clean direct shot is given"),
+        answer
+            .stdout()
+            .contains("no clean direct shot: the most probable ones"),
         "{answer:?}"
     );
 }
