@@ -348,7 +348,7 @@ mod tests {
     #[test]
     fn contract_unknown_quantities_have_a_nearest_column() {
         for (name, nearest) in [
-            ("spin_rev_s", "side_spin_"),
+            ("spin_rev_s", "backspin_"),
             ("backspin_rps", "backspin_"),
             ("backspin", "backspin_"),
             ("Speed_ft_s", "speed_ft_s"),
