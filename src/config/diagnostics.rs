@@ -67,8 +67,15 @@ impl ConfigError {
 
     /// The start and the end of a span, moved to boundaries of characters of the text.
     fn boundaries(&self, span: &Range<usize>) -> (usize, usize) {
-        let end = self.text.floor_char_boundary(span.end.min(self.text.len()));
-        (self.text.floor_char_boundary(span.start.min(end)), end)
+        let boundary = |at: usize| {
+            let mut at = at.min(self.text.len());
+            while !self.text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let end = boundary(span.end);
+        (boundary(span.start.min(end)), end)
     }
 }
 

@@ -273,7 +273,7 @@ fn random_physics(script: &mut Script<'_>) -> Physics {
         match script.byte() % 8 {
             1 => *constant = low,
             2 => *constant = high,
-            3 => *constant = low * (high / low).powf(script.fraction()),
+            3 => *constant = low * libm::pow(high / low, script.fraction()),
             4 | 5 => *constant *= 0.5 + script.fraction(),
             _ => {}
         }
@@ -286,14 +286,14 @@ fn random_physics(script: &mut Script<'_>) -> Physics {
 
 /// Anywhere, or on the way to the hoop.
 fn random_release(script: &mut Script<'_>, physics: &Physics) -> Release {
-    let is_aimed = script.byte() % 4 != 0;
+    let is_aimed = !script.byte().is_multiple_of(4);
     let mut between = |low: f64, high: f64| low + (high - low) * script.fraction();
     if is_aimed {
         let (distance_m, height_m) = (between(0.5, 8.0), between(-1.5, 0.5));
         let pitch_rad = between(0.5, 1.4);
-        let over = distance_m * pitch_rad.tan() + height_m;
+        let over = distance_m * libm::tan(pitch_rad) + height_m;
         let g = physics.gravity_m_s2;
-        let speed = distance_m / pitch_rad.cos() * (0.5 * g / over.max(0.1)).sqrt();
+        let speed = distance_m / libm::cos(pitch_rad) * (0.5 * g / over.max(0.1)).sqrt();
         let court_angle_rad = between(-1.2, 1.2);
         return Release {
             distance_m,

@@ -317,10 +317,7 @@ impl<W: Write + Send> ParquetSink<W> {
     /// # Errors
     /// It cannot be written.
     pub fn new(out: W, columns: &[TypePtr]) -> Result<Self> {
-        let columns = columns
-            .iter()
-            .map(|given| optional(given))
-            .collect::<Result<Vec<_>>>()?;
+        let columns = columns.iter().map(optional).collect::<Result<Vec<_>>>()?;
         let schema = Type::group_type_builder("shots")
             .with_fields(columns.clone())
             .build()?;
