@@ -166,7 +166,7 @@ impl<T: Real> ContactPair<T> {
     }
 
     /// The tangential accelerations `a` at both contacts that change the slips of the `constrained` contacts at the
-    /// rates `w`, the right side. For a contact that is not constrained, `w` is its tangential acceleration.
+    /// rates `w`, given as `right_side`. For the other contacts `w` is the tangential acceleration itself.
     ///
     /// The tangential acceleration at a contact changes the slip there equally in both directions, by the
     /// inverse effective mass `s = 1 + lever^2 m/I`, and the slip at the other contact by a coupling matrix `C`:
@@ -330,7 +330,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
         impulses = remove_slips(params, solids, state, &mut pair, at_zero_slip);
     }
 
-    // 2. Which contacts roll: the at_zero_slip ones whose friction suffices. If it does not suffice for one, that
+    // 2. Which contacts roll: those at zero slip whose friction suffices. If it does not suffice for one, that
     //    one slides, and the other is solved for again.
     let slips = for_both!(i => pair.kinematics[i].slip());
     let slip_speeds = for_both!(i => params.zero().select(at_zero_slip[i], slips[i].norm()));
@@ -477,7 +477,7 @@ pub(crate) fn rolling_time<T: Real>(friction: &[FrictionState<T>; 2], before: T,
     )
 }
 
-/// Removes the slips of the at_zero_slip contacts together; returns the impulses per unit of mass.
+/// Removes the slips of the contacts at zero slip together; returns the impulses per unit of mass.
 #[inline(always)]
 fn remove_slips<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,

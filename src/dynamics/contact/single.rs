@@ -158,7 +158,7 @@ pub(crate) fn step<T: Real, S: Solid<T>>(
     let at_zero_slip =
         (friction.rolling | slip.norm_squared().le(friction.slip_tolerance.squared())) & !separated;
     let inverse_effective_mass = kinematics.inverse_effective_mass(&params.ball);
-    // Only at_zero_slip contacts need it.
+    // Only contacts at zero slip need it.
     let mut impulse_per_slip = params.one();
     if at_zero_slip.any() {
         impulse_per_slip = params.one() / inverse_effective_mass;
@@ -175,7 +175,7 @@ pub(crate) fn step<T: Real, S: Solid<T>>(
     let normal_acceleration = normal + kinematics.gravity.normal + kinematics.frame_acceleration();
     let force = NormalForce::new(material, &kinematics, normal, normal_acceleration);
 
-    // 2. The direction of the slip (or the direction in which a at_zero_slip ball would slip), and friction.
+    // 2. The direction of the slip (or the direction in which a ball at zero slip would slip), and friction.
     let slip_rate = kinematics.frictionless_slip_rate();
     let slip_or_slip_rate = slip_rate.select(at_zero_slip, slip);
     let slip_or_slip_rate_size = slip_or_slip_rate.norm();

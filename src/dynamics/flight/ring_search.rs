@@ -84,7 +84,7 @@ struct SearchBounds<T> {
     rises_to_bottom: T,
     /// The centre rises through z = R.
     rises_to_top: T,
-    /// The centre enter_time and leave_time the circle of radius R_H - R.
+    /// Times at which the centre enters and leaves the circle of radius R_H - R.
     inner_enter: T,
     inner_leave: T,
     /// The part of -F''/2 that comes from the curvature of the ring.
