@@ -2,7 +2,7 @@
 """Writes THIRD-PARTY-NOTICES.md: every crate of Cargo.lock with its licence and the texts of its licence files.
 
 Run it after a change of Cargo.lock:  python3 packaging/third_party_notices.py
-`cargo test --test structure` checks that no crate is missing.
+`cargo test --test import_layers` checks that no crate is missing.
 """
 import json
 import pathlib

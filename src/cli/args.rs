@@ -1,11 +1,11 @@
 //! The command line: commands and their options.
 
-use super::nominal_options::NominalOptions;
+use super::nominal_shot_flags::NominalOptions;
 use super::value_parsers::{
     UnitsArg, fault_injection, fraction, instruction_set, sample, shard, standard_error,
 };
 use bankshot::dynamics::InstructionSet;
-use bankshot::sweep::jobs::Shard;
+use bankshot::sweep::job_list::Shard;
 use bankshot::sweep::run::FaultInjection;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;

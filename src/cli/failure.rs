@@ -6,7 +6,7 @@ use bankshot::dynamics::StateError;
 use bankshot::search_space::PlanError;
 use bankshot::shooter::{IdentityError, ProfileError};
 use bankshot::sweep::SweepFolderError;
-use bankshot::sweep::result_store::StoreError;
+use bankshot::sweep::sqlite_results::StoreError;
 use std::fmt::Display;
 use std::io::ErrorKind;
 

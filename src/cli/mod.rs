@@ -4,7 +4,7 @@ mod args;
 mod commands;
 mod config_files;
 mod failure;
-mod nominal_options;
+mod nominal_shot_flags;
 mod plot_files;
 mod progress_bars;
 mod run_folder;

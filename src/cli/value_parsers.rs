@@ -1,7 +1,7 @@
 //! Parsers of option values.
 
 use bankshot::dynamics::InstructionSet;
-use bankshot::sweep::jobs::Shard;
+use bankshot::sweep::job_list::Shard;
 use bankshot::sweep::run::FaultInjection;
 use bankshot::units::UnitSystem;
 use clap::ValueEnum;

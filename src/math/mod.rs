@@ -5,6 +5,6 @@ pub mod normal_distribution;
 mod operators;
 pub(crate) mod real;
 pub(crate) mod simd;
-pub(crate) mod simd_pair;
 pub mod sobol;
+pub(crate) mod unrolled_simd;
 pub mod vector;

@@ -3,9 +3,9 @@
 pub(crate) mod ball_params;
 mod ball_state;
 pub mod court;
-pub(crate) mod model_params;
 mod physics;
 mod restitution;
+pub(crate) mod scaled_constants;
 pub(crate) mod solids;
 
 pub use ball_state::BallState;

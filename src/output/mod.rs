@@ -6,5 +6,5 @@ pub mod best_shot_csv;
 pub mod best_shot_json;
 pub mod best_shot_text;
 pub mod json_record;
-pub mod probability_answer;
+pub mod probability_text_json;
 pub mod simulation_files;

@@ -7,7 +7,9 @@ use super::svg::{Anchor, Svg};
 use super::sweep_results::{PlaceResults, SweepResults, difference_colour, largest_difference};
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
-use crate::sweep::bank_advantage::{BankAdvantage, SIGNIFICANT_SIGMAS, difference, is_significant};
+use crate::sweep::bank_direct_difference::{
+    BankAdvantage, SIGNIFICANT_SIGMAS, difference, is_significant,
+};
 
 /// Limits of the colour scale of the difference. Larger differences have the colour of the largest on the
 /// scale.

@@ -6,7 +6,7 @@ use super::plot::Plot;
 use super::svg::{Anchor, Svg, shortened};
 use super::sweep_results::{PlaceResults, SweepResults, difference_colour, largest_difference};
 use crate::analysis::sensitivity::Difference;
-use crate::sweep::bank_advantage::{SIGNIFICANT_SIGMAS, difference};
+use crate::sweep::bank_direct_difference::{SIGNIFICANT_SIGMAS, difference};
 use std::collections::BTreeMap;
 
 /// Limits of the colour scale of the difference. Larger differences have the colour of the largest on the

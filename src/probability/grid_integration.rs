@@ -4,8 +4,8 @@
 //! Both serve to check the Sobol estimate, which needs a hundredth of the shots. Only the four errors of Eq.
 //! 25 can be integrated like this.
 
-use super::estimate::{Estimate, standard_error_of_mean};
 use super::gaussian_cell_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
+use super::probability_and_error::{Estimate, standard_error_of_mean};
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed};
 use crate::math::evenly_spaced::CellAxis;

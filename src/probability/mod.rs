@@ -7,16 +7,16 @@
 //! An *unresolved* shot (the numerics gave up) counts neither as made nor as missed. P is the number of made
 //! shots over that of all shots, and the interval of P is widened upwards by the share of unresolved shots.
 
-mod counts;
-mod estimate;
 mod gaussian_cell_weights;
 pub mod grid_integration;
+mod made_shot_counts;
 pub mod monte_carlo;
 mod nominal_probability_table;
+mod probability_and_error;
 mod progress;
-mod sobol_estimate;
+mod sobol_integration;
 
-pub use estimate::{Estimate, MadeShares};
 pub use nominal_probability_table::{MAX_BATCH_BYTES, NominalProbabilities, NominalTable};
+pub use probability_and_error::{Estimate, MadeShares};
 pub use progress::{Progress, Silent};
-pub use sobol_estimate::{MAX_SHOTS, MIN_SHOTS, REPLICATES, Sampler};
+pub use sobol_integration::{MAX_SHOTS, MIN_SHOTS, REPLICATES, Sampler};

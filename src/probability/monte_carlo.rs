@@ -4,8 +4,8 @@
 //! Each block of samples has a random stream of its own, keyed by (seed, block), so no result depends on the
 //! number of threads.
 
-use super::counts::Counts;
-use super::estimate::{Estimate, standard_error};
+use super::made_shot_counts::Counts;
+use super::probability_and_error::{Estimate, standard_error};
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, Release};
 use crate::model::BallState;

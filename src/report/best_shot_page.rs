@@ -1,12 +1,12 @@
 //! The page of a `best` run.
 
 use super::best_shot_run::BestShotRun;
+use super::best_shot_table::shot_table;
 use super::page::Page;
 use super::page_data::Scene;
 use super::report_error::ReportError;
 use super::report_shot::{ReportShot, describe_location, most_probable};
 use super::sensitivity_table::sensitivity_table;
-use super::shot_table::shot_table;
 use crate::model::court::League;
 use crate::plots::plot::Plot;
 use crate::plots::plotted_shot::PlottedShot;

@@ -4,13 +4,13 @@
 
 pub mod best_shot_page;
 pub mod best_shot_run;
+mod best_shot_table;
 mod html_table;
 pub mod page;
 mod page_data;
 mod report_error;
 mod report_shot;
 mod sensitivity_table;
-mod shot_table;
 pub mod sweep_page;
 
 pub use html_table::HtmlTable;

@@ -1,10 +1,10 @@
 //! The page of a sweep.
 
+use super::best_shot_table::shot_table;
 use super::page::Page;
 use super::page_data::Scene;
 use super::report_error::ReportError;
 use super::report_shot::{ReportShot, describe_location, most_probable};
-use super::shot_table::shot_table;
 use crate::dynamics::Simulator;
 use crate::plots::plot::Plot;
 use crate::plots::plotted_shot::PlottedShot;
@@ -13,7 +13,7 @@ use crate::plots::{sweep_bank_direct_map, sweep_best_shot_maps};
 use crate::shooter::Nominal;
 use crate::sweep::SweepConfig;
 use crate::sweep::columns;
-use crate::sweep::jobs::Jobs;
+use crate::sweep::job_list::Jobs;
 use crate::sweep::result_row::{JobStatus, ResultRow};
 use std::collections::BTreeMap;
 

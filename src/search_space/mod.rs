@@ -4,12 +4,12 @@
 //! ranges of pitch and backspin come from what the shooter can intend, widened by [`MARGIN_SIGMAS`]
 //! standard deviations of the errors. [`TablePlan::mass_outside`] bounds the probability beyond them.
 
+mod geometric_bounds;
 mod nominal_grid;
-mod release_bracket;
-mod shot_table_plan;
-mod wide_sample;
+mod outside_bounds_check;
+mod simulated_release_ranges;
 
+pub use geometric_bounds::Bracket;
 pub use nominal_grid::NominalGrid;
-pub use release_bracket::Bracket;
-pub use shot_table_plan::{MARGIN_SIGMAS, PlanError, TablePlan};
-pub use wide_sample::{WideSample, sample_wide};
+pub use outside_bounds_check::{WideSample, sample_wide};
+pub use simulated_release_ranges::{MARGIN_SIGMAS, PlanError, TablePlan};

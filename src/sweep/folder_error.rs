@@ -1,6 +1,6 @@
 //! Why a sweep's folder could not be used.
 
-use super::result_store::StoreError;
+use super::sqlite_results::StoreError;
 use crate::config::ConfigError;
 use crate::shooter::IdentityError;
 use std::io;

@@ -1,24 +1,24 @@
 //! Best shots at every place of a region, saved to disk as they are computed.
 //!
 //! A *spot* is a place that is computed; the result of a mirrored place is that of its spot. A *job* is one kind
-//! of shot at one spot. [`SweepConfig`] says what is wanted, [`jobs`] lists it, [`run`] computes
-//! what is missing, [`result_store`] saves each result in SQLite with a checksum, [`sweep_folder`] joins the stores
-//! of all processes, and [`result_tables`] writes the final tables. The results on disk are the only state: whatever
+//! of shot at one spot. [`SweepConfig`] says what is wanted, [`job_list`] lists it, [`run`] computes
+//! what is missing, [`sqlite_results`] saves each result in SQLite with a checksum, [`sweep_folder`] joins the stores
+//! of all processes, and [`final_tables`] writes the final tables. The results on disk are the only state: whatever
 //! is killed, the same command continues.
 
-pub mod bank_advantage;
+pub mod bank_direct_difference;
 pub mod columns;
 mod court_region;
+pub mod final_tables;
+pub mod finished_jobs;
 mod folder_error;
-pub mod inventory;
-pub mod jobs;
+pub mod job_list;
 mod manifest;
 mod region_toml;
 pub mod result_row;
-pub mod result_store;
-pub mod result_tables;
 pub mod run;
 mod shard_lock;
+pub mod sqlite_results;
 pub mod sweep_folder;
 pub mod sweep_toml;
 

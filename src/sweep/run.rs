@@ -5,12 +5,12 @@
 //! that was being computed when the program aborted is computed alone at the next start, and given up if the
 //! program aborts there again.
 
+use super::finished_jobs::Inventory;
 use super::folder_error::SweepFolderError;
-use super::inventory::Inventory;
-use super::jobs::{Jobs, Shard};
+use super::job_list::{Jobs, Shard};
 use super::result_row::{JobStatus, ResultRow};
-use super::result_store::{ResultStore, StoreError};
 use super::shard_lock::ShardLock;
+use super::sqlite_results::{ResultStore, StoreError};
 use super::sweep_folder::SweepFolder;
 use super::sweep_toml::SweepConfig;
 use crate::best_shot::{self, BestShotError, NoShot};

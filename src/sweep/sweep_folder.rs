@@ -7,11 +7,11 @@
 //! ```
 
 use super::folder_error::{SweepFolderError, io_error_at};
-use super::jobs::{Jobs, Shard};
+use super::job_list::{Jobs, Shard};
 use super::manifest::{self, Manifest, ManifestFile};
 use super::result_row::{JobStatus, ResultRow};
-use super::result_store;
 use super::shard_lock::{ShardLock, lock_file, open_lock};
+use super::sqlite_results;
 use super::sweep_toml::{SourceTexts, SweepConfig, parse_sweep};
 use crate::output::atomic_file;
 use std::collections::BTreeMap;
@@ -237,7 +237,7 @@ impl SweepFolder {
     ) -> Result<Vec<(PathBuf, String)>, SweepFolderError> {
         let mut damaged = Vec::new();
         for path in self.stores()? {
-            let reading = result_store::read_rows(&path, &self.hash, self.job_count, |row| {
+            let reading = sqlite_results::read_rows(&path, &self.hash, self.job_count, |row| {
                 receive(&path, row);
             })?;
             damaged.extend(reading.damage.map(|reason| (path, reason)));

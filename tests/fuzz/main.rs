@@ -15,7 +15,7 @@ use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink,
 use bankshot::output::simulation_files::release_columns::{ReleaseColumns, outcome_cells};
 use bankshot::sweep::CourtPlace;
 use bankshot::sweep::result_row::ResultRow;
-use bankshot::sweep::result_store::{self, ResultStore};
+use bankshot::sweep::sqlite_results::{self, ResultStore};
 use bankshot::sweep::sweep_toml::{SourceTexts, named_files, parse_sweep};
 use mutation::Script;
 use parquet::basic::Type as Physical;
@@ -189,7 +189,7 @@ fn fuzz_stores() {
         std::fs::write(&path, Script::new(bytes).mutate(&STORE)).unwrap();
         // Damaged or not: never a result that was not saved.
         let saved = stored_rows();
-        let _ = result_store::read_rows(&path, "hash", 10, |row| {
+        let _ = sqlite_results::read_rows(&path, "hash", 10, |row| {
             assert!(saved.contains(&row), "{row:?}");
         });
         let _ = ResultStore::open(&path, "hash");

@@ -5,7 +5,7 @@ use super::half_court::{HalfCourt, result_columns};
 use bankshot::plots::paper_figures;
 use bankshot::plots::sweep_bank_direct_map;
 use bankshot::plots::sweep_results::SweepResults;
-use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::run::compute_jobs;
 use std::fs;
 use std::process::Command;

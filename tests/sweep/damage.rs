@@ -6,7 +6,7 @@ use crate::support::{
 };
 use bankshot::sweep::columns;
 use bankshot::sweep::result_row::ResultRow;
-use bankshot::sweep::result_store::{ResultStore, read_rows};
+use bankshot::sweep::sqlite_results::{ResultStore, read_rows};
 use bankshot::sweep::sweep_folder::SweepFolder;
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};

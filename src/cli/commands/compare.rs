@@ -18,7 +18,7 @@ use bankshot::plots::{
 };
 use bankshot::shooter::Profile;
 use bankshot::sweep::SweepConfig;
-use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sweep_folder::SweepFolder;
 use bankshot::sweep::sweep_toml::is_sweep;

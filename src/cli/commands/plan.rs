@@ -1,6 +1,6 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
-use super::sweep_plan;
+use super::plan_of_sweep;
 use crate::cli::args::PlanOptions;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::Failure;
@@ -37,7 +37,7 @@ struct Forecast {
 
 pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     if is_sweep(&read_text(&options.profile)?) {
-        return sweep_plan::run(&options.profile, options.json, quiet);
+        return plan_of_sweep::run(&options.profile, options.json, quiet);
     }
     let profile = load_profile(&options.profile)?;
     let plan = TablePlan::for_search(&profile)?;

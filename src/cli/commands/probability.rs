@@ -4,12 +4,12 @@ use super::trace;
 use crate::cli::args::{Method, ProbabilityOptions};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
-use crate::cli::nominal_options::NominalOptions;
+use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::analysis::miss_breakdown::classify_misses;
 use bankshot::dynamics::Release;
-use bankshot::output::probability_answer::{ProbabilityAnswer, answer_json, answer_text};
+use bankshot::output::probability_text_json::{ProbabilityAnswer, answer_json, answer_text};
 use bankshot::probability::{
     Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo,
 };

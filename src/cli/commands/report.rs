@@ -18,7 +18,7 @@ use bankshot::report::best_shot_run::{
 use bankshot::report::page::Page;
 use bankshot::report::sweep_page::sweep_page;
 use bankshot::sweep::SweepConfig;
-use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sweep_folder::SweepFolder;
 use std::collections::BTreeMap;

@@ -6,11 +6,11 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;
 use bankshot::probability::Progress;
-use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
 use bankshot::sweep::run::compute_jobs;
 use bankshot::sweep::sweep_folder::SweepFolder;
-use bankshot::sweep::{SweepConfig, is_locked, result_store};
+use bankshot::sweep::{SweepConfig, is_locked, sqlite_results};
 
 pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
     let (folder, config) = SweepFolder::open_read_only(&options.folder)?;
@@ -18,7 +18,7 @@ pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
     let (rows, remarks) = folder.union()?;
     let mut text = format!("{}\n", config.name) + &job_summary(&jobs, &rows);
     for store in folder.stores()? {
-        let (computed, seconds) = result_store::job_times(&store);
+        let (computed, seconds) = sqlite_results::job_times(&store);
         let running = if is_locked(&store.with_extension("lock")) {
             ", running"
         } else {

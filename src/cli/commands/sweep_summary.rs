@@ -1,8 +1,8 @@
 //! Summaries of a sweep's results as text.
 
 use crate::cli::failure::code;
-use bankshot::sweep::bank_advantage::BankAdvantage;
-use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::bank_direct_difference::BankAdvantage;
+use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
 use bankshot::sweep::{SweepConfig, columns};
 use bankshot::units::{DEGREE_RAD, at_most_two_decimals};

@@ -7,8 +7,8 @@ use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS};
 use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
 use crate::math::simd::F64x8;
-use crate::math::simd_pair::Unrolled;
-use crate::model::model_params::ModelParams;
+use crate::math::unrolled_simd::Unrolled;
+use crate::model::scaled_constants::ModelParams;
 use fearless_simd::Simd;
 
 /// A batch that is being simulated.

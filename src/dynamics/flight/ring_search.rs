@@ -13,7 +13,7 @@
 use super::height_crossing::{falling_time, rising_time};
 use crate::math::real::{Mask, Real};
 use crate::model::BallState;
-use crate::model::model_params::ModelParams;
+use crate::model::scaled_constants::ModelParams;
 
 /// F at which an approaching ball touches the ring, as a fraction of R^2.
 const TOUCH_TOLERANCE: f64 = 1e-10;

@@ -1,6 +1,6 @@
 //! An estimated probability with its error.
 
-use super::counts::Counts;
+use super::made_shot_counts::Counts;
 use serde::Serialize;
 
 /// P of one nominal shot.

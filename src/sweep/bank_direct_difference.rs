@@ -1,6 +1,6 @@
 //! At how many places of a sweep the bank shot is better than the direct one.
 
-use super::jobs::Jobs;
+use super::job_list::Jobs;
 use super::result_row::ResultRow;
 use crate::analysis::sensitivity::Difference;
 use crate::shooter::ShotKind;

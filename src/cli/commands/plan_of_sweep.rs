@@ -8,7 +8,7 @@ use bankshot::output::json_record::{number, object, provenance};
 use bankshot::probability::MAX_BATCH_BYTES;
 use bankshot::search_space::{PlanError, TablePlan};
 use bankshot::sweep::SweepConfig;
-use bankshot::sweep::jobs::Jobs;
+use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::run::mean_spot_time_s;
 use serde_json::Value;
 use std::path::Path;

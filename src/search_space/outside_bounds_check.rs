@@ -1,6 +1,6 @@
 //! A check of the bracket: shots from outside it that go in nevertheless.
 
-use super::shot_table_plan::TablePlan;
+use super::simulated_release_ranges::TablePlan;
 use crate::shooter::{Nominal, Profile};
 use crate::units::DEGREE_RAD;
 use rand::rngs::ChaCha12Rng;

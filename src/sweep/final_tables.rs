@@ -3,7 +3,7 @@
 //! The bytes depend on the results alone: not on threads, shards, restarts or machines.
 
 use super::columns::{self, ColumnType};
-use super::jobs::Jobs;
+use super::job_list::Jobs;
 use super::result_row::{Cell, ResultRow};
 use super::sweep_toml::SweepConfig;
 use crate::output::json_record::{Record, number, object, provenance};

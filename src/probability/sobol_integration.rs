@@ -5,8 +5,8 @@
 //! enough. If a doubling reduces the error to less than half, the scatter was small by chance: no rule for
 //! made and missed shots gains that much. Then half of the last error is reported.
 
-use super::counts::Counts;
-use super::estimate::Estimate;
+use super::made_shot_counts::Counts;
+use super::probability_and_error::Estimate;
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, Release};
 use crate::math::sobol::{Scramble, ScrambleKey, Sobol};

@@ -2,8 +2,8 @@
 
 use super::folder_error::{SweepFolderError, io_error_at};
 use super::result_row::JobStatus;
-use super::result_store::{self, ResultStore, StoreError};
 use super::shard_lock::{ShardLock, open_lock};
+use super::sqlite_results::{self, ResultStore, StoreError};
 use super::sweep_folder::{SweepFolder, set_aside};
 use std::collections::BTreeMap;
 use std::fs;
@@ -80,7 +80,7 @@ fn rescue(
         ));
     }
     let mut rows = Vec::new();
-    result_store::read_rows(path, folder.hash(), folder.job_count(), |row| {
+    sqlite_results::read_rows(path, folder.hash(), folder.job_count(), |row| {
         rows.push(row)
     })?;
     if !rows.is_empty() {

@@ -2,7 +2,7 @@
 # Runs a sweep on a real Slurm of three nodes on this machine, while programs, nodes and the controller are
 # killed. At the end the tables must have the bytes of one undisturbed run. Takes about 6 minutes on 2 cores.
 # Needs root on Debian (installs slurm-wlm and munge).
-#   cargo build --release && tests/slurm/drill.sh
+#   cargo build --release && tests/slurm/kill_nodes_test.sh
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 project=$(cd "$here/../.." && pwd)

@@ -1,7 +1,7 @@
 //! What a table of shots will simulate, and for which nominal shots.
 
+use super::geometric_bounds::Bracket;
 use super::nominal_grid::NominalGrid;
-use super::release_bracket::Bracket;
 use crate::math::evenly_spaced::{CellAxis, Linspace};
 use crate::math::normal_distribution;
 use crate::shooter::{Nominal, NominalVariable, Profile, TableGrid};
