@@ -24,7 +24,7 @@ Exit codes:
 
 Examples:
   bankshot best configs/free_throw.toml
-  bankshot probability configs/nine_errors.toml
+  bankshot probability configs/errors_in_all_nine_variables.toml
   bankshot plan configs/three_pointer.toml
   bankshot sweep configs/quick_sweep.toml
   bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg'
@@ -171,8 +171,8 @@ deviations; [shooter.correlation] gives their correlations.
 
 Examples:
   bankshot probability configs/free_throw.toml --speed '23.6 ft/s' --pitch '53.5 deg' --backspin '3 rev/s'
-  bankshot probability configs/nine_errors.toml --target 0.0003 --json
-  bankshot probability configs/nine_errors.toml --replay 1:2049")]
+  bankshot probability configs/errors_in_all_nine_variables.toml --target 0.0003 --json
+  bankshot probability configs/errors_in_all_nine_variables.toml --replay 1:2049")]
 pub(crate) struct ProbabilityOptions {
     /// The shooter's profile.
     pub(crate) profile: PathBuf,

@@ -3,7 +3,7 @@
 use super::failure::{Failure, code};
 use super::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
-use bankshot::plots::plot::Plot;
+use bankshot::plots::plot_type::Plot;
 use bankshot::plots::rasterise::to_png;
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use super::failure::{Failure, code};
 use bankshot::best_shot::BestShots;
 use bankshot::output::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
 use bankshot::output::best_shot_json::best_shots_json;
-use bankshot::output::{atomic_file, json_record};
+use bankshot::output::{atomic_file, json_object};
 use bankshot::shooter::Profile;
 use bankshot::sweep::SweepConfig;
 use std::path::{Path, PathBuf};
@@ -77,7 +77,7 @@ pub(crate) fn write_best_shots(
     let json = |value: &serde_json::Value| format!("{value:#}\n").into_bytes();
     let plan = serde_json::to_value(&best.plan).map_err(Failure::bug)?;
     let configuration = serde_json::to_value(profile).map_err(Failure::bug)?;
-    let mut provenance = json_record::provenance(profile.hash());
+    let mut provenance = json_object::provenance(profile.hash());
     provenance.push(("seed".to_owned(), profile.search().seed.into()));
     provenance.push(("table_shots".to_owned(), best.plan.shots.into()));
     provenance.push(("configuration_si".to_owned(), configuration));
@@ -88,7 +88,7 @@ pub(crate) fn write_best_shots(
         sensitivity_csv(best, units),
         read_text(source)?.into_bytes(),
         json(&plan),
-        json(&json_record::object(provenance)),
+        json(&json_object::object(provenance)),
     ];
     for (name, bytes) in FILES.into_iter().zip(contents) {
         let path = folder.join(name);

@@ -3,7 +3,7 @@
 use super::outcome::Ending;
 use crate::math::real::Real;
 use crate::model::BallState;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
 
 /// Limits of a simulation that are not part of the equations.

@@ -8,7 +8,7 @@
 
 use crate::math::real::Real;
 use crate::model::BallState;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 
 /// The crossings of the plane of the hoop so far.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@
 //! probability and the one that records a trajectory are the same code.
 
 use crate::math::vector::Vec3;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// The impulse of each solid on the ball per unit of mass, m/s; by [`SolidId::index`].

@@ -4,7 +4,7 @@
 use super::observer::{Impulses, Observer};
 use super::outcome::{Ending, Entry, Outcome, OutcomeKind, Verdict};
 use crate::math::vector::Vec3;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// Collects what an [`Outcome`] has beyond the [`Verdict`].

@@ -10,7 +10,7 @@ use super::outcome::{Outcome, Verdict};
 use super::outcome_classifier::OutcomeClassifier;
 use super::release::Release;
 use super::trace::{Recorder, Trace};
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, Physics, PhysicsError, SolidId};
 use rayon::prelude::*;
 use serde::Serialize;

@@ -3,7 +3,7 @@
 use super::observer::{Impulses, Observer};
 use super::outcome::Outcome;
 use crate::math::vector::Vec3;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// A point of a trajectory.

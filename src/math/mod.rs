@@ -2,7 +2,7 @@
 
 pub mod evenly_spaced;
 pub mod normal_distribution;
-mod operators;
+mod operator_macro;
 pub(crate) mod real;
 pub(crate) mod simd;
 pub mod sobol;

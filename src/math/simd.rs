@@ -1,6 +1,6 @@
 //! Eight numbers in the vector registers of the machine, however wide these are.
 
-use super::operators::elementwise_operators;
+use super::operator_macro::elementwise_operators;
 use super::real::{LaneBits, Mask, Real, SimdReal};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f64x8, mask64x8};

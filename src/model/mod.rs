@@ -2,10 +2,10 @@
 
 pub(crate) mod ball_params;
 mod ball_state;
+pub(crate) mod constants_per_ball_mass;
 pub mod court;
 mod physics;
 mod restitution;
-pub(crate) mod scaled_constants;
 pub(crate) mod solids;
 
 pub use ball_state::BallState;

@@ -1,6 +1,6 @@
 //! The best shots as JSON, and the record of one shot that JSON and CSV share.
 
-use super::json_record::{Record, number, object, provenance};
+use super::json_object::{Record, number, object, provenance};
 use crate::analysis::sensitivity::{Difference, Variation};
 use crate::best_shot::{BestShot, BestShots, Limit, ShotKind};
 use crate::shooter::{NominalVariable, Profile};

@@ -1,6 +1,6 @@
 //! The answer of `probability`: P of one nominal shot, as text and as JSON.
 
-use super::json_record::{Record, number, object, provenance};
+use super::json_object::{Record, number, object, provenance};
 use crate::analysis::miss_breakdown::MissBreakdown;
 use crate::probability::Estimate;
 use crate::shooter::{Nominal, Profile, ReleaseVariable};

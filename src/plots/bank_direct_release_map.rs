@@ -6,7 +6,7 @@
 
 use super::colormaps::{NOT_SIGNIFICANT, Rgb, diverging};
 use super::colour_key::ColourScale;
-use super::plot::Plot;
+use super::plot_type::Plot;
 use super::plotted_shot::PlottedShot;
 use super::release_map::{MAP_SIZE, ReleaseMap};
 use super::svg::{Anchor, Svg, shortened};

@@ -9,7 +9,7 @@ pub mod colour_key;
 mod court_lines;
 pub mod court_map;
 pub mod paper_figures;
-pub mod plot;
+pub mod plot_type;
 pub mod plotted_shot;
 mod polyline_thinning;
 pub mod probability_curves;

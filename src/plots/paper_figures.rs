@@ -1,6 +1,6 @@
 //! The paper's Figs. 7 to 15 from the profiles in `configs/paper/`.
 
-use super::plot::Plot;
+use super::plot_type::Plot;
 use super::release_map::{MAP_SIZE, ReleaseMap};
 use super::shot_views::{self, MADE_COLOUR, ShotPath};
 use super::svg::{Anchor, Svg};

@@ -1,7 +1,7 @@
 //! The files of a `best` run, read back for its page.
 
+use super::page_shot::{ReportShot, most_probable};
 use super::report_error::ReportError;
-use super::report_shot::{ReportShot, most_probable};
 use crate::best_shot::ShotKind;
 use crate::config::parse_profile;
 use crate::plots::plotted_shot::PlottedShot;

@@ -1,10 +1,10 @@
 //! The data of a page's script: the shots with their paths, and the court.
 
-use super::report_shot::{ReportShot, describe_location};
+use super::page_shot::{ReportShot, describe_location};
 use crate::dynamics::{Release, Simulator, StateError};
 use crate::math::vector::Vec3;
 use crate::model::court::Court;
-use crate::output::json_record::number;
+use crate::output::json_object::number;
 use crate::units::UnitSystem;
 use serde_json::{Value, json};
 

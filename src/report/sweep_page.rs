@@ -3,10 +3,10 @@
 use super::best_shot_table::shot_table;
 use super::page::Page;
 use super::page_data::Scene;
+use super::page_shot::{ReportShot, describe_location, most_probable};
 use super::report_error::ReportError;
-use super::report_shot::{ReportShot, describe_location, most_probable};
 use crate::dynamics::Simulator;
-use crate::plots::plot::Plot;
+use crate::plots::plot_type::Plot;
 use crate::plots::plotted_shot::PlottedShot;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{sweep_bank_direct_map, sweep_best_shot_maps};

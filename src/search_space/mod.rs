@@ -5,11 +5,11 @@
 //! standard deviations of the errors. [`TablePlan::mass_outside`] bounds the probability beyond them.
 
 mod geometric_bounds;
+mod made_shots_outside_bounds;
 mod nominal_grid;
-mod outside_bounds_check;
 mod simulated_release_ranges;
 
 pub use geometric_bounds::Bracket;
+pub use made_shots_outside_bounds::{WideSample, sample_wide};
 pub use nominal_grid::NominalGrid;
-pub use outside_bounds_check::{WideSample, sample_wide};
 pub use simulated_release_ranges::{MARGIN_SIGMAS, PlanError, TablePlan};

@@ -1,9 +1,9 @@
 //! The dispersion of releases: standard deviations (Eq. 28 of the paper and five more) and correlations.
 
 use super::correlation::Correlation;
+use super::invalid_setting::SettingChecks;
 use super::nominal::Nominal;
 use super::release_variable::ReleaseVariable;
-use super::setting_error::SettingChecks;
 use serde::Serialize;
 
 /// Greatest speed of a release that a profile can ask for, m/s.

@@ -3,6 +3,7 @@
 mod correlation;
 mod dispersion;
 mod identity_hash;
+mod invalid_setting;
 mod location;
 mod name_check;
 mod nominal;
@@ -10,12 +11,12 @@ mod profile;
 mod release_distribution;
 mod release_variable;
 mod search_settings;
-mod setting_error;
 mod shot_kind;
 
 pub use correlation::Correlation;
 pub use dispersion::ReleaseDispersion;
 pub use identity_hash::{IdentityError, identity_hash};
+pub use invalid_setting::SettingError;
 pub use location::{Location, LocationError};
 pub use name_check::is_control_or_direction;
 pub use nominal::{Nominal, NominalOverrides};
@@ -23,5 +24,4 @@ pub use profile::{OutputSettings, Profile, ProfileError, ProfileSettings, Shoote
 pub use release_distribution::ReleaseDistribution;
 pub use release_variable::{NominalVariable, ReleaseVariable};
 pub use search_settings::{Search, SearchChoice, SearchSettings, TableGrid};
-pub use setting_error::SettingError;
 pub use shot_kind::ShotKind;

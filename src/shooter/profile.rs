@@ -2,12 +2,12 @@
 
 use super::dispersion::{MAX_SPEED_M_S, MAX_SPIN_RAD_S, ReleaseDispersion};
 use super::identity_hash::{IdentityError, identity_hash};
+use super::invalid_setting::{SettingChecks, SettingError};
 use super::location::{Location, LocationError};
 use super::name_check::is_control_or_direction;
 use super::nominal::{Nominal, NominalOverrides};
 use super::release_variable::NominalVariable;
 use super::search_settings::{Search, SearchSettings, TableGrid};
-use super::setting_error::{SettingChecks, SettingError};
 use crate::dynamics::{InstructionSet, Integrator, Release, Simulator, SimulatorError};
 use crate::model::Physics;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};

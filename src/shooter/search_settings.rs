@@ -1,9 +1,9 @@
 //! What the search for the best shot looks at, and how precisely.
 
 use super::dispersion::MAX_SPEED_M_S;
+use super::invalid_setting::SettingChecks;
 use super::nominal::NominalOverrides;
 use super::release_variable::NominalVariable;
-use super::setting_error::SettingChecks;
 use crate::units::DEGREE_RAD;
 use serde::{Serialize, Serializer};
 use std::ops::RangeInclusive;

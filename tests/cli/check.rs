@@ -188,7 +188,7 @@ fn contract_implausible_errors_are_refused() {
 
 #[test]
 fn contract_impossible_correlations_are_refused_with_their_file() {
-    const NINE: &str = include_str!("../../configs/nine_errors.toml");
+    const NINE: &str = include_str!("../../configs/errors_in_all_nine_variables.toml");
     let line = "speed_pitch = -0.25            # from -1 to 1; any pair of the nine";
     assert!(NINE.contains(line));
     let folder = TempDir::new().unwrap();

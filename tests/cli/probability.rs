@@ -5,7 +5,11 @@ use bankshot::dynamics::InstructionSet;
 
 /// `probability` of the nine errors with the given flags.
 fn probability(flags: &[&str]) -> Answer {
-    let arguments = ["probability", "configs/nine_errors.toml", "--quiet"];
+    let arguments = [
+        "probability",
+        "configs/errors_in_all_nine_variables.toml",
+        "--quiet",
+    ];
     Answer::of(bankshot().args(arguments).args(flags))
 }
 
@@ -195,7 +199,7 @@ fn contract_vector_instructions_and_threads_change_no_byte() {
         let mut command = bankshot();
         command.args([
             "probability",
-            "configs/nine_errors.toml",
+            "configs/errors_in_all_nine_variables.toml",
             "--json",
             "--quiet",
         ]);

@@ -89,7 +89,7 @@ fn regress_verdicts() {
 #[test]
 fn regress_probabilities() {
     let free_throw = load("free_throw");
-    let nine_errors = load("nine_errors");
+    let nine_errors = load("errors_in_all_nine_variables");
     let found = [
         (&free_throw, nominal(23.6, 53.5, 0.0, 3.0)),
         (&free_throw, nominal(24.97, 54.2, 0.0, 3.0)),

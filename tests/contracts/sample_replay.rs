@@ -6,7 +6,10 @@ use bankshot::probability::{REPLICATES, Sampler, Silent, monte_carlo};
 
 #[test]
 fn contract_a_sobol_sample_is_found_again_by_its_number() {
-    let (profile, shot) = (load("nine_errors"), nominal(23.6, 53.5, 0.0, 3.0));
+    let (profile, shot) = (
+        load("errors_in_all_nine_variables"),
+        nominal(23.6, 53.5, 0.0, 3.0),
+    );
     let sampler = Sampler::new(&profile);
     let scramble = sampler.scramble(ScrambleKey {
         seed: 7,
@@ -19,7 +22,10 @@ fn contract_a_sobol_sample_is_found_again_by_its_number() {
 #[test]
 fn contract_a_monte_carlo_sample_is_found_again_by_its_number() {
     // The first samples of a stream, counted one by one.
-    let (profile, shot) = (load("nine_errors"), nominal(23.6, 53.5, 0.0, 3.0));
+    let (profile, shot) = (
+        load("errors_in_all_nine_variables"),
+        nominal(23.6, 53.5, 0.0, 3.0),
+    );
     let estimate = monte_carlo::estimate(&profile, &shot, 300, 7, &Silent);
     let made = (0..300)
         .filter(|&index| {

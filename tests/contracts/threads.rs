@@ -26,7 +26,10 @@ fn contract_simulate_batch_equals_single_shots_in_order() {
 
 #[test]
 fn contract_threads_and_instruction_sets_change_no_bit_of_p() {
-    let (profile, shot) = (load("nine_errors"), nominal(23.6, 53.5, 0.0, 3.0));
+    let (profile, shot) = (
+        load("errors_in_all_nine_variables"),
+        nominal(23.6, 53.5, 0.0, 3.0),
+    );
     let find = |threads: usize, instructions: InstructionSet| {
         let profile = profile.clone().with_instructions(instructions);
         on_threads(threads, || {

@@ -26,7 +26,7 @@ use std::time::Instant;
 
 const PROFILES: [&str; 4] = [
     include_str!("../../configs/free_throw.toml"),
-    include_str!("../../configs/nine_errors.toml"),
+    include_str!("../../configs/errors_in_all_nine_variables.toml"),
     include_str!("../../configs/bank_wing.toml"),
     include_str!("../../configs/paper/fig_12.toml"),
 ];

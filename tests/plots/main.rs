@@ -4,7 +4,7 @@
 mod browser;
 #[path = "../common/mod.rs"]
 mod common;
-mod comparisons;
+mod compare_command;
 mod figures;
 mod half_court;
 mod release_maps;

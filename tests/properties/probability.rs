@@ -20,7 +20,10 @@ fn prop_no_made_shot_lies_outside_the_bracket() {
 
 #[test]
 fn prop_shares_of_made_and_missed_sum_to_one() {
-    let (profile, shot) = (load("nine_errors"), nominal(23.6, 53.5, 0.0, 3.0));
+    let (profile, shot) = (
+        load("errors_in_all_nine_variables"),
+        nominal(23.6, 53.5, 0.0, 3.0),
+    );
     let sobol = Sampler::new(&profile).estimate(&shot, 0.002, 1, &Silent);
     let missed = classify_misses(&profile, &shot, &sobol, 1);
     let sum: f64 = missed.named().iter().map(|(_, share)| share).sum();

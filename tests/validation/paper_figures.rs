@@ -1,7 +1,7 @@
 //! The paper's Figs. 12-15 as bands of speed, its closed forms, and the swirl of Fig. 11.
 //!
 //! Authority of the bands: scans of the paper's equations at 52 deg with uniform steps of 5e-6 s, by a
-//! program that shares no code with bankshot. `tests/validation/generate_bands.py` prints them. The values
+//! program that shares no code with bankshot. `tests/validation/paper_speed_bands.py` prints them. The values
 //! below are of an earlier scan of the same equations; the script prints the same edges to 0.002 ft/s and the
 //! same totals to 0.004 ft/s. The speeds are 0.002 ft/s apart, so each edge is good to 0.004 ft/s. The closed
 //! forms are named at each test.
@@ -63,7 +63,7 @@ const FIG_15: Figure = (67.5, 62.107, 3.0);
 fn val_paper_fig_12_no_spin() {
     // The shots of the last band are chaotic. Of the paper's integrator at uniform steps of 3, 4, 5, 6, 7 and
     // 10e-6 s, only 4e-6 s misses, and only the one sample at 25.084. That splits the band. The earlier scan
-    // began it at 25.086; `generate_bands.py` begins it at 25.078, as here.
+    // began it at 25.086; `paper_speed_bands.py` begins it at 25.078, as here.
     let bands = [
         (23.316, 0.534),
         (24.134, 0.032),

@@ -15,7 +15,10 @@ use rand::rngs::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 fn nine_errors() -> (Profile, Nominal) {
-    (load("nine_errors"), nominal(23.6, 53.5, 0.0, 3.0))
+    (
+        load("errors_in_all_nine_variables"),
+        nominal(23.6, 53.5, 0.0, 3.0),
+    )
 }
 
 /// Whether two probabilities differ by less than 4.5 standard errors.

@@ -10,7 +10,7 @@ use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot::{self, BestShots};
 use bankshot::output::atomic_file;
-use bankshot::plots::plot::Plot;
+use bankshot::plots::plot_type::Plot;
 use bankshot::plots::plotted_shot::PlottedShot;
 use bankshot::plots::sweep_results::SweepResults;
 use bankshot::plots::{

@@ -7,7 +7,7 @@ use crate::cli::failure::Failure;
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::dynamics::BatchWorkspace;
 use bankshot::math::evenly_spaced::CellAxis;
-use bankshot::output::json_record::{number, object, provenance};
+use bankshot::output::json_object::{number, object, provenance};
 use bankshot::probability::MAX_BATCH_BYTES;
 use bankshot::search_space::{TablePlan, WideSample, sample_wide};
 use bankshot::shooter::{Nominal, Profile};

@@ -4,7 +4,7 @@ use crate::cli::config_files::load_sweep;
 use crate::cli::failure::Failure;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;
-use bankshot::output::json_record::{number, object, provenance};
+use bankshot::output::json_object::{number, object, provenance};
 use bankshot::probability::MAX_BATCH_BYTES;
 use bankshot::search_space::{PlanError, TablePlan};
 use bankshot::sweep::SweepConfig;

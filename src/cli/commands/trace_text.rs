@@ -3,7 +3,7 @@
 use bankshot::dynamics::{Ending, EventKind, Outcome, OutcomeKind, Trace};
 use bankshot::math::vector::Vec3;
 use bankshot::model::SolidId;
-use bankshot::output::json_record::{number, object};
+use bankshot::output::json_object::{number, object};
 use bankshot::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use std::fmt::Write;
 

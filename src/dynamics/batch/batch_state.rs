@@ -8,7 +8,7 @@ use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
 use crate::math::simd::F64x8;
 use crate::math::unrolled_simd::Unrolled;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use fearless_simd::Simd;
 
 /// A batch that is being simulated.

@@ -6,7 +6,7 @@ use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
 use crate::math::real::{LaneArray, LaneBits, SimdReal};
 use crate::math::vector::Vec3;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 const ZEROS: LaneArray = [0.0; LaneBits::BITS as usize];

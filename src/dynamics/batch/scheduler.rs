@@ -16,7 +16,7 @@ use super::flight_phase::fly;
 use super::ring_contact_phase::ring_contact;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 use fearless_simd::{Level, Simd};
 

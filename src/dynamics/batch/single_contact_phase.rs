@@ -7,7 +7,7 @@ use crate::dynamics::contact::event_time::time_to_touch;
 use crate::dynamics::contact::single;
 use crate::dynamics::integrators::event_driven::{ContactState, max_acceleration};
 use crate::math::real::SimdReal;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{Approach, Solid};
 use fearless_simd::Simd;
 

@@ -5,7 +5,7 @@ use crate::dynamics::integrators::event_driven::{
     self, ContactState, ShotProgress, solids_touched_at_release,
 };
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache (some

@@ -10,7 +10,7 @@ use super::normal_force::{FORCE_TOLERANCE_M_S2, NormalForce, has_separated};
 use super::single::SHORTEST_STEP_S;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Material, Solid};
 use crate::model::{BallState, StateDerivative};
 

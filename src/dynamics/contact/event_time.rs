@@ -3,7 +3,7 @@
 use crate::math::real::Real;
 use crate::math::vector::Vec3;
 use crate::model::BallState;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Approach;
 
 /// A step meant to end rolling or the normal force is longer than predicted by this factor. Otherwise the next

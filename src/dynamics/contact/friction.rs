@@ -3,7 +3,7 @@
 use super::event_time::{EventTime, OVERSHOOT, first_root};
 use super::normal_force::NormalForce;
 use crate::math::real::Real;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 
 /// A slip speed up to this counts as zero, m/s.
 const SLIP_TOLERANCE_M_S: f64 = 1e-9;

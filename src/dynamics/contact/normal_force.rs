@@ -2,7 +2,7 @@
 
 use super::event_time::{EventTime, OVERSHOOT, first_root};
 use crate::math::real::Real;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactKinematics, Material};
 
 /// Normal acceleration that counts as zero, m/s^2 (a bounce reaches a thousand).

@@ -15,7 +15,7 @@ use super::friction::{
 use super::normal_force::{NormalForce, SEPARATION_STEP_S, has_separated};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Solid};
 use crate::model::{BallState, StateDerivative};
 

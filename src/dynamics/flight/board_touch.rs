@@ -4,7 +4,7 @@
 use super::height_crossing::{falling_time, rising_time};
 use crate::math::real::Real;
 use crate::model::BallState;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 
 /// A ball that passed the touch plane longer ago than this overlaps the board, s.

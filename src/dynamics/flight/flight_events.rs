@@ -4,7 +4,7 @@ use super::board_touch::{board_times, entry_from_beside};
 use super::height_crossing::falling_time;
 use super::ring_search::ring_time;
 use crate::math::real::Real;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// The possible ends of an arc of free flight, as times from its start, s. The earliest one happens;

@@ -1,7 +1,7 @@
 //! When a ball in free flight crosses a height.
 
 use crate::math::real::Real;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 
 /// Time at which the centre falls through the height `height`. For a ball that never rises to it,
 /// the time of its highest point.

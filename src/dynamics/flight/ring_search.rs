@@ -13,7 +13,7 @@
 use super::height_crossing::{falling_time, rising_time};
 use crate::math::real::{Mask, Real};
 use crate::model::BallState;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 
 /// F at which an approaching ball touches the ring, as a fraction of R^2.
 const TOUCH_TOLERANCE: f64 = 1e-10;

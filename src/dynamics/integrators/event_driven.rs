@@ -14,7 +14,7 @@ use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::real::Real;
 use crate::math::vector::Vec3;
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{Approach, Solid, TOUCH_GAP_M};
 use crate::model::{BallState, SolidId};
 

@@ -13,7 +13,7 @@ use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::vector::{RealVector, Vec3};
-use crate::model::scaled_constants::ModelParams;
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactFrame, ContactVector, Solid};
 use crate::model::{BallState, SolidId, StateDerivative};
 

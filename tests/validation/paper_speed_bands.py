@@ -1,6 +1,6 @@
 """Prints the bands of speed of the paper's Figs. 12 to 15, by a program that shares no code with bankshot.
 
-    python3 tests/validation/generate_bands.py [CASE ...] [--dt SECONDS]
+    python3 tests/validation/paper_speed_bands.py [CASE ...] [--dt SECONDS]
 
 It compiles benches/peers/paper_rk4.c (needs a C compiler) and simulates 3000 speeds per case at 52 deg,
 0.002 ft/s apart, with uniform steps of 5e-6 s. One case takes about two minutes. The tests of

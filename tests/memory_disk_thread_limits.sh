@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs a sweep under limits: memory, open files, threads, full and read-only disks, and unusual files instead
 # of its configuration. Needs root for its mounts. Takes about half a minute.
-#   cargo build --release && tests/limits.sh
+#   cargo build --release && tests/memory_disk_thread_limits.sh
 set -uo pipefail
 project=$(cd "$(dirname "$0")/.." && pwd)
 bankshot=${BANKSHOT:-$project/target/release/bankshot}

@@ -4,22 +4,22 @@
 /// a tuple struct of numbers, and `& | !` for a tuple struct of masks, field by field.
 macro_rules! elementwise_operators {
     (number [$($generics:tt)*] $type:ty { $($field:tt)+ }) => {
-        $crate::math::operators::elementwise_operators!(@pair [$($generics)*] $type, Add, add, +, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@pair [$($generics)*] $type, Sub, sub, -, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@pair [$($generics)*] $type, Mul, mul, *, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@pair [$($generics)*] $type, Div, div, /, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@scalar [$($generics)*] $type, Add, add, +, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@scalar [$($generics)*] $type, Sub, sub, -, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@scalar [$($generics)*] $type, Mul, mul, *, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@unary [$($generics)*] $type, Neg, neg, -, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@assign [$($generics)*] $type, AddAssign, add_assign, +);
-        $crate::math::operators::elementwise_operators!(@assign [$($generics)*] $type, SubAssign, sub_assign, -);
-        $crate::math::operators::elementwise_operators!(@assign [$($generics)*] $type, MulAssign, mul_assign, *);
+        $crate::math::operator_macro::elementwise_operators!(@pair [$($generics)*] $type, Add, add, +, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@pair [$($generics)*] $type, Sub, sub, -, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@pair [$($generics)*] $type, Mul, mul, *, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@pair [$($generics)*] $type, Div, div, /, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@scalar [$($generics)*] $type, Add, add, +, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@scalar [$($generics)*] $type, Sub, sub, -, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@scalar [$($generics)*] $type, Mul, mul, *, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@unary [$($generics)*] $type, Neg, neg, -, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@assign [$($generics)*] $type, AddAssign, add_assign, +);
+        $crate::math::operator_macro::elementwise_operators!(@assign [$($generics)*] $type, SubAssign, sub_assign, -);
+        $crate::math::operator_macro::elementwise_operators!(@assign [$($generics)*] $type, MulAssign, mul_assign, *);
     };
     (mask [$($generics:tt)*] $type:ty { $($field:tt)+ }) => {
-        $crate::math::operators::elementwise_operators!(@pair [$($generics)*] $type, BitAnd, bitand, &, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@pair [$($generics)*] $type, BitOr, bitor, |, { $($field)+ });
-        $crate::math::operators::elementwise_operators!(@unary [$($generics)*] $type, Not, not, !, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@pair [$($generics)*] $type, BitAnd, bitand, &, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@pair [$($generics)*] $type, BitOr, bitor, |, { $($field)+ });
+        $crate::math::operator_macro::elementwise_operators!(@unary [$($generics)*] $type, Not, not, !, { $($field)+ });
     };
     (@pair [$($generics:tt)*] $type:ty, $trait:ident, $method:ident, $operator:tt, { $($field:tt)+ }) => {
         impl<$($generics)*> std::ops::$trait for $type {
