@@ -186,9 +186,7 @@ fn compare_integrators(physics: &Physics, sample: &str, starts: &[BallState]) {
 /// shortest step of the paper's integrator decreases until 99.9 % agree.
 fn compare_agreement(physics: &Physics, starts: &[BallState]) {
     let few = &starts[..SMALL_BATCH];
-    let tiny_steps = Integrator::EventDriven {
-        steps_per_contact: 1000,
-    };
+    let tiny_steps = Integrator::event_driven(1000);
     let reference = made(
         &Simulator::with_integrator(physics, tiny_steps).unwrap(),
         few,

@@ -2,7 +2,7 @@
 
 use super::diagnostics::{ConfigError, Diagnostic};
 use super::toml_reader::{TableReader, parse_toml};
-use crate::dynamics::Integrator;
+use crate::dynamics::{Integrator, Precision};
 use crate::model::Physics;
 use crate::units::Dimension;
 
@@ -105,6 +105,15 @@ fn read_integrator(
     let steps = table
         .count("steps_per_contact", 2..=100_000, diagnostics)
         .and_then(|steps| u32::try_from(steps).ok());
+    let precision = match table.text("precision", diagnostics).as_deref() {
+        None | Some("auto") => Precision::Automatic,
+        Some("f64") => Precision::Double,
+        Some(_) => {
+            let message = "must be \"auto\" or \"f64\"";
+            diagnostics.push(table.diagnostic("precision", message));
+            Precision::Automatic
+        }
+    };
     let mut step = |key| {
         let value = table.quantity(key, Dimension::Time, diagnostics)?;
         if PAPER_STEPS_S.contains(&value) {
@@ -120,7 +129,8 @@ fn read_integrator(
     }
     match name.as_deref() {
         None | Some("exact") => Integrator::EventDriven {
-            steps_per_contact: steps.unwrap_or(8),
+            steps_per_contact: steps.unwrap_or(5),
+            precision,
         },
         Some("paper") => Integrator::PaperRk4 { dt_max_s, dt_min_s },
         Some(_) => {

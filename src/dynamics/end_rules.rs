@@ -1,16 +1,21 @@
 //! The rules that end a shot, written once for every integrator and for the lanes.
 
+use super::contact::oscillator::Oscillator;
 use super::outcome::Ending;
 use crate::math::real::Real;
-use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
+use crate::model::{BallState, SolidId};
 
 /// Limits of a simulation that are not part of the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotLimits {
-    /// Longest step in contact, s.
+    /// Longest step in a double contact, s.
     pub(crate) longest_step_s: f64,
+    /// Contacts with one solid are computed in single precision.
+    pub(crate) single_precision: bool,
+    /// The normal motion and the longest step in contact with each solid, by [`SolidId::index`].
+    pub(crate) oscillators: [Oscillator; SolidId::COUNT],
     /// A shot that takes longer ends, s.
     pub(crate) time_limit_s: f64,
     /// A ball that rolls on two solids for this long is lodged, s; 0 for never.
@@ -28,18 +33,13 @@ pub(crate) struct ShotEndFlags<T: Real> {
 }
 
 impl<T: Real> ShotEndFlags<T> {
-    /// After a step in contact to `state` at `time_s` after the release.
+    /// After a step in contact to `state`.
     #[inline(always)]
-    pub(crate) fn new(
-        params: &ModelParams<T>,
-        state: &BallState<T>,
-        time_s: T,
-        time_limit_s: f64,
-    ) -> Self {
+    pub(crate) fn new(params: &ModelParams<T>, state: &BallState<T>, too_late: T::Mask) -> Self {
         Self {
             behind_board: state.position_m.x.lt(params.board.face_x),
             fell: fell_below_ring(params, state),
-            too_late: params.splat(time_limit_s).lt(time_s),
+            too_late,
         }
     }
 
@@ -49,32 +49,32 @@ impl<T: Real> ShotEndFlags<T> {
         self.behind_board | self.fell | self.too_late
     }
 
-    /// Applies `f` to each mask, in the order of [`ShotEndFlags::first_ending`].
+    /// Applies `f` to each mask, in the order of [`first_ending`].
     #[inline(always)]
     pub(crate) fn map<Value>(&self, f: impl Fn(T::Mask) -> Value) -> [Value; 3] {
         [f(self.behind_board), f(self.fell), f(self.too_late)]
     }
 }
 
-impl ShotEndFlags<f64> {
-    /// How the shot ended, if it did, from the values of [`ShotEndFlags::map`]. If several rules apply, the
-    /// first one counts.
-    #[inline(always)]
-    pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<Ending> {
-        if behind_board {
-            Some(Ending::BehindBoard)
-        } else if fell {
-            Some(Ending::Fell)
-        } else if too_late {
-            Some(Ending::TimeLimit)
-        } else {
-            None
-        }
-    }
-
+impl<T: Real<Mask = bool>> ShotEndFlags<T> {
     /// How the shot ended, if it did.
     pub(crate) fn ending(self) -> Option<Ending> {
-        Self::first_ending(self.map(|rule| rule))
+        first_ending(self.map(|rule| rule))
+    }
+}
+
+/// How a shot ended, if it did, from the values of [`ShotEndFlags::map`]. If several rules apply, the first one
+/// counts.
+#[inline(always)]
+pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<Ending> {
+    if behind_board {
+        Some(Ending::BehindBoard)
+    } else if fell {
+        Some(Ending::Fell)
+    } else if too_late {
+        Some(Ending::TimeLimit)
+    } else {
+        None
     }
 }
 

@@ -43,17 +43,17 @@ impl<T: Real> HoopCrossing<T> {
         self.has_been_above = self.has_been_above | rises;
     }
 
-    /// Updates the crossings after a step in contact, in the lanes of `stepped`.
+    /// Updates the crossings after a step in contact to `after`, in the lanes of `stepped`; `was_below` tells where
+    /// the centre was below the plane of the hoop.
     #[inline(always)]
     pub(crate) fn after_step(
         &mut self,
         params: &ModelParams<T>,
-        before: &BallState<T>,
+        was_below: T::Mask,
         after: &BallState<T>,
         stepped: T::Mask,
     ) {
-        let rises =
-            before.position_m.z.is_negative() & params.zero().le(after.position_m.z) & stepped;
+        let rises = was_below & params.zero().le(after.position_m.z) & stepped;
         let inside = after
             .axis_distance_squared()
             .lt(params.ring.radius.squared());

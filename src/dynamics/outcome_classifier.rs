@@ -144,11 +144,13 @@ impl Observer for OutcomeClassifier {
     }
 
     fn step(&mut self, _t: f64, _dt: f64, states: (&BallState, &BallState), _impulses: Impulses) {
-        let (before, after) = states;
-        let p = after.position_m;
-        self.apex_m = self.apex_m.max(p.z);
-        if before.position_m.z > 0.0 && p.z <= 0.0 {
-            self.record_entry((p.x, p.y), after.velocity_m_s);
+        let [from, to] = [states.0.position_m, states.1.position_m];
+        self.apex_m = self.apex_m.max(to.z);
+        if from.z > 0.0 && to.z <= 0.0 {
+            // Along the chord: at its end the ball may rise again.
+            let chord = to - from;
+            let crossing = from + chord * (from.z / (from.z - to.z));
+            self.record_entry((crossing.x, crossing.y), chord);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The interface to the dynamics: physics, integrator and releases in, outcomes out.
 
 use super::batch::{self, BatchWorkspace, InstructionSet};
+use super::contact::oscillator::Oscillator;
 use super::end_rules::ShotLimits;
 use super::flight::FlightEvents;
 use super::integrators::event_driven;
@@ -19,10 +20,12 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
-    /// Closed-form flight, and contacts in RK4 steps that end on the events of friction.
+    /// Closed-form flight, and contacts in steps that end on the events of friction.
     EventDriven {
-        /// RK4 steps per head-on contact time, 1 or more. More is finer; the default is 8.
+        /// Steps per head-on contact time, 1 or more. More is finer; the default is 5.
         steps_per_contact: u32,
+        /// The numbers in contacts with one solid. Flights are always in double precision.
+        precision: Precision,
     },
     /// The paper's variable-step RK4 with friction by the sliding law alone.
     PaperRk4 {
@@ -35,14 +38,32 @@ pub enum Integrator {
 
 impl Integrator {
     /// The default integrator with its default step.
-    pub const EVENT_DRIVEN: Self = Self::EventDriven {
-        steps_per_contact: 8,
-    };
+    pub const EVENT_DRIVEN: Self = Self::event_driven(5);
     /// The paper's method with the paper's steps.
     pub const PAPER_RK4: Self = Self::PaperRk4 {
         dt_max_s: 0.015,
         dt_min_s: 0.0005,
     };
+
+    /// The default integrator with another number of steps.
+    #[must_use]
+    pub const fn event_driven(steps_per_contact: u32) -> Self {
+        Self::EventDriven {
+            steps_per_contact,
+            precision: Precision::Automatic,
+        }
+    }
+
+    /// Whether contacts are computed in single precision.
+    fn is_single_precision(self, physics: &Physics) -> bool {
+        match self {
+            Self::EventDriven {
+                steps_per_contact,
+                precision: Precision::Automatic,
+            } => steps_per_contact <= MAX_SINGLE_STEPS && suits_single_precision(physics),
+            _ => false,
+        }
+    }
 
     /// # Errors
     /// Zero steps per contact, a shortest step below 1e-9 s, a longest step below the shortest, or a step that
@@ -58,6 +79,7 @@ impl Integrator {
         match self {
             Self::EventDriven {
                 steps_per_contact: 0,
+                ..
             } => refuse("steps_per_contact", 0.0, "1 or more"),
             Self::EventDriven { .. } => Ok(()),
             Self::PaperRk4 { dt_max_s, dt_min_s } => {
@@ -73,13 +95,47 @@ impl Integrator {
     }
 }
 
+/// The numbers in which contacts are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Precision {
+    /// Single precision where that gives the same shares of made shots: for at most 16 steps per contact and a
+    /// ball like one in play. Double precision elsewhere.
+    #[serde(rename = "auto")]
+    Automatic,
+    /// Double precision.
+    #[serde(rename = "f64")]
+    Double,
+}
+
+/// More steps than this are taken for accuracy, so they are in double precision.
+const MAX_SINGLE_STEPS: u32 = 16;
+
+/// Whether rounding to single precision stays below the error of the steps: for a ball and a ring of about the size
+/// of those in play, and a bounce that is neither a hundred times shorter nor longer, nor nearly without
+/// rebound or loss.
+fn suits_single_precision(physics: &Physics) -> bool {
+    (0.05..=0.5).contains(&physics.ball_radius_m)
+        && (0.1..=1.0).contains(&physics.ring_radius_m)
+        && (0.001..=0.1).contains(&physics.contact_time_s())
+        && (0.2..=0.99).contains(&physics.restitution())
+        && (0.1..=100.0).contains(&physics.gravity_m_s2)
+}
+
+/// Steps on the board and on the ring, as a share of the steps per contact: on the flat board larger steps are
+/// as good.
+const STEPS_ON: [f64; SolidId::COUNT] = [0.7, 1.0];
+/// The same in a double contact.
+const DOUBLE_STEPS: f64 = 1.6;
+
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
 /// steps; some constants that are far from any ball would take steps without end.
 fn max_steps(integrator: Integrator) -> u32 {
     const STEPS: u32 = 20_000;
-    const AT_STEPS_PER_CONTACT: u32 = 8;
+    const AT_STEPS_PER_CONTACT: u32 = 5;
     match integrator {
-        Integrator::EventDriven { steps_per_contact } => {
+        Integrator::EventDriven {
+            steps_per_contact, ..
+        } => {
             let factor = steps_per_contact.div_ceil(AT_STEPS_PER_CONTACT).max(1);
             STEPS.saturating_mul(factor)
         }
@@ -185,7 +241,9 @@ impl Simulator {
         }
         integrator.check()?;
         let steps = match integrator {
-            Integrator::EventDriven { steps_per_contact } => f64::from(steps_per_contact),
+            Integrator::EventDriven {
+                steps_per_contact, ..
+            } => f64::from(steps_per_contact),
             Integrator::PaperRk4 { .. } => 1.0,
         };
         Ok(Self {
@@ -193,7 +251,9 @@ impl Simulator {
             integrator,
             params: ModelParams::new(physics),
             limits: ShotLimits {
-                longest_step_s: physics.contact_time_s() / steps,
+                longest_step_s: physics.contact_time_s() / (steps * DOUBLE_STEPS),
+                single_precision: integrator.is_single_precision(physics),
+                oscillators: STEPS_ON.map(|share| Oscillator::new(physics, steps * share)),
                 time_limit_s: physics.time_limit_s,
                 lodged_after_s: physics.lodged_after_s,
                 max_steps: max_steps(integrator),

@@ -63,7 +63,7 @@ pub struct Trace {
     pub outcome: Outcome,
     /// Release, touches, ends of contacts, and the end, in order.
     pub events: Vec<Event>,
-    /// The trajectory in order of time: evenly spaced in flight, and every step in contact.
+    /// The trajectory in order of time: evenly spaced in flight, and at least every millisecond in contact.
     pub samples: Vec<Sample>,
 }
 
@@ -77,6 +77,23 @@ pub(crate) struct Recorder {
     open: [Option<OpenContact>; SolidId::COUNT],
     /// The last known state: its time, the state, and the time of flight since.
     last: (f64, BallState, f64),
+}
+
+/// Longest time between two samples in contact, s.
+const CONTACT_INTERVAL_S: f64 = 1e-3;
+
+/// The state at a share of a step: the cubic with the positions and velocities of both ends. The spin changes
+/// evenly.
+fn within_step((from, to): (&BallState, &BallState), dt: f64, share: f64) -> BallState {
+    let (v_0, v_1) = (from.velocity_m_s, to.velocity_m_s);
+    let mean = (to.position_m - from.position_m) / dt.max(f64::MIN_POSITIVE);
+    let curve = mean * 3.0 - v_0 * 2.0 - v_1;
+    let cubic = v_0 + v_1 - mean * 2.0;
+    BallState {
+        position_m: from.position_m + (v_0 + (curve + cubic * share) * share) * (share * dt),
+        velocity_m_s: v_0 + (curve * 2.0 + cubic * (3.0 * share)) * share,
+        spin_rad_s: from.spin_rad_s + (to.spin_rad_s - from.spin_rad_s) * share,
+    }
 }
 
 /// A contact in progress.
@@ -157,7 +174,13 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, t: f64, dt: f64, states: (&BallState, &BallState), impulses: Impulses) {
-        self.sample(t, *states.0);
+        let parts = (dt / CONTACT_INTERVAL_S).ceil().max(1.0);
+        let mut part = 0.0;
+        while part < parts {
+            let share = part / parts;
+            self.sample(t + share * dt, within_step(states, dt, share));
+            part += 1.0;
+        }
         for (contact, impulse) in self.open.iter_mut().zip(impulses) {
             if let Some(contact) = contact {
                 contact.impulse = contact.impulse + impulse;

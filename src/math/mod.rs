@@ -5,6 +5,7 @@ pub mod normal_distribution;
 mod operator_macro;
 pub(crate) mod real;
 pub(crate) mod simd;
+pub(crate) mod single_precision;
 pub mod sobol;
 pub(crate) mod unrolled_simd;
 pub mod vector;

@@ -1,4 +1,4 @@
-//! The number type of the equations: one `f64`, or several in SIMD lanes.
+//! The number type of the equations: one `f64` or `f32`, or several in SIMD lanes.
 //!
 //! The equations of motion are written once, generic over [`Real`]. With `f64` they are the readable
 //! scalar form. With a [`SimdReal`] the same operations run on several shots at once. The trait has only
@@ -105,15 +105,50 @@ pub trait Real:
 }
 
 /// One bit for each lane; lane `i` is bit `i`.
-pub(crate) type LaneBits = u16;
+pub(crate) type LaneBits = u32;
+
+/// Most lanes of `f64`, and of any number type.
+pub(crate) const MAX_F64_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = LaneBits::BITS as usize;
 
 /// One number for each lane that there can be.
-pub(crate) type LaneArray = [f64; LaneBits::BITS as usize];
+pub(crate) type LaneArray = [f64; MAX_F64_LANES];
+
+/// What a lane holds: `f64` or `f32`.
+pub(crate) trait LaneElement: Copy + Default {
+    /// Rounded to the nearest.
+    fn from_f64(value: f64) -> Self;
+    fn to_f64(self) -> f64;
+}
+
+impl LaneElement for f64 {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+impl LaneElement for f32 {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value as Self
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
 
 /// Numbers in the lanes of a vector instruction set.
 pub(crate) trait SimdReal: Real {
     /// The instruction set.
     type Simd: Simd;
+    /// What a lane holds.
+    type Element: LaneElement;
 
     /// The number of lanes.
     const LANES: usize;
@@ -123,13 +158,31 @@ pub(crate) trait SimdReal: Real {
     /// `value` in every lane.
     fn broadcast(simd: Self::Simd, value: f64) -> Self;
     /// The first [`SimdReal::LANES`] numbers of `values`.
-    fn load(simd: Self::Simd, values: &[f64]) -> Self;
+    fn load(simd: Self::Simd, values: &[Self::Element]) -> Self;
     /// Writes the first [`SimdReal::LANES`] numbers of `values`.
-    fn store(self, values: &mut [f64]);
+    fn store(self, values: &mut [Self::Element]);
     /// The mask with the given bits.
     fn mask_from_bits(simd: Self::Simd, bits: LaneBits) -> Self::Mask;
     /// The bits of a mask.
     fn mask_to_bits(mask: Self::Mask) -> LaneBits;
+}
+
+/// One number, for a single shot.
+pub(crate) trait ScalarReal: Real<Mask = bool> {
+    /// Rounded to the nearest.
+    fn from_f64(value: f64) -> Self;
+    fn to_f64(self) -> f64;
+}
+
+impl ScalarReal for f64 {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
 }
 
 impl Mask for bool {

@@ -63,6 +63,7 @@ impl<T: Real> Real for Unrolled<T> {
 
 impl<T: SimdReal> SimdReal for Unrolled<T> {
     type Simd = T::Simd;
+    type Element = T::Element;
 
     const LANES: usize = 2 * T::LANES;
 
@@ -71,11 +72,11 @@ impl<T: SimdReal> SimdReal for Unrolled<T> {
         Self(T::broadcast(simd, value), T::broadcast(simd, value))
     }
     #[inline(always)]
-    fn load(simd: T::Simd, values: &[f64]) -> Self {
+    fn load(simd: T::Simd, values: &[T::Element]) -> Self {
         Self(T::load(simd, values), T::load(simd, &values[T::LANES..]))
     }
     #[inline(always)]
-    fn store(self, values: &mut [f64]) {
+    fn store(self, values: &mut [T::Element]) {
         self.0.store(values);
         self.1.store(&mut values[T::LANES..]);
     }
@@ -124,8 +125,11 @@ mod tests {
         for bits in [0, 1, 0x8001, 0x00ff, 0xff00, Wide::<S>::ALL, less] {
             let mask = Wide::<S>::mask_from_bits(simd, bits);
             assert_eq!(Wide::<S>::mask_to_bits(mask), bits);
-            assert_eq!(Wide::<S>::mask_to_bits(!mask), !bits);
-            assert_eq!((mask.any(), mask.all()), (bits != 0, bits == u16::MAX));
+            assert_eq!(Wide::<S>::mask_to_bits(!mask), Wide::<S>::ALL & !bits);
+            assert_eq!(
+                (mask.any(), mask.all()),
+                (bits != 0, bits == Wide::<S>::ALL)
+            );
         }
         assert_eq!(
             less.count_ones() as usize,

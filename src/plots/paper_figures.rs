@@ -17,6 +17,8 @@ const INTERVAL_S: f64 = 0.005;
 /// Steps of the swirl per head-on contact time: more than for a shot, because the ball stays in contact for
 /// several turns.
 const SWIRL_STEPS: u32 = 64;
+/// Downward speed that ends the swirl of Fig. 11, m/s. Without any disturbance it would go on.
+const SWIRL_DISTURBANCE_M_S: f64 = 1e-6;
 /// Tilt delta of the swirl in Fig. 11, rad.
 const SWIRL_DELTA_RAD: f64 = 87.5 * DEGREE_RAD;
 
@@ -151,15 +153,13 @@ fn swirl_start(physics: &Physics, delta_rad: f64) -> BallState {
     let speed_m_s = -(physics.gravity_m_s2 * (sin / cos) * circle_m).sqrt();
     BallState {
         position_m: Vec3::new(0.0, circle_m, lever_m * cos),
-        velocity_m_s: Vec3::new(speed_m_s, 0.0, 0.0),
+        velocity_m_s: Vec3::new(speed_m_s, 0.0, -SWIRL_DISTURBANCE_M_S),
         spin_rad_s: Vec3::new(0.0, 0.0, speed_m_s / (lever_m * sin)),
     }
 }
 
 fn draw_swirl(physics: &Physics) -> Result<Plot, FigureError> {
-    let integrator = Integrator::EventDriven {
-        steps_per_contact: SWIRL_STEPS,
-    };
+    let integrator = Integrator::event_driven(SWIRL_STEPS);
     let simulator = Simulator::with_integrator(physics, integrator)?;
     let trace = simulator.trace_state(swirl_start(physics, SWIRL_DELTA_RAD), INTERVAL_S)?;
     let path = ShotPath {

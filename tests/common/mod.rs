@@ -116,7 +116,7 @@ pub fn states(releases: &[Release]) -> Vec<BallState> {
 }
 
 pub fn event_driven(physics: &Physics, steps_per_contact: u32) -> Simulator {
-    Simulator::with_integrator(physics, Integrator::EventDriven { steps_per_contact }).unwrap()
+    Simulator::with_integrator(physics, Integrator::event_driven(steps_per_contact)).unwrap()
 }
 
 pub fn paper_rk4(physics: &Physics, dt_max_s: f64, dt_min_s: f64) -> Simulator {

@@ -120,9 +120,7 @@ fn contract_simulate_batch_names_the_first_release_that_is_not_finite() {
 #[test]
 fn contract_integrators_that_cannot_step_are_refused() {
     let paper = |dt_max_s, dt_min_s| Integrator::PaperRk4 { dt_max_s, dt_min_s };
-    let no_steps = Integrator::EventDriven {
-        steps_per_contact: 0,
-    };
+    let no_steps = Integrator::event_driven(0);
     for (integrator, wrong) in [
         (no_steps, "steps_per_contact"),
         (paper(0.015, 0.0), "dt_min"),

@@ -51,9 +51,7 @@ fn contract_all_settings_out_of_range_are_reported_at_once() {
         settings.shooter.dispersion.c20_rad = -0.1;
         settings.nominal.speed_m_s = Some(f64::INFINITY);
         settings.physics.gravity_m_s2 = 0.0;
-        settings.integrator = Integrator::EventDriven {
-            steps_per_contact: 0,
-        };
+        settings.integrator = Integrator::event_driven(0);
         settings.grid.pitch = 1;
         settings.search.standard_error = Some(0.0);
         settings.search.choice = SearchChoice::only(&[NominalVariable::Polar]);

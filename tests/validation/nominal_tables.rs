@@ -82,10 +82,10 @@ fn spread(errors: &[f64]) -> [f64; 3] {
 fn val_table_agrees_with_sobol_for_narrow_and_wide_shooters_in_front_and_at_the_side() {
     // The table's rms error is at most 0.001 (`campaign_table` measures it on 72 windows; the 0.0004 of the
     // Sobol reference is included). For twelve windows, 1.6 times that is exceeded by 1 of 1000 choices of
-    // windows, and three times that by a single window for 1 of 30 choices.
+    // windows, and four times that by a single window for 1 of 1300 choices.
     let [bias, rms, worst] = spread(&table_errors(1, grid(24, 16, 16, 6)));
     assert!(
-        bias.abs() < 0.001 && rms < 0.0016 && worst < 0.003,
+        bias.abs() < 0.001 && rms < 0.0016 && worst < 0.004,
         "{bias} {rms} {worst}"
     );
 }

@@ -2,11 +2,11 @@
 
 use super::lane_block::LaneBlock;
 use super::workspace::{BatchWorkspace, Phase};
-use crate::dynamics::end_rules::{ShotEndFlags, ShotLimits};
+use crate::dynamics::end_rules::{ShotLimits, first_ending};
 use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS};
 use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
-use crate::math::simd::F64x8;
+use crate::math::simd::{F32x16, F64x8};
 use crate::math::unrolled_simd::Unrolled;
 use crate::model::constants_per_ball_mass::ModelParams;
 use fearless_simd::Simd;
@@ -27,9 +27,13 @@ pub(super) struct Batch<'a, S: Simd, const WIDE: bool> {
 pub(super) type Narrow<S> = F64x8<S>;
 /// Sixteen lanes.
 pub(super) type Wide<S> = Unrolled<F64x8<S>>;
+/// Sixteen lanes in single precision.
+pub(super) type NarrowSingle<S> = F32x16<S>;
+/// Thirty-two lanes in single precision.
+pub(super) type WideSingle<S> = Unrolled<F32x16<S>>;
 
 impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
-    /// The parameters in every lane.
+    /// The parameters in every lane, as near as the lanes can hold them.
     #[inline(always)]
     pub(super) fn lane_params<T: SimdReal<Simd = S>>(&self) -> ModelParams<T> {
         self.params.map(
@@ -58,7 +62,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     pub(super) fn refill<T: SimdReal<Simd = S>>(&mut self, block: &mut LaneBlock, phase: Phase) {
         let free = T::ALL & !block.occupied();
         let (slots, queue) = self.workspace.slots_and_queue(phase);
-        block.fill(free, slots, || queue.pop());
+        block.fill(free, self.params, slots, || queue.pop());
         block.load_friction_of(free, slots);
     }
 
@@ -75,7 +79,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     /// Records the end of a shot in contact: by a rule, or given up if none of them holds.
     #[inline(always)]
     pub(super) fn finish_shot_in_contact(&mut self, slot: u32, end: [bool; 3], made: bool) {
-        let ending = ShotEndFlags::first_ending(end).unwrap_or(Ending::Unresolved);
+        let ending = first_ending(end).unwrap_or(Ending::Unresolved);
         let made = ending == Ending::Fell && made;
         self.workspace.finish(slot, ending, made);
     }

@@ -5,7 +5,6 @@ use super::lane_block::{LaneBlock, bit, lanes_in};
 use super::workspace::Phase;
 use crate::dynamics::contact::double;
 use crate::dynamics::end_rules::is_lodged;
-use crate::dynamics::integrators::event_driven::ContactState;
 use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
 use crate::model::SolidId;
@@ -19,7 +18,7 @@ use fearless_simd::Simd;
 pub(super) fn board_and_ring<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
 where
     S: Simd,
-    T: SimdReal<Simd = S>,
+    T: SimdReal<Simd = S, Element = f64>,
 {
     batch.simd.vectorize(
         #[inline(always)]
@@ -29,7 +28,7 @@ where
 
 impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     #[inline(always)]
-    fn double_contact<T: SimdReal<Simd = S>>(&mut self) {
+    fn double_contact<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
         let solids = (&params.board, &params.ring);
         let longest = params.splat(self.limits.longest_step_s);
@@ -90,9 +89,9 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 } else if bit(given_up, lane) {
                     self.workspace.finish(slot, Ending::Unresolved, false);
                 } else {
-                    let friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
+                    shot.friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
                     let separated = separated.map(|separated| bit(separated, lane));
-                    shot.contact = ContactState::after_double(separated, friction, 0.0);
+                    shot.after_double(self.params, separated);
                     self.workspace.enqueue(slot);
                 }
             }
@@ -105,10 +104,8 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             let slot = block.slot(lane);
             let shot = &mut self.workspace.slots[slot as usize];
             block.remove(lane, shot);
-            shot.contact = ContactState::BoardAndRing {
-                friction: SolidId::ALL.map(|solid| block.friction(solid, lane)),
-                rolling_time_s: block.rolling_time_s(lane),
-            };
+            shot.friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
+            shot.rolling_time_s = block.rolling_time_s(lane);
             self.workspace.enqueue(slot);
         }
     }

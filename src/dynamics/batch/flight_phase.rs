@@ -6,10 +6,11 @@ use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
 use crate::dynamics::flight::FlightEvents;
-use crate::dynamics::integrators::event_driven::{ContactState, MAX_SEGMENTS};
+use crate::dynamics::integrators::event_driven::MAX_SEGMENTS;
 use crate::dynamics::outcome::Ending;
 use crate::math::real::{LaneBits, SimdReal};
 use crate::model::SolidId;
+use crate::model::solids::Solid;
 use fearless_simd::Simd;
 
 /// Flies every shot that waits for flight, to its end or its next touch.
@@ -19,7 +20,7 @@ use fearless_simd::Simd;
 pub(super) fn fly<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
 where
     S: Simd,
-    T: SimdReal<Simd = S>,
+    T: SimdReal<Simd = S, Element = f64>,
 {
     batch.simd.vectorize(
         #[inline(always)]
@@ -29,7 +30,7 @@ where
 
 impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     #[inline(always)]
-    fn fly_all<T: SimdReal<Simd = S>>(&mut self) {
+    fn fly_all<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
         let queue = self.workspace.take_flights();
         let mut block = LaneBlock::new();
@@ -37,8 +38,10 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             // Lanes without a shot repeat the last one.
             let last = slots[slots.len() - 1];
             let mut next = slots.iter().copied().chain(std::iter::repeat(last));
-            block.fill(T::ALL, &self.workspace.slots, || next.next());
+            let shots_in_progress = &mut self.workspace.slots;
+            block.fill(T::ALL, self.params, shots_in_progress, || next.next());
             let mut shots = block.load::<T>(self.simd);
+            block.leave_ring(self.simd, params, &mut shots.state);
             let start = shots.state;
             let flight = FlightEvents::new(params, &start);
             let dt = flight.first_end();
@@ -58,6 +61,11 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
             };
             block.store(&shots);
+            let [_, on_ring] = end.touches;
+            if on_ring & !end.needs_scalar != 0 {
+                let motion = params.ring.to_contact(&params.ball, &shots.state);
+                block.store_ring_motion(&motion);
+            }
             let real_lanes = T::ALL >> (T::LANES - slots.len());
             self.finish_flights(&mut block, slots, real_lanes, &end);
         }
@@ -77,14 +85,17 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         let mut remaining = real_lanes;
         for lane in lanes_in(real_lanes) {
             let shot = &mut self.workspace.slots[slots[lane] as usize];
-            shot.contact = ContactState::Free;
             if bit(end.needs_scalar, lane) || shot.segments >= MAX_SEGMENTS {
                 remaining &= !(1 << lane);
                 self.run_scalar(slots[lane]);
                 continue;
             }
             shot.segments += 1;
-            block.remove(lane, shot);
+            if bit(end.touches[SolidId::Ring.index()], lane) {
+                block.remove_on_ring(lane, shot);
+            } else {
+                block.remove(lane, shot);
+            }
         }
         let new_friction = FrictionState::new(self.params);
         for solid in [SolidId::Ring, SolidId::Board] {
@@ -92,7 +103,11 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             for lane in lanes_in(remaining & touches) {
                 let shot = &mut self.workspace.slots[slots[lane] as usize];
                 shot.contacts.push(solid);
-                shot.contact = ContactState::Single(solid, new_friction);
+                if solid == SolidId::Board {
+                    shot.motion = self.params.board.to_contact(&self.params.ball, &shot.state);
+                }
+                shot.friction[solid.index()] = new_friction;
+                shot.begin_single_contact(solid);
                 self.workspace
                     .queue_mut(Phase::Single(solid))
                     .push(slots[lane]);

@@ -1,21 +1,25 @@
-//! Eight or sixteen shots side by side, one in each lane.
+//! Eight or sixteen shots in flight or on two solids side by side, one in each lane.
 
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::ShotEndFlags;
 use crate::dynamics::hoop_crossing::HoopCrossing;
-use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
-use crate::math::real::{LaneArray, LaneBits, SimdReal};
+use crate::dynamics::integrators::event_driven::ShotProgress;
+use crate::math::real::{LaneArray, LaneBits, MAX_F64_LANES, SimdReal};
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
+use crate::model::solids::{CONTACT_VALUES, ContactMotion, Solid};
 use crate::model::{BallState, SolidId};
+use std::array::from_fn;
 
-const ZEROS: LaneArray = [0.0; LaneBits::BITS as usize];
+const ZEROS: LaneArray = [0.0; MAX_F64_LANES];
 
 /// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of the
 /// last one, and steps on without harm.
 pub(super) struct LaneBlock {
     /// The nine state variables.
     state: [LaneArray; 9],
+    /// The values of [`ContactMotion`] of a ball that comes from the ring or has reached it.
+    ring_motion: [LaneArray; CONTACT_VALUES],
     times_s: LaneArray,
     /// [`FrictionState::slip_tolerance`] of each solid.
     slip_tolerances: [LaneArray; SolidId::COUNT],
@@ -33,6 +37,8 @@ struct LaneFlags {
     rose_through: LaneBits,
     rolling: [LaneBits; SolidId::COUNT],
     rolling_failed: [LaneBits; SolidId::COUNT],
+    /// The ball comes from the ring: `ring_motion` holds.
+    from_ring: LaneBits,
     /// The lane has a shot.
     occupied: LaneBits,
 }
@@ -64,7 +70,7 @@ pub(super) fn bit(bits: LaneBits, lane: usize) -> bool {
 
 /// Sets the bit of one lane.
 #[inline(always)]
-fn set_bit(bits: &mut LaneBits, lane: usize, value: bool) {
+pub(super) fn set_bit(bits: &mut LaneBits, lane: usize, value: bool) {
     *bits = *bits & !(1 << lane) | LaneBits::from(value) << lane;
 }
 
@@ -72,6 +78,7 @@ impl LaneBlock {
     pub(super) fn new() -> Self {
         Self {
             state: [ZEROS; 9],
+            ring_motion: [ZEROS; CONTACT_VALUES],
             times_s: ZEROS,
             slip_tolerances: [ZEROS; SolidId::COUNT],
             rolling_times_s: ZEROS,
@@ -92,7 +99,8 @@ impl LaneBlock {
     pub(super) fn fill(
         &mut self,
         lanes: LaneBits,
-        slots: &[ShotProgress],
+        params: &ModelParams,
+        slots: &mut [ShotProgress],
         mut next: impl FnMut() -> Option<u32>,
     ) {
         let mut flags = self.flags;
@@ -100,7 +108,17 @@ impl LaneBlock {
             let Some(slot) = next() else {
                 break;
             };
-            self.insert(lane, slot, &slots[slot as usize], &mut flags);
+            let shot = &mut slots[slot as usize];
+            let from_ring = shot.frame == Some(SolidId::Ring);
+            set_bit(&mut flags.from_ring, lane, from_ring);
+            if from_ring {
+                for (row, value) in self.ring_motion.iter_mut().zip(shot.motion.to_array()) {
+                    row[lane] = value;
+                }
+            } else {
+                shot.update_state(params);
+            }
+            self.insert(lane, slot, shot, &mut flags);
         }
         self.flags = flags;
     }
@@ -113,14 +131,10 @@ impl LaneBlock {
 
     #[inline(always)]
     fn insert(&mut self, lane: usize, slot: u32, shot: &ShotProgress, flags: &mut LaneFlags) {
-        let BallState {
-            position_m: p,
-            velocity_m_s: v,
-            spin_rad_s: w,
-        } = shot.state;
-        let values = [p.x, p.y, p.z, v.x, v.y, v.z, w.x, w.y, w.z];
-        for (row, value) in self.state.iter_mut().zip(values) {
-            row[lane] = value;
+        if shot.frame.is_none() {
+            for (row, value) in self.state.iter_mut().zip(shot.state.to_array()) {
+                row[lane] = value;
+            }
         }
         self.times_s[lane] = shot.time_s;
         self.slots[lane] = slot;
@@ -139,28 +153,13 @@ impl LaneBlock {
     pub(super) fn load_friction_of(&mut self, lanes: LaneBits, slots: &[ShotProgress]) {
         let mut flags = self.flags;
         for lane in lanes_in(lanes & flags.occupied) {
-            let mut set = |solid: SolidId, friction: &FrictionState| {
-                set_bit(&mut flags.rolling[solid.index()], lane, friction.rolling);
-                set_bit(
-                    &mut flags.rolling_failed[solid.index()],
-                    lane,
-                    friction.rolling_failed,
-                );
-                self.slip_tolerances[solid.index()][lane] = friction.slip_tolerance;
-            };
-            match &slots[self.slots[lane] as usize].contact {
-                ContactState::Free => {}
-                ContactState::Single(solid, friction) => set(*solid, friction),
-                ContactState::BoardAndRing {
-                    friction,
-                    rolling_time_s,
-                } => {
-                    for solid in SolidId::ALL {
-                        set(solid, &friction[solid.index()]);
-                    }
-                    self.rolling_times_s[lane] = *rolling_time_s;
-                }
+            let shot = &slots[self.slots[lane] as usize];
+            for (i, friction) in shot.friction.iter().enumerate() {
+                set_bit(&mut flags.rolling[i], lane, friction.rolling);
+                set_bit(&mut flags.rolling_failed[i], lane, friction.rolling_failed);
+                self.slip_tolerances[i][lane] = friction.slip_tolerance;
             }
+            self.rolling_times_s[lane] = shot.rolling_time_s;
         }
         self.flags = flags;
     }
@@ -192,6 +191,22 @@ impl LaneBlock {
             velocity_m_s: vector(3),
             spin_rad_s: vector(6),
         };
+        shot.frame = None;
+        self.remove_without_state(lane, shot);
+    }
+
+    /// The same for a ball that has reached the ring: with its motion in the frame of the contact.
+    #[inline(always)]
+    pub(super) fn remove_on_ring(&mut self, lane: usize, shot: &mut ShotProgress) {
+        shot.motion = ContactMotion::from_array(from_fn(
+            #[inline(always)]
+            |i| self.ring_motion[i][lane],
+        ));
+        self.remove_without_state(lane, shot);
+    }
+
+    #[inline(always)]
+    fn remove_without_state(&mut self, lane: usize, shot: &mut ShotProgress) {
         shot.time_s = self.times_s[lane];
         shot.steps = self.steps[lane];
         shot.crossing = HoopCrossing {
@@ -216,8 +231,40 @@ impl LaneBlock {
         self.rolling_times_s[lane]
     }
 
+    /// The state of balls that come from the ring, from the frame of that contact.
     #[inline(always)]
-    pub(super) fn load<T: SimdReal>(&self, simd: T::Simd) -> LaneShots<T> {
+    pub(super) fn leave_ring<T: SimdReal<Element = f64>>(
+        &self,
+        simd: T::Simd,
+        params: &ModelParams<T>,
+        state: &mut BallState<T>,
+    ) {
+        if self.flags.from_ring & self.flags.occupied != 0 {
+            let motion = ContactMotion::from_array(from_fn(
+                #[inline(always)]
+                |i| T::load(simd, &self.ring_motion[i]),
+            ));
+            let from_ring = T::mask_from_bits(simd, self.flags.from_ring);
+            *state = params
+                .ring
+                .to_space(&params.ball, &motion)
+                .select(from_ring, *state);
+        }
+    }
+
+    /// Stores the motion of balls that have reached the ring.
+    #[inline(always)]
+    pub(super) fn store_ring_motion<T: SimdReal<Element = f64>>(
+        &mut self,
+        motion: &ContactMotion<T>,
+    ) {
+        for (row, value) in self.ring_motion.iter_mut().zip(motion.to_array()) {
+            value.store(row);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn load<T: SimdReal<Element = f64>>(&self, simd: T::Simd) -> LaneShots<T> {
         let row = |i: usize| T::load(simd, &self.state[i]);
         let vector = |i: usize| Vec3::new(row(i), row(i + 1), row(i + 2));
         LaneShots {
@@ -235,7 +282,7 @@ impl LaneBlock {
     }
 
     #[inline(always)]
-    pub(super) fn store<T: SimdReal>(&mut self, shots: &LaneShots<T>) {
+    pub(super) fn store<T: SimdReal<Element = f64>>(&mut self, shots: &LaneShots<T>) {
         let BallState {
             position_m: p,
             velocity_m_s: v,
@@ -251,7 +298,7 @@ impl LaneBlock {
     }
 
     #[inline(always)]
-    pub(super) fn load_friction<T: SimdReal>(
+    pub(super) fn load_friction<T: SimdReal<Element = f64>>(
         &self,
         simd: T::Simd,
         solid: SolidId,
@@ -264,7 +311,7 @@ impl LaneBlock {
     }
 
     #[inline(always)]
-    pub(super) fn store_friction<T: SimdReal>(
+    pub(super) fn store_friction<T: SimdReal<Element = f64>>(
         &mut self,
         solid: SolidId,
         friction: &FrictionState<T>,
@@ -277,17 +324,17 @@ impl LaneBlock {
     }
 
     #[inline(always)]
-    pub(super) fn load_rolling_times<T: SimdReal>(&self, simd: T::Simd) -> T {
+    pub(super) fn load_rolling_times<T: SimdReal<Element = f64>>(&self, simd: T::Simd) -> T {
         T::load(simd, &self.rolling_times_s)
     }
 
     #[inline(always)]
-    pub(super) fn store_rolling_times<T: SimdReal>(&mut self, rolling_times_s: T) {
+    pub(super) fn store_rolling_times<T: SimdReal<Element = f64>>(&mut self, rolling_times_s: T) {
         rolling_times_s.store(&mut self.rolling_times_s);
     }
 }
 
-impl<T: SimdReal> LaneShots<T> {
+impl<T: SimdReal<Element = f64>> LaneShots<T> {
     /// Updates time and hoop crossing after a step of `dt` from `before`; returns the shots that end.
     #[inline(always)]
     pub(super) fn after_step(
@@ -298,8 +345,10 @@ impl<T: SimdReal> LaneShots<T> {
         time_limit_s: f64,
     ) -> ShotEndFlags<T> {
         self.time_s = self.time_s + dt;
+        let was_below = before.position_m.z.is_negative();
         self.crossing
-            .after_step(params, before, &self.state, dt.is_positive());
-        ShotEndFlags::new(params, &self.state, self.time_s, time_limit_s)
+            .after_step(params, was_below, &self.state, dt.is_positive());
+        let too_late = params.splat(time_limit_s).lt(self.time_s);
+        ShotEndFlags::new(params, &self.state, too_late)
     }
 }

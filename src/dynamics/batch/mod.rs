@@ -2,6 +2,7 @@
 
 mod batch_state;
 mod board_contact_phase;
+mod contact_block;
 mod double_contact_phase;
 mod flight_phase;
 mod instruction_set;

@@ -9,13 +9,14 @@
 //! It is the same generic code as for one shot, with the same operations in the same order. So the verdicts are
 //! the same, bit for bit.
 
-use super::batch_state::{Batch, Narrow, Wide};
+use super::batch_state::{Batch, Narrow, NarrowSingle, Wide, WideSingle};
 use super::board_contact_phase::board_contact;
 use super::double_contact_phase::board_and_ring;
 use super::flight_phase::fly;
 use super::ring_contact_phase::ring_contact;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
+use crate::math::real::SimdReal;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 use fearless_simd::{Level, Simd};
@@ -76,20 +77,24 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         match phase {
             Phase::Flight if WIDE => fly::<S, Wide<S>, WIDE>(self),
             Phase::Flight => fly::<S, Narrow<S>, WIDE>(self),
-            Phase::Single(SolidId::Board) => {
-                if WIDE {
-                    board_contact::<S, Wide<S>, WIDE>(self);
-                }
-                board_contact::<S, Narrow<S>, WIDE>(self);
+            Phase::Single(solid) if !self.limits.single_precision => {
+                on_solid::<S, Narrow<S>, WIDE>(self, solid);
             }
-            Phase::Single(SolidId::Ring) => {
-                if WIDE {
-                    ring_contact::<S, Wide<S>, WIDE>(self);
-                }
-                ring_contact::<S, Narrow<S>, WIDE>(self);
-            }
+            Phase::Single(solid) if WIDE => on_solid::<S, WideSingle<S>, WIDE>(self, solid),
+            Phase::Single(solid) => on_solid::<S, NarrowSingle<S>, WIDE>(self, solid),
             Phase::BoardAndRing => board_and_ring::<S, Narrow<S>, WIDE>(self),
         }
+    }
+}
+
+fn on_solid<S, T, const WIDE: bool>(batch: &mut Batch<'_, S, WIDE>, solid: SolidId)
+where
+    S: Simd,
+    T: SimdReal<Simd = S>,
+{
+    match solid {
+        SolidId::Board => board_contact::<S, T, WIDE>(batch),
+        SolidId::Ring => ring_contact::<S, T, WIDE>(batch),
     }
 }
 

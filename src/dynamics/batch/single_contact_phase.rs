@@ -1,19 +1,36 @@
 //! The contacts of a batch with one solid: the shots of a block step together.
 
-use super::batch_state::{Batch, Narrow};
-use super::lane_block::{LaneBlock, bit, lanes_in};
+use super::batch_state::Batch;
+use super::contact_block::{ContactBlock, ContactShots};
+use super::lane_block::{bit, lanes_in};
 use super::workspace::Phase;
-use crate::dynamics::contact::event_time::time_to_touch;
-use crate::dynamics::contact::single;
-use crate::dynamics::integrators::event_driven::{ContactState, max_acceleration};
-use crate::math::real::SimdReal;
+use crate::dynamics::contact::approach::{TakenStep, has_arrived, passed};
+use crate::dynamics::contact::friction::FrictionState;
+use crate::dynamics::contact::macro_step::Contact;
+use crate::dynamics::end_rules::ShotEndFlags;
+use crate::dynamics::integrators::event_driven::ContactState;
+use crate::dynamics::outcome::Ending;
+use crate::math::real::{LaneBits, LaneElement, SimdReal};
+use crate::model::SolidId;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{Approach, Solid};
+use crate::model::solids::Solid;
 use fearless_simd::Simd;
 
+/// What happened in the lanes of a step.
+struct StepResult {
+    parts: LaneBits,
+    /// On the other solid.
+    arrived: LaneBits,
+    /// No longer in front of the solid.
+    beside: LaneBits,
+    /// The flags of the rules that end a shot.
+    ends: [LaneBits; 3],
+    made: LaneBits,
+    given_up: LaneBits,
+}
+
 impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
-    /// Steps the shots on one solid until they part or touch `other`, or until too few are left to fill
-    /// the lanes.
+    /// Steps the shots on one solid until they part, touch `other` or end.
     #[inline(always)]
     pub(super) fn single_contact<T, A, B>(&mut self, params: &ModelParams<T>, solid: &A, other: &B)
     where
@@ -22,78 +39,125 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         B: Solid<T>,
     {
         let phase = Phase::Single(A::ID);
-        let longest = params.splat(self.limits.longest_step_s);
-        let mut block = LaneBlock::new();
+        let oscillator = &self.limits.oscillators[A::ID.index()].map(
+            #[inline(always)]
+            |value| T::broadcast(self.simd, value),
+        );
+        let contact = Contact {
+            params,
+            solid,
+            oscillator,
+        };
+        let mut block = ContactBlock::<T::Element>::new(A::ID);
         loop {
-            self.refill::<T>(&mut block, phase);
+            let free = T::ALL & !block.occupied();
+            let (slots, queue) = self.workspace.slots_and_queue(phase);
+            let limit = self.limits.time_limit_s;
+            block.fill(free, limit, slots, || queue.pop());
             if block.occupied() == 0 {
                 return;
             }
-            let mut shots = block.load::<T>(self.simd);
-            let before = shots.state;
-            let bound = max_acceleration(params, solid, &before, longest);
-            let approach = other.approach(&params.ball, &before, bound, longest);
-            let needs_scalar = T::mask_to_bits(!solid.faces(&before) | approach.has_arrived());
-            // Half of the lanes fit into a narrower block.
-            let few = block.occupied().count_ones() as usize <= T::LANES / 2
-                && T::LANES > Narrow::<S>::LANES;
-            let suspended = few || self.should_suspend::<T>(&block, phase);
-            let removed = if suspended {
-                block.occupied()
-            } else {
-                needs_scalar
-            };
-            for lane in lanes_in(removed & block.occupied()) {
-                let slot = block.slot(lane);
-                let shot = &mut self.workspace.slots[slot as usize];
-                block.remove(lane, shot);
-                shot.contact = ContactState::Single(A::ID, block.friction(A::ID, lane));
-                if bit(needs_scalar, lane) {
-                    self.run_scalar(slot);
-                } else {
+            if block.occupied() != T::ALL && self.workspace.other_phase_fills(T::LANES, phase) {
+                for lane in lanes_in(block.occupied()) {
+                    let slot = block.slot(lane);
+                    block.remove(lane, &mut self.workspace.slots[slot as usize]);
                     self.workspace.queue_mut(phase).push(slot);
                 }
-            }
-            if suspended {
                 return;
             }
-            let mut friction = block.load_friction::<T>(self.simd, A::ID);
-            let step = single::step(
-                params,
-                solid,
-                &mut shots.state,
-                &mut friction,
-                longest,
-                #[inline(always)]
-                |state, acceleration| time_to_touch(params, &approach, state, acceleration),
-            );
-            let end = shots.after_step(params, &before, step.dt, self.limits.time_limit_s);
-            block.store(&shots);
-            block.store_friction(A::ID, &friction);
             let given_up = block.count_step(self.limits.max_steps);
-            let done = (T::mask_to_bits(step.separated | end.any()) | given_up) & block.occupied();
-            if done == 0 {
-                continue;
-            }
-            let separated = T::mask_to_bits(step.separated);
-            let made = T::mask_to_bits(shots.crossing.is_made(params, &shots.state));
-            let end = end.map(
-                #[inline(always)]
-                |mask| T::mask_to_bits(mask),
-            );
-            for lane in lanes_in(done) {
-                let slot = block.slot(lane);
-                block.remove(lane, &mut self.workspace.slots[slot as usize]);
-                if bit(separated, lane) {
-                    self.workspace.queue_mut(Phase::Flight).push(slot);
-                } else {
-                    self.finish_shot_in_contact(
-                        slot,
-                        end.map(|rule| bit(rule, lane)),
-                        bit(made, lane),
-                    );
-                }
+            let result = step_lanes(&contact, other, &mut block, self.simd, given_up);
+            self.finish_contacts(&mut block, B::ID, &result);
+        }
+    }
+
+    /// Takes the shots whose contact has ended out of their lanes.
+    #[inline(always)]
+    fn finish_contacts<E: LaneElement>(
+        &mut self,
+        block: &mut ContactBlock<E>,
+        other: SolidId,
+        result: &StepResult,
+    ) {
+        let [a, b, c] = result.ends;
+        let ended = a | b | c;
+        let done = (result.parts | result.arrived | result.beside | ended | result.given_up)
+            & block.occupied();
+        for lane in lanes_in(done) {
+            let slot = block.slot(lane);
+            let shot = &mut self.workspace.slots[slot as usize];
+            block.remove(lane, shot);
+            if bit(result.given_up, lane) {
+                self.workspace.finish(slot, Ending::Unresolved, false);
+            } else if bit(ended, lane) {
+                let made = bit(result.made, lane);
+                self.finish_shot_in_contact(slot, result.ends.map(|rule| bit(rule, lane)), made);
+            } else if bit(result.parts, lane) {
+                shot.end_single_contact(ContactState::Free);
+                self.workspace.queue_mut(Phase::Flight).push(slot);
+            } else if bit(result.arrived, lane) {
+                shot.arrive(self.params, other);
+                self.workspace.queue_mut(Phase::BoardAndRing).push(slot);
+            } else {
+                shot.end_single_contact(ContactState::Free);
+                self.workspace.queue_mut(Phase::Flight).push(slot);
             }
         }
+    }
+}
+
+/// Steps every lane.
+#[inline(always)]
+fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
+    contact: &Contact<'_, T, A>,
+    other: &B,
+    block: &mut ContactBlock<T::Element>,
+    simd: T::Simd,
+    given_up: LaneBits,
+) -> StepResult {
+    let (params, solid) = (contact.params, contact.solid);
+    let shots = block.load::<T>(simd);
+    let step = contact.step(&shots.motion, &shots.friction, shots.step_share);
+    let after = solid.to_space(&params.ball, &step.motion);
+    let taken = TakenStep {
+        solid,
+        from: &shots.motion,
+        to: &step.motion,
+        after: &after,
+        dt: step.dt,
+    };
+    let (again, share) = passed(params, other, &taken);
+    let stays = again | T::mask_from_bits(simd, given_up);
+    let mut next = ContactShots {
+        motion: step.motion,
+        friction: step.friction,
+        step_share: params.one(),
+        contact_time_s: shots.contact_time_s + step.dt,
+        crossing: shots.crossing,
+    };
+    let was_below = shots.motion.is_below_hoop();
+    next.crossing.after_step(params, was_below, &after, !stays);
+    let mut counts = T::ALL;
+    if T::mask_to_bits(stays) != 0 {
+        counts = T::mask_to_bits(!stays);
+        let share_again = contact.share_of_longest(share * step.dt);
+        next.motion = shots.motion.select(stays, next.motion);
+        next.friction = FrictionState::select(shots.friction, stays, next.friction);
+        next.step_share = share_again.select(again, next.step_share);
+        next.contact_time_s = shots.contact_time_s.select(stays, next.contact_time_s);
+    }
+    let too_late = block.allowed_times_s::<T>(simd).lt(next.contact_time_s);
+    let ends = ShotEndFlags::new(params, &after, too_late);
+    block.store(&next);
+    StepResult {
+        parts: T::mask_to_bits(step.parts) & counts,
+        arrived: T::mask_to_bits(has_arrived(params, other, &after)) & counts,
+        beside: T::mask_to_bits(!solid.faces(&after)) & counts,
+        ends: ends.map(
+            #[inline(always)]
+            |rule| T::mask_to_bits(rule) & counts,
+        ),
+        made: T::mask_to_bits(next.crossing.is_made(params, &after)),
+        given_up,
     }
 }

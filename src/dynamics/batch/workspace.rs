@@ -9,8 +9,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
 /// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache (some
-/// 150 bytes each).
-const SLOTS: usize = 2048;
+/// 350 bytes each).
+const SLOTS: usize = 1024;
 
 /// Memory for batches. Reuse it: nothing is allocated once it has grown.
 #[derive(Debug, Default)]
@@ -57,8 +57,8 @@ impl Phase {
     fn of(contact: &ContactState) -> Self {
         match contact {
             ContactState::Free => Self::Flight,
-            ContactState::Single(solid, _) => Self::Single(*solid),
-            ContactState::BoardAndRing { .. } => Self::BoardAndRing,
+            ContactState::Single(solid) => Self::Single(*solid),
+            ContactState::BoardAndRing => Self::BoardAndRing,
         }
     }
 }
@@ -118,8 +118,8 @@ impl BatchWorkspace {
     }
 
     /// The shots in progress, and the slots that wait for a phase.
-    pub(super) fn slots_and_queue(&mut self, phase: Phase) -> (&[ShotProgress], &mut Vec<u32>) {
-        (&self.slots, &mut self.queues[phase.index()])
+    pub(super) fn slots_and_queue(&mut self, phase: Phase) -> (&mut [ShotProgress], &mut Vec<u32>) {
+        (&mut self.slots, &mut self.queues[phase.index()])
     }
 
     /// Whether another phase has at least `lanes` shots waiting.
@@ -149,13 +149,7 @@ impl BatchWorkspace {
 
     /// Records the end of a shot.
     pub(super) fn finish(&mut self, slot: u32, ending: Ending, made: bool) {
-        let shot = &self.slots[slot as usize];
-        let verdict = Verdict {
-            made,
-            ending,
-            contacts: shot.contacts,
-            time_s: shot.time_s,
-        };
+        let verdict = self.slots[slot as usize].verdict(ending, made);
         self.record(slot, verdict);
     }
 

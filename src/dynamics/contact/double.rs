@@ -7,7 +7,6 @@ use super::friction::{
     DIRECTION_SLIP_FRACTION, FrictionBalance, FrictionState, slip_tolerance_after,
 };
 use super::normal_force::{FORCE_TOLERANCE_M_S2, NormalForce, has_separated};
-use super::single::SHORTEST_STEP_S;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -50,6 +49,9 @@ pub(crate) struct DoubleContactStep<T: Real> {
 /// Lower bound of the slip tolerance after a step meant to end the slip, m/s. The force of the other
 /// contact turns the slip as it decreases, so each such step leaves about half of it.
 const SLIP_ENDED_M_S: f64 = 1e-3;
+
+/// Shortest step, as a fraction of the longest. (Two sliding contacts can end each other's slip without end.)
+const SHORTEST_STEP: f64 = 2e-4;
 
 /// A linear and an angular acceleration of the ball.
 type Response<T> = (Vec3<T>, Vec3<T>);
@@ -397,7 +399,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
         balance.time_to_change(params, pair.materials[i].friction_coefficient, &forces[i], rolling[i])
     });
     let next_event = end.min(changes[FIRST]).min(changes[SECOND]);
-    let dt = Real::max(next_event.time(), params.splat(SHORTEST_STEP_S));
+    let dt = Real::max(next_event.time(), longest * SHORTEST_STEP);
 
     // 4. The classical RK4 step, in the modes that hold for the whole step.
     let mode = FrictionMode {

@@ -1,10 +1,7 @@
 //! Times until predicted events, compared as fractions.
 
 use crate::math::real::Real;
-use crate::math::vector::Vec3;
-use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::Approach;
 
 /// A step meant to end rolling or the normal force is longer than predicted by this factor. Otherwise the next
 /// step could start just before the event again.
@@ -92,28 +89,10 @@ pub(crate) fn first_root<T: Real>(params: &ModelParams<T>, c0: T, c1: T, c2: T) 
     root.select(exists, EventTime::never(params))
 }
 
-/// Time until a ball touches a solid that it approaches, if that can happen within the step.
-#[inline(always)]
-pub(crate) fn time_to_touch<T: Real>(
-    params: &ModelParams<T>,
-    approach: &impl Approach<T>,
-    state: &BallState<T>,
-    acceleration: Vec3<T>,
-) -> EventTime<T> {
-    let never = EventTime::never(params);
-    match approach.closing_gap(state, acceleration) {
-        Some(gap) => {
-            first_root(params, gap.gap, gap.rate, gap.second_derivative).select(gap.relevant, never)
-        }
-        None => never,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::model::Physics;
-    use crate::model::solids::Solid;
     use proptest::prelude::*;
 
     fn params() -> ModelParams {
@@ -133,32 +112,6 @@ mod tests {
             prop_assert!(close(a.min(b).time(), a.time().min(b.time())));
             prop_assert!(close(never.min(b).time(), b.time()));
             prop_assert!(close(a.at_most(longest).time(), a.time().min(longest)));
-        }
-
-        #[test]
-        fn prop_no_touch_of_the_board_within_a_step_is_missed(
-            gap in 1e-6..1.0, rate in -10.0..10.0, curve in -1e3..1e3, longest in 1e-4..1e-2,
-        ) {
-            let params = params();
-            let root = first_root(&params, gap, rate, curve).time();
-            let mut state = BallState {
-                position_m: Vec3::zeros(),
-                velocity_m_s: Vec3::new(rate, 0.0, 0.0),
-                spin_rad_s: Vec3::zeros(),
-            };
-            state.position_m.x = params.board.touch_x + gap;
-            let gap = state.position_m.x - params.board.touch_x;
-            let approach = params.board.approach(&params.ball, &state, 0.0, longest);
-            let touch = time_to_touch(&params, &approach, &state, Vec3::new(curve, 0.0, 0.0)).time();
-            if root <= longest {
-                prop_assert!((touch - root).abs() <= 1e-9 * root);
-            } else {
-                prop_assert!(touch > longest * (1.0 - 1e-9));
-            }
-            if root < params.ball.never_s {
-                let scale = gap + (rate * root).abs() + (curve * root * root).abs();
-                prop_assert!((gap + rate * root + 0.5 * curve * root * root).abs() < 1e-9 * scale);
-            }
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::event_time::{EventTime, OVERSHOOT, first_root};
 use super::normal_force::NormalForce;
-use crate::math::real::Real;
+use crate::math::real::{Mask, Real};
 use crate::model::constants_per_ball_mass::ModelParams;
 
 /// A slip speed up to this counts as zero, m/s.
-const SLIP_TOLERANCE_M_S: f64 = 1e-9;
+pub(crate) const SLIP_TOLERANCE_M_S: f64 = 1e-9;
 /// A step that is meant to end the slip may leave this fraction of it. Friction's own impulse removes the
 /// rest. (With 0.05 there were more steps and no better agreement.)
 const SLIP_REMAINDER: f64 = 0.2;
@@ -35,6 +35,30 @@ impl<T: Real> FrictionState<T> {
             rolling: no_lanes,
             rolling_failed: no_lanes,
             slip_tolerance: params.splat(SLIP_TOLERANCE_M_S),
+        }
+    }
+}
+
+impl<T: Real> FrictionState<T> {
+    /// `self` where `condition` holds, `other` elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {
+        Self {
+            rolling: Mask::select(self.rolling, condition, other.rolling),
+            rolling_failed: Mask::select(self.rolling_failed, condition, other.rolling_failed),
+            slip_tolerance: self.slip_tolerance.select(condition, other.slip_tolerance),
+        }
+    }
+}
+
+impl<T: Real<Mask = bool>> FrictionState<T> {
+    /// The same in another number type.
+    #[inline(always)]
+    pub(crate) fn map<U: Real<Mask = bool>>(&self, convert: impl Fn(T) -> U) -> FrictionState<U> {
+        FrictionState {
+            rolling: self.rolling,
+            rolling_failed: self.rolling_failed,
+            slip_tolerance: convert(self.slip_tolerance),
         }
     }
 }

@@ -9,12 +9,10 @@ use crate::model::solids::{ContactKinematics, Material};
 pub(crate) const FORCE_TOLERANCE_M_S2: f64 = 0.5;
 /// Compression at which an outgoing ball has left the solid, m.
 const SEPARATED_M: f64 = 1e-7;
-/// The same for a ball faster than [`FAST_M_S`]: the rest of the way takes at most 0.2 ms.
+/// The same for a ball faster than [`FAST_M_S`].
 const SEPARATED_FAST_M: f64 = 2e-5;
 /// Speed away from the solid that counts as fast, m/s.
 const FAST_M_S: f64 = 0.1;
-/// Longest time by which a separation step moves the ball, s.
-pub(crate) const SEPARATION_STEP_S: f64 = SEPARATED_FAST_M / FAST_M_S;
 
 /// The normal force of a contact per unit of mass, and its derivatives in time.
 pub(crate) struct NormalForce<T> {
@@ -104,8 +102,7 @@ impl<T: Real> NormalForce<T> {
     }
 }
 
-/// Whether the ball has left the solid: it moves away, and the compression is so small that the separation
-/// step can remove it.
+/// Whether the ball has left the solid: it moves away, and the rest of the compression takes at most 0.2 ms.
 #[inline(always)]
 pub(crate) fn has_separated<T: Real>(kinematics: &ContactKinematics<T>) -> T::Mask {
     let v = kinematics.velocity.normal;

@@ -19,8 +19,11 @@ use crate::model::constants_per_ball_mass::ModelParams;
 const TOUCH_TOLERANCE: f64 = 1e-10;
 /// Shortest jump, s; a shorter one is left to the safe step.
 const MIN_JUMP_S: f64 = 1e-9;
-/// Limit on the iterations. The search needs one or two, seldom more than ten.
-const MAX_ITERATIONS: u32 = 200;
+/// Shortest step of a ball that moves away from the ring, s.
+const PARTING_STEP_S: f64 = 1e-6;
+/// Limit on the iterations. The search needs one or two, seldom more than ten; a ball that parts from the ring with
+/// hardly any speed can need hundreds.
+const MAX_ITERATIONS: u32 = 10_000;
 
 /// The horizontal motion of an arc: `D^2 = |p|^2 + 2 (p.v) t + |v|^2 t^2`.
 struct HorizontalMotion<T: Real> {
@@ -89,6 +92,9 @@ struct SearchBounds<T> {
     inner_leave: T,
     /// The part of -F''/2 that comes from the curvature of the ring.
     curvature_bound: T,
+    /// F at the start where it is negative (the small overlap that a separation leaves), zero elsewhere. It
+    /// counts as zero: otherwise a ball that parts slowly would take tiny steps until it is free.
+    overlap: T,
 }
 
 impl<T: Real> SearchBounds<T> {
@@ -106,7 +112,10 @@ impl<T: Real> SearchBounds<T> {
             .positive_part()
             .sqrt();
         let nearest = Real::max(inner.squared(), motion.closest_squared);
+        let inward = ring_radius - motion.distance_squared.sqrt();
+        let value = inward.squared() + z.squared() - ball_radius.squared();
         Self {
+            overlap: Real::min(value, value.zero()),
             falls_to_top,
             rises_to_bottom: rising_time(params, z, vz, -ball_radius),
             rises_to_top: rising_time(params, z, vz, ball_radius),
@@ -178,7 +187,7 @@ fn search_step<T: Real>(
     let vz_t = vz - params.ball.gravity * t;
     let distance = motion.distance(t);
     let inward = params.ring.radius - distance;
-    let value = inward.squared() + z_t.squared() - ball_radius.squared();
+    let value = inward.squared() + z_t.squared() - ball_radius.squared() - bounds.overlap;
     let half_slope = z_t * vz_t
         - inward * (motion.speed_squared * t + motion.dot)
             / Real::max(distance, ball_radius * 1e-3);
@@ -189,7 +198,7 @@ fn search_step<T: Real>(
         .positive_part();
 
     // With h = F'/2 and b = M/2: F + 2 h s - b s^2 >= 0 up to its first root s, F/(root - h) for a closing
-    // ball and (root + h)/b otherwise. F < 0, the small overlap that a separation leaves, counts as 0.
+    // ball and (root + h)/b otherwise.
     let root = (half_slope.squared() + half_bound * value.positive_part()).sqrt();
     let closing = half_slope.le(zero);
     let bounded = half_bound.is_positive();
@@ -198,7 +207,10 @@ fn search_step<T: Real>(
         (half_slope + root).select(bounded, params.ball.never_s),
     );
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, params.one()));
-    let safe = t + numerator / denominator;
+    // A ball that parts with hardly any speed must get away from the ring. What this step passes over is a graze
+    // of less than 1e-9 m.
+    let least = zero.select(closing, params.splat(PARTING_STEP_S));
+    let safe = t + Real::max(numerator / denominator, least);
     let touches = closing & value.le(ball_radius.squared() * TOUCH_TOLERANCE);
 
     // Jumps over parts where no touch is possible.

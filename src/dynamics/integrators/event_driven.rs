@@ -1,10 +1,10 @@
-//! The default integrator: closed-form flight in which every touch is found, and contacts in RK4 steps
-//! that end at contact events (the slip reaches zero, rolling fails, the force ends, the other solid is touched).
+//! The default integrator: closed-form flight in which every touch is found, and contacts in long steps
+//! that end at contact events (the slip reaches zero, rolling fails, the ball parts, the other solid is touched).
 
+use crate::dynamics::contact::approach::{TakenStep, has_arrived, passed};
 use crate::dynamics::contact::double;
-use crate::dynamics::contact::event_time::time_to_touch;
 use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::contact::single;
+use crate::dynamics::contact::macro_step::{Contact, MacroStep};
 use crate::dynamics::end_rules::{
     ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
 };
@@ -12,65 +12,45 @@ use crate::dynamics::flight::FlightEvents;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
-use crate::math::real::Real;
+use crate::math::real::{Real, ScalarReal};
+use crate::math::single_precision::F32;
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{Approach, Solid, TOUCH_GAP_M};
+use crate::model::solids::{CONTACT_VALUES, ContactMotion, Solid, TOUCH_GAP_M};
 use crate::model::{BallState, SolidId};
 
 /// Limit on the segments (flights and contacts) of one shot, so that every run ends. Never reached so far.
 pub(crate) const MAX_SEGMENTS: u32 = 100_000;
 
 /// The contacts of the ball at present.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ContactState {
     /// In flight, or about to be.
     Free,
     /// On one solid.
-    Single(SolidId, FrictionState),
+    Single(SolidId),
     /// On board and ring.
-    BoardAndRing {
-        /// Friction at the board and at the ring.
-        friction: [FrictionState; 2],
-        /// Time for which the ball has rolled on both without a break, s.
-        rolling_time_s: f64,
-    },
-}
-
-impl ContactState {
-    /// A double contact that has just begun.
-    pub(crate) fn board_and_ring(friction: [FrictionState; 2]) -> Self {
-        Self::BoardAndRing {
-            friction,
-            rolling_time_s: 0.0,
-        }
-    }
-
-    /// After a step on board and ring that the ball may have left.
-    pub(crate) fn after_double(
-        [off_board, off_ring]: [bool; 2],
-        friction: [FrictionState; 2],
-        rolling_time_s: f64,
-    ) -> Self {
-        let [on_board, on_ring] = friction;
-        match (off_board, off_ring) {
-            (true, true) => Self::Free,
-            (true, false) => Self::Single(SolidId::Ring, on_ring),
-            (false, true) => Self::Single(SolidId::Board, on_board),
-            (false, false) => Self::BoardAndRing {
-                friction,
-                rolling_time_s,
-            },
-        }
-    }
+    BoardAndRing,
 }
 
 /// A shot in progress.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotProgress {
+    /// The ball in space. While `frame` names a solid, `motion` holds instead.
     pub(crate) state: BallState,
-    pub(crate) time_s: f64,
+    /// The ball in the frame of a contact.
+    pub(crate) motion: ContactMotion,
+    pub(crate) frame: Option<SolidId>,
     pub(crate) contact: ContactState,
+    /// Friction at the board and at the ring.
+    pub(crate) friction: [FrictionState; SolidId::COUNT],
+    /// Length of the next step in contact with one solid, in units of the longest.
+    pub(crate) step_share: f64,
+    /// Time in the present contact with one solid; not yet counted in `time_s`.
+    pub(crate) contact_time_s: f64,
+    /// Time for which the ball has rolled on both solids without a break, s.
+    pub(crate) rolling_time_s: f64,
+    pub(crate) time_s: f64,
     pub(crate) contacts: ContactSequence,
     pub(crate) crossing: HoopCrossing,
     /// Segments so far. (In a batch, a contact in the lanes is not counted; the limit is far away in any case.)
@@ -83,10 +63,17 @@ impl ShotProgress {
     /// At the release.
     #[inline(always)]
     pub(crate) fn at_release(params: &ModelParams, start: BallState) -> Self {
+        let friction = FrictionState::new(params);
         Self {
             state: start,
-            time_s: 0.0,
+            motion: ContactMotion::from_array([0.0; CONTACT_VALUES]),
+            frame: None,
             contact: ContactState::Free,
+            friction: [friction; SolidId::COUNT],
+            step_share: 1.0,
+            contact_time_s: 0.0,
+            rolling_time_s: 0.0,
+            time_s: 0.0,
             contacts: ContactSequence::default(),
             crossing: HoopCrossing::at_release(params, &start),
             segments: 0,
@@ -94,13 +81,70 @@ impl ShotProgress {
         }
     }
 
-    /// The verdict of a shot that ends like this.
-    pub(crate) fn verdict(&self, params: &ModelParams, ending: Ending) -> Verdict {
+    /// Begins a contact with one solid. `motion` and `friction` are set by the caller.
+    #[inline(always)]
+    pub(crate) fn begin_single_contact(&mut self, solid: SolidId) {
+        self.contact = ContactState::Single(solid);
+        self.frame = Some(solid);
+        self.step_share = 1.0;
+        self.contact_time_s = 0.0;
+    }
+
+    /// Ends a contact with one solid; the ball is free, or on both solids.
+    #[inline(always)]
+    pub(crate) fn end_single_contact(&mut self, contact: ContactState) {
+        self.contact = contact;
+        self.time_s += self.contact_time_s;
+        self.contact_time_s = 0.0;
+        self.rolling_time_s = 0.0;
+    }
+
+    /// The ball on `arrived` in addition to the solid that it is on.
+    pub(crate) fn arrive(&mut self, params: &ModelParams, arrived: SolidId) {
+        self.end_single_contact(ContactState::BoardAndRing);
+        self.update_state(params);
+        self.contacts.push(arrived);
+        self.friction[arrived.index()] = FrictionState::new(params);
+    }
+
+    /// After a step on board and ring that the ball has left.
+    pub(crate) fn after_double(&mut self, params: &ModelParams, [off_board, off_ring]: [bool; 2]) {
+        match (off_board, off_ring) {
+            (true, true) => self.contact = ContactState::Free,
+            (true, false) => {
+                self.motion = params.ring.to_contact(&params.ball, &self.state);
+                self.begin_single_contact(SolidId::Ring);
+            }
+            (false, true) => {
+                self.motion = params.board.to_contact(&params.ball, &self.state);
+                self.begin_single_contact(SolidId::Board);
+            }
+            (false, false) => {}
+        }
+    }
+
+    /// Brings `state` up to date.
+    #[inline(always)]
+    pub(crate) fn update_state(&mut self, params: &ModelParams) {
+        match self.frame {
+            None => return,
+            Some(SolidId::Board) => {
+                self.state = params.board.to_space(&params.ball, &self.motion);
+            }
+            Some(SolidId::Ring) => {
+                self.state = params.ring.to_space(&params.ball, &self.motion);
+            }
+        }
+        self.frame = None;
+    }
+
+    /// The verdict of a shot that ends like this; `made` counts only for a ball that fell.
+    pub(crate) fn verdict(&self, ending: Ending, made: bool) -> Verdict {
         Verdict {
-            made: ending == Ending::Fell && self.crossing.is_made(params, &self.state),
+            made: ending == Ending::Fell && made,
             ending,
             contacts: self.contacts,
-            time_s: self.time_s,
+            time_s: self.time_s + self.contact_time_s,
         }
     }
 }
@@ -128,13 +172,8 @@ pub(crate) fn run<O: Observer>(
             observer.touch(0.0, solid, &start);
         }
     }
-    let new_friction = FrictionState::new(params);
-    shot.contact = match touched {
-        [true, true] => ContactState::board_and_ring([new_friction; 2]),
-        [true, false] => ContactState::Single(SolidId::Board, new_friction),
-        [false, true] => ContactState::Single(SolidId::Ring, new_friction),
-        [false, false] => ContactState::Free,
-    };
+    shot.contact = ContactState::BoardAndRing;
+    shot.after_double(params, touched.map(|touched| !touched));
     let mut run = Run {
         params,
         limits,
@@ -142,11 +181,11 @@ pub(crate) fn run<O: Observer>(
         shot,
     };
     for _ in 0..MAX_SEGMENTS {
-        if let Some(ending) = run.segment() {
-            return run.shot.verdict(params, ending);
+        if let Some(verdict) = run.segment() {
+            return verdict;
         }
     }
-    run.shot.verdict(params, Ending::Unresolved)
+    run.shot.verdict(Ending::Unresolved, false)
 }
 
 /// The solids that the ball touches at its release, by [`SolidId::index`].
@@ -169,6 +208,18 @@ fn is_touched<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState)
     kinematics.compression > TOUCH_GAP_M && solid.faces(state)
 }
 
+/// One step of one shot. A function of its own: it is compiled once for each solid and number type, not for each
+/// observer.
+#[inline(never)]
+fn single_step<T: ScalarReal, S: Solid<T>>(
+    contact: &Contact<'_, T, S>,
+    motion: &ContactMotion<T>,
+    friction: &FrictionState<T>,
+    share: T,
+) -> MacroStep<T> {
+    contact.step(motion, friction, share)
+}
+
 /// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next segment.
 pub(crate) fn run_segment(
     params: &ModelParams,
@@ -181,72 +232,70 @@ pub(crate) fn run_segment(
         observer: &mut (),
         shot: *shot,
     };
-    let ending = run.segment();
+    let verdict = run.segment();
     *shot = run.shot;
-    ending.map(|ending| shot.verdict(params, ending))
-}
-
-/// Greatest acceleration that the present contact with `solid` can give the ball within a step.
-#[inline(always)]
-pub(crate) fn max_acceleration<T: Real, S: Solid<T>>(
-    params: &ModelParams<T>,
-    solid: &S,
-    state: &BallState<T>,
-    longest: T,
-) -> T {
-    let (kinematics, _) = solid.contact(&params.ball, state);
-    let material = solid.material();
-    let normal_speed = kinematics.velocity.normal.abs();
-    let compression = kinematics.compression.positive_part() + normal_speed * longest;
-    let normal = material.stiffness * compression + material.damping * normal_speed;
-    normal * (material.friction_coefficient + 1.0) + params.ball.gravity
+    verdict
 }
 
 impl<O: Observer> Run<'_, O> {
-    fn segment(&mut self) -> Option<Ending> {
+    fn segment(&mut self) -> Option<Verdict> {
         let params = self.params;
         match self.shot.contact {
-            ContactState::Free => self.fly(),
-            ContactState::Single(SolidId::Board, friction) => {
-                self.single_contact(&params.board, &params.ring, friction)
+            ContactState::Free => {
+                self.shot.update_state(params);
+                self.fly()
             }
-            ContactState::Single(SolidId::Ring, friction) => {
-                self.single_contact(&params.ring, &params.board, friction)
+            ContactState::Single(solid) if self.limits.single_precision => {
+                let narrow = params.map(F32::from_f64);
+                self.single_contact(&narrow, solid)
             }
-            ContactState::BoardAndRing {
-                friction,
-                rolling_time_s,
-            } => self.double_contact((&params.board, &params.ring), friction, rolling_time_s),
+            ContactState::Single(solid) => self.single_contact(params, solid),
+            ContactState::BoardAndRing => self.double_contact((&params.board, &params.ring)),
+        }
+    }
+
+    fn single_contact<T: ScalarReal>(
+        &mut self,
+        params: &ModelParams<T>,
+        solid: SolidId,
+    ) -> Option<Verdict> {
+        match solid {
+            SolidId::Board => self.contact_with(params, &params.board, &params.ring),
+            SolidId::Ring => self.contact_with(params, &params.ring, &params.board),
         }
     }
 
     /// One arc of free flight, to its end or to the next touch.
-    fn fly(&mut self) -> Option<Ending> {
+    fn fly(&mut self) -> Option<Verdict> {
         let params = self.params;
         let mut flight = FlightEvents::new(params, &self.shot.state);
         let behind = flight.resolve_beside_board(params, &self.shot.state);
         let dt = Real::min(flight.first_end(), behind);
         if self.shot.time_s + dt > self.limits.time_limit_s {
             self.advance_flight(self.limits.time_limit_s - self.shot.time_s);
-            return Some(Ending::TimeLimit);
+            return Some(self.shot.verdict(Ending::TimeLimit, false));
         }
         self.advance_flight(dt);
         if flight.unresolved {
-            return Some(Ending::Unresolved);
+            return Some(self.shot.verdict(Ending::Unresolved, false));
         }
         // The ring is searched only up to the time of the board, so at most one of the two is touched.
         for solid in [SolidId::Ring, SolidId::Board] {
             if flight.touch_of(solid) <= dt {
                 self.touch(solid);
-                let new_friction = FrictionState::new(params);
-                self.shot.contact = ContactState::Single(solid, new_friction);
+                let shot = &mut self.shot;
+                shot.friction[solid.index()] = FrictionState::new(params);
+                shot.contact = ContactState::BoardAndRing;
+                shot.after_double(params, SolidId::ALL.map(|id| id != solid));
                 return None;
             }
         }
         if behind <= dt {
-            return Some(Ending::BehindBoard);
+            return Some(self.shot.verdict(Ending::BehindBoard, false));
         }
-        Some(flight_ending(rose_to_ring(params, &self.shot.state)))
+        let ending = flight_ending(rose_to_ring(params, &self.shot.state));
+        let made = self.shot.crossing.is_made(params, &self.shot.state);
+        Some(self.shot.verdict(ending, made))
     }
 
     fn advance_flight(&mut self, dt: f64) {
@@ -265,67 +314,110 @@ impl<O: Observer> Run<'_, O> {
     }
 
     fn part(&mut self, solid: SolidId) {
-        self.observer
-            .part(self.shot.time_s, solid, &self.shot.state);
+        let time_s = self.shot.time_s + self.shot.contact_time_s;
+        self.observer.part(time_s, solid, &self.shot.state);
     }
 
     /// Contact with one solid until the ball parts, touches the other solid, or the shot ends.
-    fn single_contact<S: Solid<f64>, Other: Solid<f64>>(
+    fn contact_with<T: ScalarReal, S: Solid<T>, Other: Solid<T>>(
         &mut self,
+        params: &ModelParams<T>,
         solid: &S,
         other: &Other,
-        mut friction: FrictionState,
-    ) -> Option<Ending> {
-        let params = self.params;
-        let longest = self.limits.longest_step_s;
+    ) -> Option<Verdict> {
+        let oscillator = &self.limits.oscillators[S::ID.index()].map(T::from_f64);
+        let contact = Contact {
+            params,
+            solid,
+            oscillator,
+        };
+        let mut motion = self.shot.motion.map(T::from_f64);
+        let mut friction = self.shot.friction[S::ID.index()].map(T::from_f64);
+        let mut share = T::from_f64(self.shot.step_share);
+        let mut elapsed = T::from_f64(self.shot.contact_time_s);
+        let allowed = T::from_f64(self.limits.time_limit_s - self.shot.time_s);
         loop {
-            let before = self.shot.state;
-            if !solid.faces(&before) {
-                self.part(S::ID);
-                self.shot.contact = ContactState::Free;
-                return None;
-            }
-            let bound = max_acceleration(params, solid, &before, longest);
-            let approach = other.approach(&params.ball, &before, bound, longest);
-            if approach.has_arrived() {
-                self.touch(Other::ID);
-                let mut both = [FrictionState::new(params); SolidId::COUNT];
-                both[S::ID.index()] = friction;
-                self.shot.contact = ContactState::board_and_ring(both);
-                return None;
-            }
-            let step = single::step(
-                params,
-                solid,
-                &mut self.shot.state,
-                &mut friction,
-                longest,
-                |state, acceleration| time_to_touch(params, &approach, state, acceleration),
-            );
             self.shot.steps += 1;
-            if step.separated {
+            if self.shot.steps >= self.limits.max_steps {
+                return Some(self.shot.verdict(Ending::Unresolved, false));
+            }
+            let step = single_step(&contact, &motion, &friction, share);
+            let after = solid.to_space(&params.ball, &step.motion);
+            let taken = TakenStep {
+                solid,
+                from: &motion,
+                to: &step.motion,
+                after: &after,
+                dt: step.dt,
+            };
+            let again;
+            (again, share) = passed(params, other, &taken);
+            if again {
+                share = contact.share_of_longest(share * step.dt);
+                continue;
+            }
+            let was_below = motion.is_below_hoop();
+            (motion, friction) = (step.motion, step.friction);
+            elapsed += step.dt;
+            let shot = &mut self.shot;
+            shot.friction[S::ID.index()] = friction.map(T::to_f64);
+            shot.motion = motion.map(T::to_f64);
+            let mut crossing = HoopCrossing::<T> {
+                has_been_above: shot.crossing.has_been_above,
+                rose_through: shot.crossing.rose_through,
+            };
+            crossing.after_step(params, was_below, &after, true);
+            shot.crossing = HoopCrossing {
+                has_been_above: crossing.has_been_above,
+                rose_through: crossing.rose_through,
+            };
+            self.report_contact_step(S::ID, elapsed.to_f64());
+            if let Some(ending) = ShotEndFlags::new(params, &after, allowed.lt(elapsed)).ending() {
+                let made = crossing.is_made(params, &after);
+                return Some(self.shot.verdict(ending, made));
+            }
+            if step.parts {
                 self.part(S::ID);
-                self.shot.contact = ContactState::Free;
+                self.shot.end_single_contact(ContactState::Free);
                 return None;
             }
-            let mut impulses = NO_IMPULSES;
-            impulses[S::ID.index()] = self.impulse_since(&before, step.dt);
-            if let Some(ending) = self.after_step(step.dt, &before, impulses) {
-                return Some(ending);
+            if has_arrived(params, other, &after) {
+                self.shot.arrive(self.params, Other::ID);
+                self.observer
+                    .touch(self.shot.time_s, Other::ID, &self.shot.state);
+                return None;
             }
-            if self.shot.steps >= self.limits.max_steps {
-                return Some(Ending::Unresolved);
+            if !solid.faces(&after) {
+                self.part(S::ID);
+                self.shot.end_single_contact(ContactState::Free);
+                return None;
             }
         }
+    }
+
+    /// After a step in contact with one solid: updates the state in space, and reports the step.
+    fn report_contact_step(&mut self, solid: SolidId, contact_time_s: f64) {
+        let shot = &mut self.shot;
+        let before = shot.state;
+        shot.frame = Some(solid);
+        shot.update_state(self.params);
+        shot.frame = Some(solid);
+        let (start, dt) = (
+            shot.time_s + shot.contact_time_s,
+            contact_time_s - shot.contact_time_s,
+        );
+        shot.contact_time_s = contact_time_s;
+        let mut impulses = NO_IMPULSES;
+        impulses[solid.index()] = self.impulse_since(&before, dt);
+        self.observer
+            .step(start, dt, (&before, &self.shot.state), impulses);
     }
 
     /// Contact with two solids until the ball parts from one of them, is lodged, or the shot ends.
     fn double_contact<A: Solid<f64>, B: Solid<f64>>(
         &mut self,
         solids: (&A, &B),
-        mut friction: [FrictionState; 2],
-        mut rolling_time_s: f64,
-    ) -> Option<Ending> {
+    ) -> Option<Verdict> {
         let params = self.params;
         loop {
             let before = self.shot.state;
@@ -333,7 +425,7 @@ impl<O: Observer> Run<'_, O> {
                 params,
                 solids,
                 &mut self.shot.state,
-                &mut friction,
+                &mut self.shot.friction,
                 self.limits.longest_step_s,
             );
             let separated = [
@@ -347,20 +439,23 @@ impl<O: Observer> Run<'_, O> {
             }
             if step.dt > 0.0 {
                 let ending = self.after_step(step.dt, &before, step.impulses);
-                rolling_time_s = double::rolling_time(&friction, rolling_time_s, step.dt);
-                if ending.is_some() {
-                    return ending;
+                let shot = &mut self.shot;
+                shot.rolling_time_s =
+                    double::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
+                if let Some(ending) = ending {
+                    let made = shot.crossing.is_made(params, &shot.state);
+                    return Some(shot.verdict(ending, made));
                 }
-                if is_lodged(rolling_time_s, self.limits.lodged_after_s) {
-                    return Some(Ending::Lodged);
+                if is_lodged(shot.rolling_time_s, self.limits.lodged_after_s) {
+                    return Some(shot.verdict(Ending::Lodged, false));
                 }
             }
             self.shot.steps += 1;
             if self.shot.steps >= self.limits.max_steps {
-                return Some(Ending::Unresolved);
+                return Some(self.shot.verdict(Ending::Unresolved, false));
             }
             if separated.contains(&true) {
-                self.shot.contact = ContactState::after_double(separated, friction, rolling_time_s);
+                self.shot.after_double(params, separated);
                 return None;
             }
         }
@@ -381,9 +476,10 @@ impl<O: Observer> Run<'_, O> {
         self.observer
             .step(shot.time_s, dt, (before, &shot.state), impulses);
         shot.time_s += dt;
+        let was_below = before.position_m.z < 0.0;
         shot.crossing
-            .after_step(self.params, before, &shot.state, true);
-        let limit = self.limits.time_limit_s;
-        ShotEndFlags::new(self.params, &shot.state, shot.time_s, limit).ending()
+            .after_step(self.params, was_below, &shot.state, true);
+        let too_late = self.limits.time_limit_s < shot.time_s;
+        ShotEndFlags::new(self.params, &shot.state, too_late).ending()
     }
 }

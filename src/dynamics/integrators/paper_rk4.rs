@@ -177,13 +177,14 @@ impl<O: Observer> Run<'_, O> {
         } else {
             self.observer.flight(params, self.time_s, dt, &before);
         }
-        self.crossing.after_step(params, &before, &next, true);
+        let was_below = before.position_m.z < 0.0;
+        self.crossing.after_step(params, was_below, &next, true);
         self.time_s += dt;
         self.report_changes(active, &next);
         self.state = next;
         self.active = active;
         let limit = self.limits.time_limit_s;
-        let ending = ShotEndFlags::new(params, &next, self.time_s, limit).ending()?;
+        let ending = ShotEndFlags::new(params, &next, limit < self.time_s).ending()?;
         if ending != Ending::Fell {
             return Some(ending);
         }

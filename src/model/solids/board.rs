@@ -1,9 +1,10 @@
 //! The front face of the board: a rectangle in the plane `x = -a`.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
+use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
-use super::solid::{Approach, ContactFrame, GapPolynomial, Solid, SolidId, TOUCH_GAP_M};
-use crate::math::real::{Mask, Real};
+use super::solid::{ContactFrame, Solid, SolidId};
+use crate::math::real::Real;
 use crate::math::vector::{Vec2, Vec3};
 use crate::model::ball_params::BallParams;
 use crate::model::ball_state::BallState;
@@ -44,54 +45,12 @@ impl<T: Real> ContactFrame<T> for BoardFrame {
     fn to_space(self, vector: ContactVector<T>) -> Vec3<T> {
         Vec3::new(vector.normal, vector.tangent.x, vector.tangent.y)
     }
-
-    #[inline(always)]
-    fn tangent_to_space(self, tangent: Vec2<T>) -> Vec3<T> {
-        Vec3::new(tangent.x.zero(), tangent.x, tangent.y)
-    }
-}
-
-/// The board as seen by a ball on another solid.
-#[derive(Clone, Copy)]
-pub(crate) struct BoardApproach<T: Real> {
-    /// [`Board::touch_x`].
-    touch_x: T,
-    arrived: T::Mask,
-    /// The ball overlaps the plane of the board, but its centre is not in front of the rectangle: it cannot touch
-    /// the board before it comes in front of it.
-    beside: T::Mask,
-    longest: T,
-}
-
-impl<T: Real> Approach<T> for BoardApproach<T> {
-    #[inline(always)]
-    fn has_arrived(&self) -> T::Mask {
-        self.arrived
-    }
-
-    #[inline(always)]
-    fn closing_gap(&self, state: &BallState<T>, acceleration: Vec3<T>) -> Option<GapPolynomial<T>> {
-        let distance = state.position_m.x - self.touch_x;
-        let gap = Real::max(distance, distance.splat(TOUCH_GAP_M));
-        let (rate, second_derivative) = (state.velocity_m_s.x, acceleration.x);
-        let least = gap + self.longest * (rate - second_derivative.abs() * self.longest * 0.5);
-        let relevant = least.le(gap.zero()) & !self.beside;
-        if !relevant.any() {
-            return None;
-        }
-        Some(GapPolynomial {
-            relevant,
-            gap,
-            rate,
-            second_derivative,
-        })
-    }
 }
 
 impl<T: Real> Solid<T> for Board<T> {
     type Frame = BoardFrame;
-    type Approach = BoardApproach<T>;
     const ID: SolidId = SolidId::Board;
+    const FLAT: bool = true;
 
     #[inline(always)]
     fn material(&self) -> &Material<T> {
@@ -118,6 +77,86 @@ impl<T: Real> Solid<T> for Board<T> {
         (kinematics, BoardFrame)
     }
 
+    #[inline(always)]
+    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T> {
+        let (p, v, w) = (state.position_m, state.velocity_m_s, state.spin_rad_s);
+        let zero = ball.zero();
+        ContactMotion {
+            compression: self.touch_x - p.x,
+            velocity: ContactVector::new(v.x, v.y, v.z),
+            spin: ContactVector::new(w.x, w.y, w.z),
+            place: [p.y, p.z, zero],
+            start: [zero, zero],
+        }
+    }
+
+    #[inline(always)]
+    fn to_space(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
+        let [v, w] = [motion.velocity, motion.spin];
+        BallState {
+            position_m: Vec3::new(
+                self.touch_x - motion.compression,
+                motion.place[0],
+                motion.place[1],
+            ),
+            velocity_m_s: Vec3::new(v.normal, v.tangent.x, v.tangent.y),
+            spin_rad_s: Vec3::new(w.normal, w.tangent.x, w.tangent.y),
+        }
+    }
+
+    #[inline(always)]
+    fn distances(
+        &self,
+        ball: &BallParams<T>,
+        compression: T,
+        _place: &[T; 3],
+    ) -> ContactDistances<T> {
+        let one = ball.one();
+        ContactDistances {
+            lever: ball.radius - compression,
+            inverse_lever: one,
+            axis: one,
+            inverse_axis: one,
+        }
+    }
+
+    #[inline(always)]
+    fn frame_turn(
+        &self,
+        motion: &ContactMotion<T>,
+        _distances: &ContactDistances<T>,
+    ) -> FrameTurn<T> {
+        let zero = motion.compression.zero();
+        FrameTurn {
+            turn: Vec2::new(zero, zero),
+            torsion: zero,
+        }
+    }
+
+    #[inline(always)]
+    fn gravity(&self, ball: &BallParams<T>, _motion: &ContactMotion<T>) -> ContactVector<T> {
+        ContactVector::new(ball.zero(), ball.zero(), -ball.gravity)
+    }
+
+    #[inline(always)]
+    fn place_rates(
+        &self,
+        motion: &ContactMotion<T>,
+        _distances: &ContactDistances<T>,
+        turn: &FrameTurn<T>,
+    ) -> [T; 3] {
+        let v = motion.velocity.tangent;
+        [v.x, v.y, turn.torsion]
+    }
+
+    #[inline(always)]
+    fn gap(&self, _ball: &BallParams<T>, state: &BallState<T>) -> (T, T) {
+        (state.position_m.x - self.touch_x, state.velocity_m_s.x)
+    }
+
+    #[inline(always)]
+    fn rebase(&self, _motion: &mut ContactMotion<T>) {}
+
     /// Whether the centre is in front of the rectangle.
     #[inline(always)]
     fn faces(&self, state: &BallState<T>) -> T::Mask {
@@ -126,24 +165,5 @@ impl<T: Real> Solid<T> for Board<T> {
             & p.y.abs().lt(self.half_width)
             & self.bottom_z.lt(p.z)
             & p.z.lt(self.top_z)
-    }
-
-    #[inline(always)]
-    fn approach(
-        &self,
-        _ball: &BallParams<T>,
-        state: &BallState<T>,
-        _max_acceleration: T,
-        longest: T,
-    ) -> BoardApproach<T> {
-        let gap = state.position_m.x - self.touch_x;
-        let overlaps = gap.le(gap.splat(TOUCH_GAP_M));
-        let faces = self.faces(state);
-        BoardApproach {
-            touch_x: self.touch_x,
-            arrived: overlaps & state.velocity_m_s.x.is_negative() & faces,
-            beside: overlaps & !faces,
-            longest,
-        }
     }
 }

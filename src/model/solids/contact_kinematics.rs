@@ -2,7 +2,7 @@
 
 use super::material::Material;
 use crate::math::real::Real;
-use crate::math::vector::Vec2;
+use crate::math::vector::{RealVector, Vec2};
 use crate::model::ball_params::BallParams;
 
 /// A vector along the normal and the two tangents of a contact.
@@ -20,6 +20,17 @@ impl<T> ContactVector<T> {
         Self {
             normal,
             tangent: Vec2::new(tangent_1, tangent_2),
+        }
+    }
+}
+
+impl<T: Real> ContactVector<T> {
+    /// `self` where `condition` holds, `other` elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {
+        Self {
+            normal: self.normal.select(condition, other.normal),
+            tangent: self.tangent.select(condition, other.tangent),
         }
     }
 }
@@ -86,13 +97,5 @@ impl<T: Real> ContactKinematics<T> {
     #[inline(always)]
     pub(crate) fn inverse_effective_mass(&self, ball: &BallParams<T>) -> T {
         self.lever.squared() * ball.mass_over_inertia + 1.0
-    }
-
-    /// The derivative of the frictionless slip rate along a direction with respect to u'. (The normal
-    /// velocity is what changes that rate most.)
-    #[inline(always)]
-    pub(crate) fn d_slip_rate_d_compression_rate(&self, direction: Vec2<T>) -> T {
-        let (v, w) = (self.velocity.tangent, self.spin.tangent);
-        (self.curvature_1 * v.x + w.y) * direction.x + (self.curvature_2 * v.y - w.x) * direction.y
     }
 }

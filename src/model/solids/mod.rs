@@ -11,13 +11,15 @@
 
 mod board;
 mod contact_kinematics;
+mod contact_motion;
 mod material;
 mod ring;
 mod solid;
 
 pub(crate) use board::Board;
 pub(crate) use contact_kinematics::{ContactKinematics, ContactVector};
+pub(crate) use contact_motion::{CONTACT_VALUES, ContactDistances, ContactMotion, FrameTurn};
 pub(crate) use material::Material;
 pub(crate) use ring::Ring;
 pub use solid::SolidId;
-pub(crate) use solid::{Approach, ContactFrame, Solid, TOUCH_GAP_M};
+pub(crate) use solid::{ContactFrame, Solid, TOUCH_GAP_M};

@@ -1,9 +1,10 @@
 //! What every solid provides.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
+use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
 use crate::math::real::Real;
-use crate::math::vector::{Vec2, Vec3};
+use crate::math::vector::Vec3;
 use crate::model::ball_params::BallParams;
 use crate::model::ball_state::BallState;
 use serde::Serialize;
@@ -43,37 +44,16 @@ impl SolidId {
 pub(crate) trait ContactFrame<T: Real>: Copy {
     /// x, y, z components of a vector given along (n, 1, 2).
     fn to_space(self, vector: ContactVector<T>) -> Vec3<T>;
-
-    /// x, y, z components of a tangential vector given along (1, 2).
-    fn tangent_to_space(self, tangent: Vec2<T>) -> Vec3<T>;
-}
-
-/// The approach of a ball to a solid that it does not touch yet, for the next step of a contact.
-pub(crate) trait Approach<T: Real> {
-    /// Whether the ball has reached the solid.
-    fn has_arrived(&self) -> T::Mask;
-
-    /// How the gap closes from `state` under an acceleration of the centre; `None` if it cannot close within
-    /// the step in any lane. `state` is that of the approach, but the contact may have removed its slip.
-    fn closing_gap(&self, state: &BallState<T>, acceleration: Vec3<T>) -> Option<GapPolynomial<T>>;
-}
-
-/// The gap to a solid as `gap + rate t + second_derivative t^2/2`, valid where `relevant` holds.
-pub(crate) struct GapPolynomial<T: Real> {
-    pub(crate) relevant: T::Mask,
-    pub(crate) gap: T,
-    pub(crate) rate: T,
-    pub(crate) second_derivative: T,
 }
 
 /// A rigid body that the ball can touch.
 pub(crate) trait Solid<T: Real>: Copy {
     /// Directions of the contact frame in space.
     type Frame: ContactFrame<T>;
-    /// The approach of a ball that touches another solid.
-    type Approach: Approach<T>;
     /// Its name.
     const ID: SolidId;
+    /// Whether the frame of the contact never turns.
+    const FLAT: bool;
 
     /// The contact law with the ball.
     fn material(&self) -> &Material<T>;
@@ -86,20 +66,48 @@ pub(crate) trait Solid<T: Real>: Copy {
         state: &BallState<T>,
     ) -> (ContactKinematics<T>, Self::Frame);
 
+    /// The ball in the frame of the contact.
+    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T>;
+
+    /// The state in space of a ball in the frame of the contact.
+    fn to_space(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T>;
+
+    /// Distances at a contact with the given compression and place.
+    fn distances(
+        &self,
+        ball: &BallParams<T>,
+        compression: T,
+        place: &[T; 3],
+    ) -> ContactDistances<T>;
+
+    /// How the frame turns. Not called for a flat solid.
+    fn frame_turn(
+        &self,
+        motion: &ContactMotion<T>,
+        distances: &ContactDistances<T>,
+    ) -> FrameTurn<T>;
+
+    /// Gravity in the frame.
+    fn gravity(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> ContactVector<T>;
+
+    /// Rates of [`ContactMotion::place`].
+    fn place_rates(
+        &self,
+        motion: &ContactMotion<T>,
+        distances: &ContactDistances<T>,
+        turn: &FrameTurn<T>,
+    ) -> [T; 3];
+
+    /// The gap between the ball and the solid (negative in contact), and its rate.
+    fn gap(&self, ball: &BallParams<T>, state: &BallState<T>) -> (T, T);
+
+    /// Keeps the values of a long contact within the range of their formulas.
+    fn rebase(&self, motion: &mut ContactMotion<T>);
+
     /// Whether the nearest point lies on the solid: a ball whose centre is beside the board's rectangle
     /// does not touch it.
     fn faces(&self, state: &BallState<T>) -> T::Mask;
-
-    /// The approach of a ball that touches another solid, over a step of at most `longest`, during which
-    /// its acceleration is at most `max_acceleration`.
-    fn approach(
-        &self,
-        ball: &BallParams<T>,
-        state: &BallState<T>,
-        max_acceleration: T,
-        longest: T,
-    ) -> Self::Approach;
 }
 
-/// Gap at which an approached solid counts as touched, m.
+/// Gap at which a ball counts as touching at its release, and heights as equal, m.
 pub(crate) const TOUCH_GAP_M: f64 = 1e-7;

@@ -1,0 +1,130 @@
+//! Position and motion of the ball in the frame of one contact, from its first touch on.
+
+use super::contact_kinematics::ContactVector;
+use crate::math::real::Real;
+use crate::math::vector::Vec2;
+
+/// Position and motion of the ball in the frame `(n, 1, 2)` of a contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactMotion<T = f64> {
+    /// Compression u of the ball, m.
+    pub(crate) compression: T,
+    /// Velocity of the centre, m/s.
+    pub(crate) velocity: ContactVector<T>,
+    /// Angular velocity, rad/s.
+    pub(crate) spin: ContactVector<T>,
+    /// Where the contact is on the solid. On the ring: cos phi, sin phi and the angle by which theta has changed
+    /// since the start. On the board: y, z and zero.
+    pub(crate) place: [T; 3],
+    /// On the ring: cos theta and sin theta at the start.
+    pub(crate) start: [T; 2],
+}
+
+/// Number of values of a [`ContactMotion`].
+pub(crate) const CONTACT_VALUES: usize = 12;
+
+impl<T: Real> ContactMotion<T> {
+    /// The values in order.
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [T; CONTACT_VALUES] {
+        let (v, w) = (self.velocity, self.spin);
+        let [p_0, p_1, p_2] = self.place;
+        let [s_0, s_1] = self.start;
+        [
+            self.compression,
+            v.normal,
+            v.tangent.x,
+            v.tangent.y,
+            w.normal,
+            w.tangent.x,
+            w.tangent.y,
+            p_0,
+            p_1,
+            p_2,
+            s_0,
+            s_1,
+        ]
+    }
+
+    /// From the values in order.
+    #[inline(always)]
+    pub(crate) fn from_array(values: [T; CONTACT_VALUES]) -> Self {
+        let [u, vn, v1, v2, wn, w1, w2, p_0, p_1, p_2, s_0, s_1] = values;
+        Self {
+            compression: u,
+            velocity: ContactVector::new(vn, v1, v2),
+            spin: ContactVector::new(wn, w1, w2),
+            place: [p_0, p_1, p_2],
+            start: [s_0, s_1],
+        }
+    }
+}
+
+impl<T: Real> ContactMotion<T> {
+    /// `self` where `condition` holds, `other` elsewhere.
+    #[inline(always)]
+    pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {
+        Self {
+            compression: self.compression.select(condition, other.compression),
+            velocity: self.velocity.select(condition, other.velocity),
+            spin: self.spin.select(condition, other.spin),
+            place: [
+                self.place[0].select(condition, other.place[0]),
+                self.place[1].select(condition, other.place[1]),
+                self.place[2].select(condition, other.place[2]),
+            ],
+            start: [
+                self.start[0].select(condition, other.start[0]),
+                self.start[1].select(condition, other.start[1]),
+            ],
+        }
+    }
+
+    /// The same in another number type.
+    #[inline(always)]
+    pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U) -> ContactMotion<U> {
+        ContactMotion::from_array(self.to_array().map(convert))
+    }
+
+    /// A bound of the speed of the centre.
+    #[inline(always)]
+    pub(crate) fn speed_bound(&self) -> T {
+        let v = self.velocity;
+        v.normal.abs() + v.tangent.x.abs() + v.tangent.y.abs()
+    }
+
+    /// Whether the centre is below the plane of the hoop: the second value of the place has the sign of z on
+    /// either solid.
+    #[inline(always)]
+    pub(crate) fn is_below_hoop(&self) -> T::Mask {
+        self.place[1].is_negative()
+    }
+
+    /// Velocity of the contact point along the surface (Eqs. 4 and 14), for the lever `lever`.
+    #[inline(always)]
+    pub(crate) fn slip(&self, lever: T) -> Vec2<T> {
+        let (v, w) = (self.velocity.tangent, self.spin.tangent);
+        Vec2::new(v.x - lever * w.y, v.y + lever * w.x)
+    }
+}
+
+/// Distances at a contact, and their inverses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactDistances<T> {
+    /// Distance R - u from the centre to the contact point, m.
+    pub(crate) lever: T,
+    /// 1/lever; on a flat solid not used.
+    pub(crate) inverse_lever: T,
+    /// Distance from the axis of the solid; on a flat solid not used.
+    pub(crate) axis: T,
+    pub(crate) inverse_axis: T,
+}
+
+/// How the frame of a contact turns, and what turns it: zeros on a flat solid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameTurn<T> {
+    /// Curvature along 1 and 2 times the velocity, 1/s.
+    pub(crate) turn: Vec2<T>,
+    /// Turning about the normal, 1/s.
+    pub(crate) torsion: T,
+}
