@@ -49,7 +49,7 @@ fn table_errors(windows: u64, search: TableGrid) -> Vec<f64> {
                 let table = NominalTable::simulate(&profile, &window_plan, &Silent);
                 let table = table.probabilities(&profile);
                 let (p, at) = table.at(table.index_of(&centre));
-                let sobol = sampler.estimate(&at, 0.0004, 1000 + window, &Silent);
+                let sobol = sampler.estimate(&at, 0.0002, 1000 + window, &Silent);
                 assert_eq!(sobol.unresolved, 0);
                 errors.push(p - sobol.probability);
             }
@@ -80,22 +80,22 @@ fn spread(errors: &[f64]) -> [f64; 3] {
 
 #[test]
 fn val_table_agrees_with_sobol_for_narrow_and_wide_shooters_in_front_and_at_the_side() {
-    // The table's rms error is at most 0.001 (`campaign_table` measures it on 72 windows; the 0.0004 of the
+    // The table's rms error is at most 0.001 (`campaign_table` measures it on 72 windows; the 0.0002 of the
     // Sobol reference is included). For twelve windows, 1.6 times that is exceeded by 1 of 1000 choices of
-    // windows, and four times that by a single window for 1 of 1300 choices.
+    // windows, and three times that by a single window for 1 of 30 choices.
     let [bias, rms, worst] = spread(&table_errors(1, grid(24, 16, 16, 6)));
     assert!(
-        bias.abs() < 0.001 && rms < 0.0016 && worst < 0.004,
+        bias.abs() < 0.001 && rms < 0.0016 && worst < 0.003,
         "{bias} {rms} {worst}"
     );
 }
 
 #[test]
-#[ignore = "one minute: cargo test --test validation campaign_table -- --ignored --nocapture"]
+#[ignore = "two minutes: cargo test --test validation campaign_table -- --ignored --nocapture"]
 fn campaign_table_is_good_to_a_thousandth() {
     let [bias, rms, worst] = spread(&table_errors(6, TableGrid::default()));
     assert!(
-        bias.abs() < 0.0004 && rms < 0.001 && worst < 0.004,
+        bias.abs() < 0.0004 && rms < 0.001 && worst < 0.003,
         "{bias} {rms} {worst}"
     );
 }
