@@ -1,6 +1,6 @@
 //! What a shooter can learn from a shot: its aim, its sensitivity, how it is missed, and maps about it.
 
-pub mod aim_point;
+pub mod aim_past_hoop;
 pub mod miss_breakdown;
 pub mod probability_curves;
 pub mod release_map;

@@ -4,7 +4,7 @@
 //! Every comparison is between two shots, or two shooters, under the same Sobol points. Each scramble gives a
 //! difference, and the scatter of these gives its standard error.
 
-use super::aim_point::with_same_aim;
+use super::aim_past_hoop::with_same_aim;
 use crate::math::sobol::ScrambleKey;
 use crate::probability::{Progress, REPLICATES, Sampler};
 use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseVariable, ShotKind};

@@ -1,6 +1,6 @@
 //! The best direct and the best bank shot from one location (Eq. 26).
 
-mod climb;
+mod pattern_search;
 mod search;
 
 pub use crate::shooter::ShotKind;

@@ -7,8 +7,8 @@
 //! optimum between the points of the table. P of the winner is computed again with independent scrambles, so it is
 //! not the largest of many noisy values.
 
-use super::climb::Climb;
-use crate::analysis::aim_point::aim_past_centre_m;
+use super::pattern_search::Climb;
+use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, Sensitivity, SensitivityTopics};
 use crate::dynamics::Outcome;

@@ -1,6 +1,6 @@
 //! The command line: parses options, calls the library, prints answers. Only this module prints.
 
-mod args;
+mod command_line_flags;
 mod commands;
 mod config_files;
 mod failure;
@@ -12,8 +12,8 @@ mod signals;
 mod terminal;
 mod value_parsers;
 
-use args::{Arguments, Command};
 use clap::{CommandFactory, Parser};
+use command_line_flags::{Arguments, Command};
 use commands::{
     best, check, compare, figures, plan, probability, report, simulate, sweep, sweep_status, trace,
 };

@@ -3,8 +3,8 @@
 use super::failure::{Failure, code};
 use super::terminal::{print_answer, print_remark};
 use bankshot::output::atomic_file;
-use bankshot::plots::plot_type::Plot;
 use bankshot::plots::rasterise::to_png;
+use bankshot::plots::svg::Plot;
 use std::path::Path;
 
 /// Pixels of a PNG for each unit of its drawing.

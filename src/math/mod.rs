@@ -1,8 +1,8 @@
 //! Numbers, vectors and distributions: mathematics without physics.
 
+mod arithmetic_operators;
 pub mod evenly_spaced;
 pub mod normal_distribution;
-mod operator_macro;
 pub(crate) mod real;
 pub(crate) mod simd;
 pub(crate) mod single_precision;

@@ -1,6 +1,6 @@
 //! Numbers in the vector registers of the machine, however wide these are.
 
-use super::operator_macro::elementwise_operators;
+use super::arithmetic_operators::elementwise_operators;
 use super::real::{LaneBits, Mask, Real, SimdReal};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, f64x8, mask32x16, mask64x8};

@@ -1,6 +1,6 @@
 //! One single-precision number as a [`Real`].
 
-use super::operator_macro::elementwise_operators;
+use super::arithmetic_operators::elementwise_operators;
 use super::real::{Real, ScalarReal};
 
 /// One single-precision number.

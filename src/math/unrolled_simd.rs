@@ -1,6 +1,6 @@
 //! Two SIMD numbers side by side: two chains of operations that do not wait for each other.
 
-use super::operator_macro::elementwise_operators;
+use super::arithmetic_operators::elementwise_operators;
 use super::real::{LaneBits, Mask, Real, SimdReal};
 
 /// Twice as many lanes as `T`.

@@ -3,7 +3,7 @@
 pub(crate) mod ball_params;
 mod ball_state;
 pub(crate) mod constants_per_ball_mass;
-pub mod court;
+pub mod league_courts;
 mod physics;
 mod restitution;
 pub(crate) mod solids;

@@ -6,9 +6,9 @@
 
 use super::colormaps::{NOT_SIGNIFICANT, Rgb, diverging};
 use super::colour_key::ColourScale;
-use super::plot_type::Plot;
-use super::plotted_shot::PlottedShot;
 use super::release_map::{MAP_SIZE, ReleaseMap};
+use super::shot_with_probability::PlottedShot;
+use super::svg::Plot;
 use super::svg::{Anchor, Svg, shortened};
 use crate::analysis::release_map::{ReleaseCells, outcomes, probabilities};
 use crate::shooter::Profile;

@@ -3,7 +3,7 @@
 use super::axes::Axes;
 use super::svg::{FAINT, INK, Svg};
 use crate::model::Physics;
-use crate::model::court::Court;
+use crate::model::league_courts::Court;
 use std::f64::consts::PI;
 
 /// Segments of an arc.

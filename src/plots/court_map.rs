@@ -6,7 +6,7 @@ use super::colour_key::{ColourKey, draw_legend};
 use super::court_lines::draw_court_lines;
 use super::svg::{INK, Svg};
 use crate::model::Physics;
-use crate::model::court::Court;
+use crate::model::league_courts::Court;
 use crate::units::UnitSystem;
 use std::collections::BTreeSet;
 

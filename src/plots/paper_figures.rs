@@ -1,8 +1,8 @@
 //! The paper's Figs. 7 to 15 from the profiles in `configs/paper/`.
 
-use super::plot_type::Plot;
 use super::release_map::{MAP_SIZE, ReleaseMap};
 use super::shot_views::{self, MADE_COLOUR, ShotPath};
+use super::svg::Plot;
 use super::svg::{Anchor, Svg};
 use crate::analysis::release_map::{ReleaseCells, outcomes};
 use crate::config::{ConfigError, parse_profile};

@@ -3,7 +3,7 @@
 use super::axes::Axes;
 use super::colormaps::{Rgb, hex};
 use super::colour_key::draw_legend;
-use super::plot_type::Plot;
+use super::svg::Plot;
 use super::svg::{Anchor, Svg, shortened};
 use crate::shooter::Profile;
 

@@ -1,8 +1,8 @@
 //! One shot or many, from the side, from above and facing the board.
 
 use super::axes::Axes;
-use super::plot_type::Plot;
 use super::polyline_thinning::thinned;
+use super::svg::Plot;
 use super::svg::{Anchor, FAINT, INK, Svg, shortened};
 use crate::dynamics::{Event, EventKind, Trace};
 use crate::math::vector::Vec3;

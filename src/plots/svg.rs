@@ -4,6 +4,17 @@ use super::rasterise::encode_pixels;
 use base64::Engine;
 use std::fmt::Write;
 
+/// A finished plot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Plot {
+    /// File name without its extension.
+    pub name: String,
+    /// What the plot shows, in one sentence.
+    pub caption: String,
+    /// The SVG file.
+    pub svg: String,
+}
+
 /// Colour of text and lines.
 pub const INK: &str = "#222222";
 /// Colour of lines in the background.

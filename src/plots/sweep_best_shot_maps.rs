@@ -3,7 +3,7 @@
 
 use super::colormaps::{OKABE_ITO, Rgb, sequential};
 use super::colour_key::{ColourKey, ColourScale};
-use super::plot_type::Plot;
+use super::svg::Plot;
 use super::svg::{Anchor, Svg, shortened};
 use super::sweep_results::{PlaceResults, SweepResults};
 use crate::best_shot::ShotKind;

@@ -2,7 +2,7 @@
 
 use super::colormaps::{diverging, sequential};
 use super::colour_key::{ColourKey, ColourScale};
-use super::plot_type::Plot;
+use super::svg::Plot;
 use super::svg::{Anchor, Svg, shortened};
 use super::sweep_results::{PlaceResults, SweepResults, difference_colour, largest_difference};
 use crate::analysis::sensitivity::Difference;

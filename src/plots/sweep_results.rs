@@ -6,7 +6,7 @@ use super::court_map::{ColouredPlace, CourtMap};
 use super::svg::{Svg, shortened};
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
-use crate::model::court::Court;
+use crate::model::league_courts::Court;
 use crate::sweep::bank_direct_difference::is_significant;
 use crate::sweep::columns;
 use crate::sweep::job_list::Jobs;

@@ -1,10 +1,10 @@
 //! The files of a `best` run, read back for its page.
 
-use super::page_shot::{ReportShot, most_probable};
 use super::report_error::ReportError;
+use super::shot_in_words::{ReportShot, most_probable};
 use crate::best_shot::ShotKind;
 use crate::config::parse_profile;
-use crate::plots::plotted_shot::PlottedShot;
+use crate::plots::shot_with_probability::PlottedShot;
 use crate::shooter::{Nominal, Profile};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;

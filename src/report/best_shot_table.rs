@@ -1,7 +1,7 @@
 //! The table of the best shots.
 
 use super::html_table::{HtmlTable, format_cell};
-use super::page_shot::ReportShot;
+use super::shot_in_words::ReportShot;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// The table of the best shots.

@@ -8,12 +8,12 @@ mod best_shot_table;
 mod html_table;
 pub mod page;
 mod page_data;
-mod page_shot;
 mod report_error;
 mod sensitivity_table;
+mod shot_in_words;
 pub mod sweep_page;
 
 pub use html_table::HtmlTable;
 pub use page_data::Scene;
-pub use page_shot::ReportShot;
 pub use report_error::ReportError;
+pub use shot_in_words::ReportShot;

@@ -2,9 +2,9 @@
 
 use super::html_table::HtmlTable;
 use super::page_data::Scene;
-use super::page_shot::ReportShot;
+use super::shot_in_words::ReportShot;
 use crate::dynamics::StateError;
-use crate::plots::plot_type::Plot;
+use crate::plots::svg::Plot;
 use crate::plots::svg::{escaped, shortened};
 use std::fmt::Write;
 

@@ -1,9 +1,9 @@
 //! The data of a page's script: the shots with their paths, and the court.
 
-use super::page_shot::{ReportShot, describe_location};
+use super::shot_in_words::{ReportShot, describe_location};
 use crate::dynamics::{Release, Simulator, StateError};
 use crate::math::vector::Vec3;
-use crate::model::court::Court;
+use crate::model::league_courts::Court;
 use crate::output::json_object::number;
 use crate::units::UnitSystem;
 use serde_json::{Value, json};

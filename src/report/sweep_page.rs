@@ -3,11 +3,11 @@
 use super::best_shot_table::shot_table;
 use super::page::Page;
 use super::page_data::Scene;
-use super::page_shot::{ReportShot, describe_location, most_probable};
 use super::report_error::ReportError;
+use super::shot_in_words::{ReportShot, describe_location, most_probable};
 use crate::dynamics::Simulator;
-use crate::plots::plot_type::Plot;
-use crate::plots::plotted_shot::PlottedShot;
+use crate::plots::shot_with_probability::PlottedShot;
+use crate::plots::svg::Plot;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{sweep_bank_direct_map, sweep_best_shot_maps};
 use crate::shooter::Nominal;
@@ -76,9 +76,9 @@ fn list_shots(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Vec<ReportShot> {
                 let job = jobs.number(source.computed, kind);
                 let Some(row) = rows.get(&job) else { continue };
                 let shot = if mirrored {
-                    plotted_shot(&row.mirrored(), jobs, kind)
+                    shot_with_probability(&row.mirrored(), jobs, kind)
                 } else {
-                    plotted_shot(row, jobs, kind)
+                    shot_with_probability(row, jobs, kind)
                 };
                 let Some(shot) = shot else { continue };
                 if !mirrored {
@@ -98,7 +98,7 @@ fn list_shots(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Vec<ReportShot> {
 }
 
 /// The shot of a row, if one was found; `kind` is its index in [`Jobs::kinds`].
-fn plotted_shot(row: &ResultRow, jobs: &Jobs, kind: usize) -> Option<PlottedShot> {
+fn shot_with_probability(row: &ResultRow, jobs: &Jobs, kind: usize) -> Option<PlottedShot> {
     let value = |column| row.real(column).unwrap_or(0.0);
     Some(PlottedShot {
         kind: jobs.kinds[kind],

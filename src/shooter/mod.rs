@@ -1,27 +1,27 @@
 //! The shooter: release errors, limits, location on the court, and the checked profile of all of them.
 
+mod allowed_characters;
 mod correlation;
-mod dispersion;
 mod identity_hash;
 mod invalid_setting;
 mod location;
-mod name_check;
 mod nominal;
 mod profile;
 mod release_distribution;
+mod release_errors;
 mod release_variable;
 mod search_settings;
 mod shot_kind;
 
+pub use allowed_characters::is_control_or_direction;
 pub use correlation::Correlation;
-pub use dispersion::ReleaseDispersion;
 pub use identity_hash::{IdentityError, identity_hash};
 pub use invalid_setting::SettingError;
 pub use location::{Location, LocationError};
-pub use name_check::is_control_or_direction;
 pub use nominal::{Nominal, NominalOverrides};
 pub use profile::{OutputSettings, Profile, ProfileError, ProfileSettings, Shooter};
 pub use release_distribution::ReleaseDistribution;
+pub use release_errors::ReleaseDispersion;
 pub use release_variable::{NominalVariable, ReleaseVariable};
 pub use search_settings::{Search, SearchChoice, SearchSettings, TableGrid};
 pub use shot_kind::ShotKind;

@@ -1,11 +1,11 @@
 //! The checked profile: shooter, location, physics, search and output.
 
-use super::dispersion::{MAX_SPEED_M_S, MAX_SPIN_RAD_S, ReleaseDispersion};
+use super::allowed_characters::is_control_or_direction;
 use super::identity_hash::{IdentityError, identity_hash};
 use super::invalid_setting::{SettingChecks, SettingError};
 use super::location::{Location, LocationError};
-use super::name_check::is_control_or_direction;
 use super::nominal::{Nominal, NominalOverrides};
+use super::release_errors::{MAX_SPEED_M_S, MAX_SPIN_RAD_S, ReleaseDispersion};
 use super::release_variable::NominalVariable;
 use super::search_settings::{Search, SearchSettings, TableGrid};
 use crate::dynamics::{InstructionSet, Integrator, Release, Simulator, SimulatorError};

@@ -1,8 +1,8 @@
 //! What the search for the best shot looks at, and how precisely.
 
-use super::dispersion::MAX_SPEED_M_S;
 use super::invalid_setting::SettingChecks;
 use super::nominal::NominalOverrides;
+use super::release_errors::MAX_SPEED_M_S;
 use super::release_variable::NominalVariable;
 use crate::units::DEGREE_RAD;
 use serde::{Serialize, Serializer};

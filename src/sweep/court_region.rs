@@ -1,7 +1,7 @@
 //! The region of a sweep: its places on the court.
 
 use crate::model::Physics;
-use crate::model::court::League;
+use crate::model::league_courts::League;
 use crate::shooter::{Location, LocationError};
 use serde::Serialize;
 

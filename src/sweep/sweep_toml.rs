@@ -9,7 +9,7 @@ use crate::config::{
     ConfigError, Diagnostic, ReadSettings, parse_locations, parse_profile, parse_toml,
     read_settings, read_settings_of,
 };
-use crate::model::court::League;
+use crate::model::league_courts::League;
 use crate::shooter::{
     IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash,
     is_control_or_direction,

@@ -27,7 +27,7 @@ addEventListener('securitypolicyviolation', (event) => wrong.push('blocked ' + e
 console.error = (...words) => wrong.push(words.join(' '));</script>";
 
 /// Runs after the page's own script: does what a visitor does, and records what the page then shows.
-const AFTER: &str = include_str!("visit.js");
+const AFTER: &str = include_str!("use_report_page.js");
 
 /// What a visitor sees of a page in a window of some width, px.
 pub(crate) fn visit(chromium: &str, page: &Path, width: u32) -> serde_json::Value {

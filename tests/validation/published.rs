@@ -4,7 +4,7 @@
 //! false alarm for 1 of 150,000 choices of seeds.
 
 use crate::common::{at, grid, load, nominal, with_search};
-use bankshot::analysis::aim_point::centre_speed_m_s;
+use bankshot::analysis::aim_past_hoop::centre_speed_m_s;
 use bankshot::analysis::sensitivity::SensitivityTopics;
 use bankshot::best_shot::{self, BestShot, Limit, ShotKind};
 use bankshot::probability::{Estimate, Sampler, Silent, grid_integration, monte_carlo};

@@ -1,6 +1,6 @@
 //! `bankshot best`: load, plan, search, write.
 
-use crate::cli::args::BestOptions;
+use crate::cli::command_line_flags::BestOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
 use crate::cli::progress_bars::ProgressBars;

@@ -1,6 +1,6 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use crate::cli::args::CheckOptions;
+use crate::cli::command_line_flags::CheckOptions;
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::print_answer;

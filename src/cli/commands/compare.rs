@@ -1,7 +1,7 @@
 //! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two shooters.
 
 use super::sweep_summary;
-use crate::cli::args::CompareOptions;
+use crate::cli::command_line_flags::CompareOptions;
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
@@ -10,8 +10,8 @@ use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot::{self, BestShots};
 use bankshot::output::atomic_file;
-use bankshot::plots::plot_type::Plot;
-use bankshot::plots::plotted_shot::PlottedShot;
+use bankshot::plots::shot_with_probability::PlottedShot;
+use bankshot::plots::svg::Plot;
 use bankshot::plots::sweep_results::SweepResults;
 use bankshot::plots::{
     bank_direct_release_map, sweep_bank_direct_map, sweep_best_shot_maps, sweep_difference_map,

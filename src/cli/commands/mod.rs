@@ -5,7 +5,7 @@ pub(super) mod check;
 pub(super) mod compare;
 pub(super) mod figures;
 pub(super) mod plan;
-mod plan_of_sweep;
+mod plan_sweep_time_and_memory;
 pub(super) mod probability;
 pub(super) mod report;
 pub(super) mod simulate;

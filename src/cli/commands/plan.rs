@@ -1,7 +1,7 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
-use super::plan_of_sweep;
-use crate::cli::args::PlanOptions;
+use super::plan_sweep_time_and_memory;
+use crate::cli::command_line_flags::PlanOptions;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::{print_answer, print_remark};
@@ -37,7 +37,7 @@ struct Forecast {
 
 pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     if is_sweep(&read_text(&options.profile)?) {
-        return plan_of_sweep::run(&options.profile, options.json, quiet);
+        return plan_sweep_time_and_memory::run(&options.profile, options.json, quiet);
     }
     let profile = load_profile(&options.profile)?;
     let plan = TablePlan::for_search(&profile)?;

@@ -1,7 +1,7 @@
 //! `bankshot probability`: P of one nominal shot under up to nine errors.
 
 use super::trace;
-use crate::cli::args::{Method, ProbabilityOptions};
+use crate::cli::command_line_flags::{Method, ProbabilityOptions};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::nominal_shot_flags::NominalOptions;

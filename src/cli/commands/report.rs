@@ -1,7 +1,7 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
 use super::sweep_summary;
-use crate::cli::args::FolderOptions;
+use crate::cli::command_line_flags::FolderOptions;
 use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;

@@ -1,6 +1,6 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
-use crate::cli::args::{IntegratorName, SimulateOptions};
+use crate::cli::command_line_flags::{IntegratorName, SimulateOptions};
 use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
@@ -10,10 +10,11 @@ use bankshot::dynamics::{Integrator, Simulator};
 use bankshot::model::Physics;
 use bankshot::output::atomic_file::{AtomicFile, same_file};
 use bankshot::output::simulation_files::csv_records::{CsvRecords, Row};
-use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
-use bankshot::output::simulation_files::release_columns::{
-    OUTCOME_COLUMNS, OUTCOME_TYPES, ReleaseColumns, RowError, outcome_cells,
+use bankshot::output::simulation_files::outcome_columns::{
+    OUTCOME_COLUMNS, OUTCOME_TYPES, outcome_cells,
 };
+use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
+use bankshot::output::simulation_files::release_columns::{ReleaseColumns, RowError};
 use bankshot::probability::Progress;
 use csv::{ByteRecord, Writer};
 use parquet::basic::Type as Physical;

@@ -1,7 +1,7 @@
 //! `bankshot sweep` and `bankshot merge`: compute the jobs, and write the tables.
 
 use super::sweep_summary::{highlights, job_summary, missing_shards};
-use crate::cli::args::{MergeOptions, SweepOptions};
+use crate::cli::command_line_flags::{MergeOptions, SweepOptions};
 use crate::cli::config_files::load_sweep;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;

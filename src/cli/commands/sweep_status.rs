@@ -1,7 +1,7 @@
 //! `bankshot status`, `missing` and `verify`: the state of a sweep's folder.
 
 use super::sweep_summary::{exit_code, job_summary, missing_shards};
-use crate::cli::args::{FolderOptions, MissingOptions, VerifyOptions};
+use crate::cli::command_line_flags::{FolderOptions, MissingOptions, VerifyOptions};
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;

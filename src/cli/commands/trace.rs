@@ -1,7 +1,7 @@
 //! `bankshot trace`: one shot with its events, its trajectory and a plot.
 
 use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
-use crate::cli::args::TraceOptions;
+use crate::cli::command_line_flags::TraceOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files::PNG_SCALE;

@@ -1,10 +1,10 @@
 //! The default integrator: closed-form flight in which every touch is found, and contacts in long steps
 //! that end at contact events (the slip reaches zero, rolling fails, the ball parts, the other solid is touched).
 
-use crate::dynamics::contact::approach::{TakenStep, has_arrived, passed};
+use crate::dynamics::contact::contact_step::{Contact, MacroStep};
 use crate::dynamics::contact::double;
 use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::contact::macro_step::{Contact, MacroStep};
+use crate::dynamics::contact::other_solid_touch::{TakenStep, has_arrived, passed};
 use crate::dynamics::end_rules::{
     ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
 };

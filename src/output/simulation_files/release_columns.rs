@@ -1,10 +1,10 @@
-//! Releases from the columns of a file, and the columns that a simulation adds.
+//! Releases from the columns of a file.
 
-use crate::dynamics::{Outcome, Release};
-use crate::model::{Physics, SolidId};
+use super::outcome_columns::OUTCOME_COLUMNS;
+use crate::dynamics::Release;
+use crate::model::Physics;
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use csv::ByteRecord;
-use parquet::basic::Type as Physical;
 
 /// One parameter of a release.
 struct Parameter {
@@ -50,30 +50,6 @@ const PARAMETERS: [Parameter; 9] = [
         columns: [("side_spin_rev_s", REV_RAD), ("side_spin_rad_s", 1.0)],
         is_required: false,
     },
-];
-
-/// The columns that a simulation adds.
-pub const OUTCOME_COLUMNS: [&str; 8] = [
-    "made",
-    "kind",
-    "contacts",
-    "n_board",
-    "n_ring",
-    "flight_time_s",
-    "entry_angle_deg",
-    "first_touch_s",
-];
-
-/// Their types in Parquet.
-pub const OUTCOME_TYPES: [Physical; 8] = [
-    Physical::INT64,
-    Physical::BYTE_ARRAY,
-    Physical::BYTE_ARRAY,
-    Physical::INT64,
-    Physical::INT64,
-    Physical::DOUBLE,
-    Physical::DOUBLE,
-    Physical::DOUBLE,
 ];
 
 /// The columns of the parameters in one file.
@@ -319,26 +295,6 @@ fn cell(row: &ByteRecord, column: usize, name: &str) -> Result<f64, RowError> {
     } else {
         Err(refuse(format!("\"{shown}\" is not a finite number")))
     }
-}
-
-/// The added cells of a simulated row, in the order of [`OUTCOME_COLUMNS`].
-#[must_use]
-pub fn outcome_cells(outcome: &Outcome) -> [String; 8] {
-    let contacts = &outcome.verdict.contacts;
-    [
-        u8::from(outcome.verdict.made).to_string(),
-        outcome.kind.name().to_owned(),
-        contacts.to_string(),
-        contacts.count_of(SolidId::Board).to_string(),
-        contacts.count_of(SolidId::Ring).to_string(),
-        outcome.verdict.time_s.to_string(),
-        outcome.entry.map_or_else(String::new, |entry| {
-            (entry.angle_rad / DEGREE_RAD).to_string()
-        }),
-        outcome
-            .first_touch_s
-            .map_or_else(String::new, |time_s| time_s.to_string()),
-    ]
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A best shot on a page, and its description in words.
 
-use crate::plots::plotted_shot::PlottedShot;
+use crate::plots::shot_with_probability::PlottedShot;
 use crate::shooter::Location;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, at_most_two_decimals};
 

@@ -1,6 +1,6 @@
 //! The pattern search that climbs from a start to a local optimum.
 
-use crate::analysis::aim_point::centre_speed_m_s;
+use crate::analysis::aim_past_hoop::centre_speed_m_s;
 use crate::probability::Progress;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
