@@ -3,7 +3,7 @@
 use super::batch_state::Batch;
 use super::lane_block::{LaneBlock, bit, lanes_in};
 use super::workspace::Phase;
-use crate::dynamics::contact::double;
+use crate::dynamics::contact::double_contact_step;
 use crate::dynamics::end_rules::is_lodged;
 use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
@@ -49,22 +49,22 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 block.load_friction(self.simd, SolidId::Board),
                 block.load_friction(self.simd, SolidId::Ring),
             ];
-            let step = double::step(params, solids, &mut shots.state, &mut friction, longest);
+            let step =
+                double_contact_step::step(params, solids, &mut shots.state, &mut friction, longest);
             let separated = [
-                step.separated[0] | !solids.0.faces(&shots.state),
-                step.separated[1] | !solids.1.faces(&shots.state),
+                step.parts[0] | !solids.0.faces(&shots.state),
+                step.parts[1] | !solids.1.faces(&shots.state),
             ];
-            let stepped = step.dt.is_positive();
-            let rolling_times =
-                double::rolling_time(&friction, block.load_rolling_times(self.simd), step.dt);
-            let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & stepped;
+            let before_s = block.load_rolling_times(self.simd);
+            let rolling_times = double_contact_step::rolling_time(&friction, before_s, step.dt);
+            let lodged = is_lodged(rolling_times, self.limits.lodged_after_s);
             let end = shots.after_step(params, &before, step.dt, self.limits.time_limit_s);
             block.store(&shots);
             block.store_rolling_times(rolling_times);
             for solid in SolidId::ALL {
                 block.store_friction(solid, &friction[solid.index()]);
             }
-            let ended = T::mask_to_bits(end.any() & stepped);
+            let ended = T::mask_to_bits(end.any());
             let lodged = T::mask_to_bits(lodged);
             let separated = [T::mask_to_bits(separated[0]), T::mask_to_bits(separated[1])];
             let made = T::mask_to_bits(shots.crossing.is_made(params, &shots.state));

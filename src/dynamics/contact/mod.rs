@@ -1,9 +1,9 @@
 //! The ball in contact with one or two solids.
 
+mod contact_pair;
 pub(crate) mod contact_step;
-pub(crate) mod double;
-pub(crate) mod event_time;
+mod coupled_oscillators;
+pub(crate) mod double_contact_step;
 pub(crate) mod friction;
-pub(crate) mod normal_force;
 pub(crate) mod oscillator;
 pub(crate) mod other_solid_touch;

@@ -253,15 +253,7 @@ impl<T: Real> EventFunction<T> {
         let start = (motion.displacement, motion.velocity);
         let first = self.value(start, zero).positive_part();
         let slope = self.slope(material, oscillator.step_s, start) * until;
-        let curve = last - first - slope;
-        let root = (slope.squared() - first * curve * 4.0)
-            .positive_part()
-            .sqrt();
-        let falls = curve.is_negative();
-        let numerator = (slope + root).select(falls, first * 2.0);
-        let denominator = (curve * -2.0).select(falls, root - slope);
-        let denominator = denominator.select(denominator.is_positive(), one);
-        let mut tau = Real::max(Real::min(numerator / denominator, one), zero) * until;
+        let mut tau = parabola_root(first, slope, last) * until;
         for _ in 0..newton_steps {
             let now = motion.after(material, oscillator, oscillator.at(tau));
             let slope = self.slope(material, oscillator.step_s, now);
@@ -272,6 +264,22 @@ impl<T: Real> EventFunction<T> {
         }
         tau
     }
+}
+
+/// The first root in [0, 1] of the parabola with the value `first` (not negative) and the slope `slope` at 0, and
+/// the value `last` (not positive) at 1.
+#[inline(always)]
+pub(super) fn parabola_root<T: Real>(first: T, slope: T, last: T) -> T {
+    let (zero, one) = (first.zero(), first.one());
+    let curve = last - first - slope;
+    let root = (slope.squared() - first * curve * 4.0)
+        .positive_part()
+        .sqrt();
+    let falls = curve.is_negative();
+    let numerator = (slope + root).select(falls, first * 2.0);
+    let denominator = (curve * -2.0).select(falls, root - slope);
+    let denominator = denominator.select(denominator.is_positive(), one);
+    Real::max(Real::min(numerator / denominator, one), zero)
 }
 
 #[cfg(test)]

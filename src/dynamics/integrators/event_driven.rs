@@ -2,7 +2,7 @@
 //! that end at contact events (the slip reaches zero, rolling fails, the ball parts, the other solid is touched).
 
 use crate::dynamics::contact::contact_step::{Contact, MacroStep};
-use crate::dynamics::contact::double;
+use crate::dynamics::contact::double_contact_step;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::{TakenStep, has_arrived, passed};
 use crate::dynamics::end_rules::{
@@ -421,38 +421,36 @@ impl<O: Observer> Run<'_, O> {
         let params = self.params;
         loop {
             let before = self.shot.state;
-            let step = double::step(
+            let step = double_contact_step::step(
                 params,
                 solids,
                 &mut self.shot.state,
                 &mut self.shot.friction,
                 self.limits.longest_step_s,
             );
+            let ending = self.after_step(step.dt, &before, step.impulses);
+            let shot = &mut self.shot;
+            shot.rolling_time_s =
+                double_contact_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
+            if let Some(ending) = ending {
+                let made = shot.crossing.is_made(params, &shot.state);
+                return Some(shot.verdict(ending, made));
+            }
+            if is_lodged(shot.rolling_time_s, self.limits.lodged_after_s) {
+                return Some(shot.verdict(Ending::Lodged, false));
+            }
+            shot.steps += 1;
+            if shot.steps >= self.limits.max_steps {
+                return Some(shot.verdict(Ending::Unresolved, false));
+            }
             let separated = [
-                step.separated[0] || !solids.0.faces(&self.shot.state),
-                step.separated[1] || !solids.1.faces(&self.shot.state),
+                step.parts[0] || !solids.0.faces(&shot.state),
+                step.parts[1] || !solids.1.faces(&shot.state),
             ];
             for (separated, solid) in separated.into_iter().zip([A::ID, B::ID]) {
                 if separated {
                     self.part(solid);
                 }
-            }
-            if step.dt > 0.0 {
-                let ending = self.after_step(step.dt, &before, step.impulses);
-                let shot = &mut self.shot;
-                shot.rolling_time_s =
-                    double::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
-                if let Some(ending) = ending {
-                    let made = shot.crossing.is_made(params, &shot.state);
-                    return Some(shot.verdict(ending, made));
-                }
-                if is_lodged(shot.rolling_time_s, self.limits.lodged_after_s) {
-                    return Some(shot.verdict(Ending::Lodged, false));
-                }
-            }
-            self.shot.steps += 1;
-            if self.shot.steps >= self.limits.max_steps {
-                return Some(self.shot.verdict(Ending::Unresolved, false));
             }
             if separated.contains(&true) {
                 self.shot.after_double(params, separated);

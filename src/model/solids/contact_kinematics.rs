@@ -75,15 +75,26 @@ impl<T: Real> ContactKinematics<T> {
         self.curvature_1 * v.x.squared() + self.curvature_2 * v.y.squared()
     }
 
+    /// The part of the slip's rate that is proportional to the normal velocity, for a unit of it:
+    /// `-(n' + w x n)`.
+    #[inline(always)]
+    pub(crate) fn slip_rate_swing(&self) -> Vec2<T> {
+        let (v, w) = (self.velocity.tangent, self.spin.tangent);
+        Vec2::new(
+            -(self.curvature_1 * v.x + w.y),
+            w.x - self.curvature_2 * v.y,
+        )
+    }
+
     /// Rate of the slip from motion alone, without forces: `-(v_n (n' + w x n) + (R-u) w_n (n x n'))`.
     #[inline(always)]
     fn slip_rate_of_motion(&self) -> Vec2<T> {
-        let (v, w) = (self.velocity.tangent, self.spin.tangent);
-        let (turn_1, turn_2) = (self.curvature_1 * v.x, self.curvature_2 * v.y);
+        let v = self.velocity;
+        let swing = self.slip_rate_swing();
         let twist = self.lever * self.spin.normal;
         Vec2::new(
-            twist * turn_2 - self.velocity.normal * (turn_1 + w.y),
-            -(twist * turn_1) - self.velocity.normal * (turn_2 - w.x),
+            swing.x * v.normal + twist * (self.curvature_2 * v.tangent.y),
+            swing.y * v.normal - twist * (self.curvature_1 * v.tangent.x),
         )
     }
 

@@ -9,8 +9,6 @@ pub(crate) struct Material<T> {
     pub(crate) stiffness: T,
     /// c/m, 1/s.
     pub(crate) damping: T,
-    /// c/k, s: about the time from zero force (N = 0) to zero compression (u = 0) of an outgoing ball.
-    pub(crate) relaxation_time: T,
     /// Coefficient of kinetic friction mu.
     pub(crate) friction_coefficient: T,
 }
@@ -21,7 +19,6 @@ impl Material<f64> {
         Material {
             stiffness: splat(self.stiffness),
             damping: splat(self.damping),
-            relaxation_time: splat(self.relaxation_time),
             friction_coefficient: splat(self.friction_coefficient),
         }
     }

@@ -1,0 +1,425 @@
+//! Contact with two solids at once, in long steps.
+//!
+//! Both normal forces obey linear equations as long as their directions and what does not depend on them are
+//! constant ([`super::coupled_oscillators`]). The motion with these forces is the base of a step. What they leave
+//! out (the turning of the ring's frame, the direction of the slip, the friction of rolling) is the remainder: an
+//! acceleration, evaluated in the middle and at the end of the step, that acts on the base as two kicks by
+//! Simpson's rule. The base answers to the first of them through the same linear equations.
+//!
+//! A step ends at the first event of either contact: its slip or its roll ends, its force reaches zero, the ball
+//! parts.
+
+use super::contact_pair::{ContactPair, FIRST, Response, SECOND, for_both};
+use super::coupled_oscillators::{CoupledOscillators, CoupledStart, SlipSeries};
+use super::friction::{DIRECTION_SLIP_FRACTION, FrictionState, SLIP_TOLERANCE_M_S};
+use crate::math::real::{Mask, Real};
+use crate::math::vector::{RealVector, Vec2, Vec3};
+use crate::model::BallState;
+use crate::model::constants_per_ball_mass::ModelParams;
+use crate::model::solids::{ContactVector, Solid};
+
+/// Normal force that counts as zero: this acceleration (m/s^2), and this fraction of the damping force.
+const NO_FORCE: (f64, f64) = (0.5, 0.05);
+/// A step meant to end the slip may leave this fraction of it, and this much (m/s): the other contact turns the slip
+/// as it decreases. Friction's own impulse removes the rest.
+const SLIP_REMAINDER: (f64, f64) = (0.2, 1e-3);
+/// Shortest step, as a fraction of the longest. (Two sliding contacts can end each other's slip without end.)
+const SHORTEST_STEP: f64 = 2e-4;
+
+/// The result of one step.
+pub(crate) struct DoubleContactStep<T: Real> {
+    /// Length of the step, s.
+    pub(crate) dt: T,
+    /// Whether the ball leaves each solid at the end of the step.
+    pub(crate) parts: [T::Mask; 2],
+    /// Impulses of both contacts per unit of mass, m/s.
+    pub(crate) impulses: [Vec3<T>; 2],
+}
+
+/// How friction acts at both contacts throughout a step.
+struct FrictionMode<T: Real> {
+    rolling: [T::Mask; 2],
+    /// Contacts at zero slip that cannot roll from now on.
+    fails_now: [T::Mask; 2],
+    /// Friction at the start.
+    frictions: [Vec2<T>; 2],
+    /// Slips at the start, 0 where they have ended.
+    slip_speeds: [T; 2],
+    /// Directions of the slips, or in which the contacts would slip.
+    directions: [Vec2<T>; 2],
+}
+
+/// The forces of a step as if their directions did not change.
+struct BaseForces<T> {
+    oscillators: CoupledOscillators<T>,
+    /// What a unit of each normal force does, together with the friction that slides.
+    per_force: [Response<T>; 2],
+    /// The friction that rolls.
+    rolling: [Response<T>; 2],
+}
+
+/// Where a step ends.
+struct StepEnd<T: Real> {
+    /// In units of the longest step.
+    tau: T,
+    parts: [T::Mask; 2],
+    ends_slip: [T::Mask; 2],
+}
+
+/// Advances a ball in contact with two solids by one step of at most `step_s`.
+#[inline(always)]
+pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
+    solids: (&A, &B),
+    state: &mut BallState<T>,
+    friction: &mut [FrictionState<T>; 2],
+    step_s: T,
+) -> DoubleContactStep<T> {
+    let mut pair = ContactPair::new(params, solids, state);
+    // Slips that have ended are removed by friction's own impulses.
+    let at_zero_slip = for_both!(i => {
+        let slip = pair.kinematics[i].slip();
+        friction[i].rolling | slip.norm_squared().le(friction[i].slip_tolerance.squared())
+    });
+    let mut impulses = [Vec3::splat(params.zero()); 2];
+    if (at_zero_slip[FIRST] | at_zero_slip[SECOND]).any() {
+        impulses = remove_slips(params, solids, state, &mut pair, at_zero_slip);
+    }
+    let mode = FrictionMode::new(params, &pair, friction, at_zero_slip);
+    let base = BaseForces::new(params, &pair, &mode, step_s);
+    let end = first_event(params, &pair, &mode, &base);
+    let (dt, half) = (end.tau * step_s, end.tau * 0.5);
+
+    // The remainder in the middle and, with twice that of the middle (Kutta's third-order rule), at the end.
+    let middle = base.advance(params, state, half);
+    let at_middle = remainder(params, solids, &middle, &mode, &base, half);
+    let rest = sum(at_middle[FIRST], at_middle[SECOND]);
+    let mut last = base.advance(params, state, end.tau);
+    last.position_m = last.position_m.add_scaled(rest.0, dt * dt * (1.0 / 3.0));
+    kick(&mut last, rest, dt * 2.0);
+    let at_end = remainder(params, solids, &last, &mode, &base, end.tau);
+
+    // The base, the kick in the middle with its echo, and the kick at the end.
+    let mut next = base.advance(params, state, end.tau);
+    let (weight_middle, weight_end) = (dt * (4.0 / 6.0), dt * (1.0 / 6.0));
+    next.position_m = next.position_m.add_scaled(rest.0, weight_middle * dt * 0.5);
+    kick(&mut next, rest, weight_middle);
+    let echo = base.after_kick(params, &pair, rest.0, weight_middle);
+    for i in [FIRST, SECOND] {
+        let (impulse, path) = echo.impulse_and_path(i, half);
+        let (linear, angular) = base.per_force[i];
+        next.position_m = next.position_m.add_scaled(linear, path);
+        next.velocity_m_s = next.velocity_m_s.add_scaled(linear, impulse);
+        next.spin_rad_s = next.spin_rad_s.add_scaled(angular, impulse);
+        kick(&mut next, at_end[i], weight_end);
+        let (base_impulse, _) = base.oscillators.impulse_and_path(i, end.tau);
+        impulses[i] = impulses[i]
+            .add_scaled(linear, base_impulse + impulse)
+            .add_scaled(base.rolling[i].0, dt)
+            .add_scaled(at_middle[i].0, weight_middle)
+            .add_scaled(at_end[i].0, weight_end);
+    }
+    *state = next;
+    for i in [FIRST, SECOND] {
+        let (share, least) = SLIP_REMAINDER;
+        let left = Real::max(mode.slip_speeds[i] * share, params.splat(least));
+        let failed = friction[i].rolling_failed | mode.fails_now[i];
+        friction[i] = FrictionState {
+            rolling: mode.rolling[i],
+            rolling_failed: failed & !base.oscillators.is_loading(i),
+            slip_tolerance: left.select(end.ends_slip[i], params.splat(SLIP_TOLERANCE_M_S)),
+        };
+    }
+    DoubleContactStep {
+        dt,
+        parts: end.parts,
+        impulses,
+    }
+}
+
+impl<T: Real> FrictionMode<T> {
+    /// The contacts at zero slip whose friction suffices roll. If it does not suffice for one, that one slides, and
+    /// the other is solved for again.
+    #[inline(always)]
+    fn new(
+        params: &ModelParams<T>,
+        pair: &ContactPair<T>,
+        friction: &[FrictionState<T>; 2],
+        at_zero_slip: [T::Mask; 2],
+    ) -> Self {
+        let slips = for_both!(i => pair.kinematics[i].slip());
+        let limits = for_both!(i => pair.friction_limit(i));
+        let directions = for_both!(i => {
+            let slip_rate = pair.frictionless_slip_rate(i, pair.normal_only(params, 1 - i));
+            let slip_or_slip_rate = slip_rate.select(at_zero_slip[i], slips[i]);
+            let size = slip_or_slip_rate.norm();
+            let inverse_size = params.one() / size.select(size.is_positive(), params.one());
+            Vec2::new(slip_or_slip_rate.x * inverse_size, slip_or_slip_rate.y * inverse_size)
+        });
+        let sliding = for_both!(i => friction_against(limits[i], directions[i]));
+        let mut rolling = for_both!(i => at_zero_slip[i] & !friction[i].rolling_failed);
+        let mut fails_now = [params.splat_mask(false); 2];
+        let mut frictions = pair.frictions(params, rolling, sliding);
+        // At most two passes: each ends the roll of one contact.
+        loop {
+            let [first, second] = for_both!(i => {
+                let excess = frictions[i].norm() - limits[i];
+                excess.select(rolling[i], -params.ball.never_s)
+            });
+            let fails = [
+                second.le(first) & first.is_positive(),
+                first.lt(second) & second.is_positive(),
+            ];
+            if !(fails[FIRST] | fails[SECOND]).any() {
+                break;
+            }
+            for i in [FIRST, SECOND] {
+                rolling[i] = rolling[i] & !fails[i];
+                fails_now[i] = fails_now[i] | fails[i];
+            }
+            frictions = pair.frictions(params, rolling, sliding);
+        }
+        Self {
+            rolling,
+            fails_now,
+            frictions,
+            slip_speeds: for_both!(i => params.zero().select(at_zero_slip[i], slips[i].norm())),
+            directions,
+        }
+    }
+}
+
+impl<T: Real> BaseForces<T> {
+    #[inline(always)]
+    fn new(
+        params: &ModelParams<T>,
+        pair: &ContactPair<T>,
+        mode: &FrictionMode<T>,
+        step_s: T,
+    ) -> Self {
+        let (zero, one) = (params.zero(), params.one());
+        let none = Vec2::splat(zero);
+        let per_force = for_both!(i => {
+            let slides = pair.normals[i].is_positive() & !mode.rolling[i];
+            let mu = pair.materials[i].friction_coefficient;
+            let tangent = friction_against(mu, mode.directions[i]).select(slides, none);
+            pair.response(i, ContactVector { normal: one, tangent })
+        });
+        let rolling = for_both!(i => {
+            let tangent = mode.frictions[i].select(mode.rolling[i], none);
+            pair.response(i, ContactVector { normal: zero, tangent })
+        });
+        let start = CoupledStart {
+            materials: &pair.materials,
+            coupling: for_both!(i => pair.axes[i][0].dot(per_force[1 - i].0)),
+            compressions: for_both!(i => pair.kinematics[i].compression),
+            velocities: for_both!(i => pair.kinematics[i].velocity.normal),
+            accelerations: for_both!(i => {
+                let kinematics = &pair.kinematics[i];
+                kinematics.gravity.normal
+                    + kinematics.frame_acceleration()
+                    + pair.axes[i][0].dot(rolling[1 - i].0)
+            }),
+        };
+        Self {
+            oscillators: CoupledOscillators::new(step_s, &start),
+            per_force,
+            rolling,
+        }
+    }
+
+    /// The state at `tau` with these forces.
+    #[inline(always)]
+    fn advance(&self, params: &ModelParams<T>, from: &BallState<T>, tau: T) -> BallState<T> {
+        let dt = tau * self.oscillators.step_s();
+        let half_square = dt * dt * 0.5;
+        let gravity = Vec3::new(params.zero(), params.zero(), -params.ball.gravity);
+        let mut state = BallState {
+            position_m: from
+                .position_m
+                .add_scaled(from.velocity_m_s, dt)
+                .add_scaled(gravity, half_square),
+            velocity_m_s: from.velocity_m_s.add_scaled(gravity, dt),
+            spin_rad_s: from.spin_rad_s,
+        };
+        for i in [FIRST, SECOND] {
+            let (impulse, path) = self.oscillators.impulse_and_path(i, tau);
+            let ((linear, angular), rolling) = (self.per_force[i], self.rolling[i]);
+            state.position_m = state
+                .position_m
+                .add_scaled(linear, path)
+                .add_scaled(rolling.0, half_square);
+            state.velocity_m_s = state
+                .velocity_m_s
+                .add_scaled(linear, impulse)
+                .add_scaled(rolling.0, dt);
+            state.spin_rad_s = state
+                .spin_rad_s
+                .add_scaled(angular, impulse)
+                .add_scaled(rolling.1, dt);
+        }
+        state
+    }
+
+    /// The normal forces that follow from a kick of `linear` times `dt`.
+    #[inline(always)]
+    fn after_kick(
+        &self,
+        params: &ModelParams<T>,
+        pair: &ContactPair<T>,
+        linear: Vec3<T>,
+        dt: T,
+    ) -> CoupledOscillators<T> {
+        let zero = params.zero();
+        let start = CoupledStart {
+            materials: &pair.materials,
+            coupling: for_both!(i => pair.axes[i][0].dot(self.per_force[1 - i].0)),
+            compressions: [zero; 2],
+            velocities: for_both!(i => pair.axes[i][0].dot(linear) * dt),
+            accelerations: [zero; 2],
+        };
+        CoupledOscillators::new(self.oscillators.step_s(), &start)
+    }
+}
+
+/// The first event of a step.
+#[inline(always)]
+fn first_event<T: Real>(
+    params: &ModelParams<T>,
+    pair: &ContactPair<T>,
+    mode: &FrictionMode<T>,
+    base: &BaseForces<T>,
+) -> StepEnd<T> {
+    let (zero, one) = (params.zero(), params.one());
+    let oscillators = &base.oscillators;
+    let all = params.splat_mask(true);
+    // The force ends before the compression of an outgoing ball does.
+    let pressing = for_both!(i => {
+        let (least, share) = NO_FORCE;
+        let damping = pair.materials[i].damping * pair.kinematics[i].velocity.normal.abs();
+        (damping * share + least).lt(pair.normals[i])
+    });
+    let ends = for_both!(i => {
+        let force = oscillators.force_series(i, one, zero);
+        let series = force.select(pressing[i], &oscillators.compression_series(i));
+        series.first_root(one, all)
+    });
+    let until = Real::min(ends[FIRST].1, ends[SECOND].1);
+    let changes = for_both!(i => {
+        let kinematics = &pair.kinematics[i];
+        let (direction, speed) = (mode.directions[i], mode.slip_speeds[i]);
+        let swing = kinematics.slip_rate_swing();
+        let per_path = swing.dot(direction);
+        let from_rolling = pair.slip_rate(i, base.rolling[1 - i]);
+        let still = kinematics.frictionless_slip_rate() + from_rolling;
+        let slip = SlipSeries {
+            speed,
+            rate: still.dot(direction) - per_path * kinematics.velocity.normal,
+            per_path,
+            per_force: [
+                pair.slip_rate(i, base.per_force[FIRST]).dot(direction),
+                pair.slip_rate(i, base.per_force[SECOND]).dot(direction),
+            ],
+        };
+        let mu = pair.materials[i].friction_coefficient;
+        // What rolling needs is hard to predict with two contacts; its limit is not.
+        let reserve = oscillators.force_series(i, mu, mode.frictions[i].norm());
+        let series = reserve.select(mode.rolling[i], &oscillators.slip_series(i, &slip));
+        let can_change = mode.rolling[i] | (speed.is_positive() & pair.normals[i].is_positive());
+        series.first_root(until, can_change)
+    });
+    let first_change = Real::min(changes[FIRST].1, changes[SECOND].1);
+    let tau = Real::min(until, first_change);
+    StepEnd {
+        tau: Real::max(tau, one * SHORTEST_STEP),
+        parts: for_both!(i => ends[i].0 & !pressing[i] & ends[i].1.le(tau)),
+        ends_slip: for_both!(i => changes[i].0 & !mode.rolling[i] & changes[i].1.le(tau)),
+    }
+}
+
+/// Friction of the size `limit` against a direction of slip.
+#[inline(always)]
+fn friction_against<T: Real>(limit: T, direction: Vec2<T>) -> Vec2<T> {
+    Vec2::new(-(limit * direction.x), -(limit * direction.y))
+}
+
+#[inline(always)]
+fn sum<T: Real>(a: Response<T>, b: Response<T>) -> Response<T> {
+    (a.0 + b.0, a.1 + b.1)
+}
+
+/// Adds an acceleration times `dt` to the velocities.
+#[inline(always)]
+fn kick<T: Real>(state: &mut BallState<T>, (linear, angular): Response<T>, dt: T) {
+    state.velocity_m_s = state.velocity_m_s.add_scaled(linear, dt);
+    state.spin_rad_s = state.spin_rad_s.add_scaled(angular, dt);
+}
+
+/// What the forces of each contact at a stage are more than those of the base.
+#[inline(always)]
+fn remainder<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
+    solids: (&A, &B),
+    state: &BallState<T>,
+    mode: &FrictionMode<T>,
+    base: &BaseForces<T>,
+    tau: T,
+) -> [Response<T>; 2] {
+    let pair = ContactPair::new(params, solids, state);
+    let sliding = for_both!(i => {
+        let (slip, initial) = (pair.kinematics[i].slip(), mode.directions[i]);
+        let threshold = mode.slip_speeds[i] * DIRECTION_SLIP_FRACTION;
+        let has_direction = threshold.lt(slip.dot(initial));
+        let inverse = params.one() / slip.norm().select(has_direction, params.one());
+        let now = Vec2::new(slip.x * inverse, slip.y * inverse);
+        friction_against(pair.friction_limit(i), now.select(has_direction, initial))
+    });
+    let frictions = pair.frictions(params, mode.rolling, sliding);
+    for_both!(i => {
+        let force = ContactVector { normal: pair.normals[i], tangent: frictions[i] };
+        let (linear, angular) = pair.response(i, force);
+        let size = base.oscillators.force(i, tau);
+        let (base_linear, base_angular) = base.per_force[i];
+        let (rolling_linear, rolling_angular) = base.rolling[i];
+        (
+            linear.add_scaled(base_linear, -size) - rolling_linear,
+            angular.add_scaled(base_angular, -size) - rolling_angular,
+        )
+    })
+}
+
+/// For how long the ball has rolled on both solids without a break, after a step of `dt`, s.
+#[inline(always)]
+pub(crate) fn rolling_time<T: Real>(friction: &[FrictionState<T>; 2], before: T, dt: T) -> T {
+    (before + dt).select(
+        friction[FIRST].rolling & friction[SECOND].rolling,
+        dt.zero(),
+    )
+}
+
+/// Removes the slips of the contacts at zero slip together; returns the impulses per unit of mass.
+#[inline(always)]
+fn remove_slips<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
+    solids: (&A, &B),
+    state: &mut BallState<T>,
+    pair: &mut ContactPair<T>,
+    at_zero_slip: [T::Mask; 2],
+) -> [Vec3<T>; 2] {
+    let zero = params.zero();
+    let right_side =
+        for_both!(i => (-pair.kinematics[i].slip()).select(at_zero_slip[i], Vec2::splat(zero)));
+    let slip_impulses = pair.solve(params, at_zero_slip, right_side);
+    let impulses = for_both!(i => {
+        let impulse = ContactVector {
+            normal: zero,
+            tangent: slip_impulses[i],
+        };
+        let (linear, angular) = pair.response(i, impulse);
+        state.velocity_m_s = state.velocity_m_s.add_scaled(linear, params.one());
+        state.spin_rad_s = state.spin_rad_s.add_scaled(angular, params.one());
+        linear
+    });
+    *pair = ContactPair::new(params, solids, state);
+    impulses
+}
