@@ -23,6 +23,7 @@ impl ModelParams {
         let material = |_: SolidId| Material {
             stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
             damping: physics.damping_kg_s / physics.ball_mass_kg,
+            relaxation_time: physics.damping_kg_s / physics.stiffness_n_m,
             friction_coefficient: physics.friction,
         };
         Self {

@@ -91,16 +91,36 @@ impl<T: Real> ContactPair<T> {
     /// The acceleration of the ball from (n, 1, 2) accelerations at a contact.
     #[inline(always)]
     pub(super) fn response(&self, contact: usize, force: ContactVector<T>) -> Response<T> {
-        let [normal, tangent_1, tangent_2] = self.axes[contact];
-        let lever_over_inertia = self.lever_over_inertia[contact];
-        let tangent = force.tangent;
+        let (linear, angular) = self.response_to_friction(contact, force.tangent);
         (
-            (normal * force.normal)
-                .add_scaled(tangent_1, tangent.x)
-                .add_scaled(tangent_2, tangent.y),
-            (tangent_1 * (lever_over_inertia * tangent.y))
-                .add_scaled(tangent_2, -(lever_over_inertia * tangent.x)),
+            linear.add_scaled(self.axes[contact][0], force.normal),
+            angular,
         )
+    }
+
+    /// The same for friction alone.
+    #[inline(always)]
+    pub(super) fn response_to_friction(&self, contact: usize, friction: Vec2<T>) -> Response<T> {
+        let [_, tangent_1, tangent_2] = self.axes[contact];
+        let lever_over_inertia = self.lever_over_inertia[contact];
+        (
+            (tangent_1 * friction.x).add_scaled(tangent_2, friction.y),
+            (tangent_1 * (lever_over_inertia * friction.y))
+                .add_scaled(tangent_2, -(lever_over_inertia * friction.x)),
+        )
+    }
+
+    /// Takes the velocities of a state at the same position.
+    #[inline(always)]
+    pub(super) fn set_motion(&mut self, state: &BallState<T>) {
+        for i in [FIRST, SECOND] {
+            let [n, tangent_1, tangent_2] = self.axes[i];
+            let along =
+                |v: Vec3<T>| ContactVector::new(n.dot(v), tangent_1.dot(v), tangent_2.dot(v));
+            self.kinematics[i].velocity = along(state.velocity_m_s);
+            self.kinematics[i].spin = along(state.spin_rad_s);
+            self.normals[i] = self.kinematics[i].normal_force(&self.materials[i]);
+        }
     }
 
     /// The slip rate at a contact from the force of the other contact.

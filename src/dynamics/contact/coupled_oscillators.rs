@@ -18,7 +18,7 @@ use crate::model::solids::Material;
 /// Terms of the series of the force. (With a fifth of a bounce for a step the next term is below 1e-5.)
 const TERMS: usize = 8;
 /// Newton steps to an event.
-const NEWTON_STEPS: u32 = 3;
+const NEWTON_STEPS: u32 = 2;
 
 /// What the motion starts from.
 pub(super) struct CoupledStart<'a, T> {
@@ -147,8 +147,8 @@ impl<T: Real> CoupledOscillators<T> {
     #[inline(always)]
     pub(super) fn force_series(&self, contact: usize, factor: T, constant: T) -> EventSeries<T> {
         let mut terms = [factor.zero(); TERMS + 1];
-        for term in 0..TERMS {
-            terms[term] = self.forces[contact][term] * factor;
+        for (term, force) in terms.iter_mut().zip(&self.forces[contact]) {
+            *term = *force * factor;
         }
         terms[0] = terms[0] - constant;
         EventSeries(terms)
@@ -173,7 +173,7 @@ impl<T: Real> CoupledOscillators<T> {
 impl<T: Real> EventSeries<T> {
     /// `self` where `condition` holds, `other` elsewhere.
     #[inline(always)]
-    pub(super) fn select(self, condition: T::Mask, other: &Self) -> Self {
+    pub(super) fn select(&self, condition: T::Mask, other: &Self) -> Self {
         let mut terms = self.0;
         for (term, other) in terms.iter_mut().zip(&other.0) {
             *term = term.select(condition, *other);
@@ -192,24 +192,30 @@ impl<T: Real> EventSeries<T> {
         (value, slope)
     }
 
-    /// Whether the function falls to zero within (0, `until`] where `possible`, and where (`until` elsewhere).
+    /// Whether the function falls to zero within (0, `until`] where `possible`, and about where (1 elsewhere).
     #[inline(always)]
     pub(super) fn first_root(&self, until: T, possible: T::Mask) -> (T::Mask, T) {
-        let zero = until.zero();
+        let one = until.one();
         let (last, _) = self.value_and_slope(until);
-        let falls = possible & last.le(zero);
+        let falls = possible & last.le(until.zero());
         if !falls.any() {
-            return (falls, until);
+            return (falls, one);
         }
         let first = self.0[0].positive_part();
-        let mut tau = parabola_root(first, self.0[1] * until, last) * until;
+        let root = parabola_root(first, self.0[1] * until, last) * until;
+        (falls, root.select(falls, one))
+    }
+
+    /// The root near `tau`.
+    #[inline(always)]
+    pub(super) fn refined_root(&self, mut tau: T) -> T {
         for _ in 0..NEWTON_STEPS {
             let (value, slope) = self.value_and_slope(tau);
             let usable = slope.is_negative();
             let next = tau - value / slope.select(usable, tau.one());
-            tau = Real::max(Real::min(next.select(usable, tau), until), zero);
+            tau = Real::max(Real::min(next.select(usable, tau), tau.one()), tau.zero());
         }
-        (falls, tau.select(falls, until))
+        tau
     }
 }
 

@@ -18,8 +18,6 @@ use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactVector, Solid};
 
-/// Normal force that counts as zero: this acceleration (m/s^2), and this fraction of the damping force.
-const NO_FORCE: (f64, f64) = (0.5, 0.05);
 /// A step meant to end the slip may leave this fraction of it, and this much (m/s): the other contact turns the slip
 /// as it decreases. Friction's own impulse removes the rest.
 const SLIP_REMAINDER: (f64, f64) = (0.2, 1e-3);
@@ -54,6 +52,8 @@ struct BaseForces<T> {
     oscillators: CoupledOscillators<T>,
     /// What a unit of each normal force does, together with the friction that slides.
     per_force: [Response<T>; 2],
+    /// The part of the friction in it.
+    sliding: [Response<T>; 2],
     /// The friction that rolls.
     rolling: [Response<T>; 2],
 }
@@ -63,6 +63,8 @@ struct StepEnd<T: Real> {
     /// In units of the longest step.
     tau: T,
     parts: [T::Mask; 2],
+    /// Where the force of each contact ends: before the compression of an outgoing ball does.
+    zero_force: [T; 2],
     ends_slip: [T::Mask; 2],
 }
 
@@ -83,7 +85,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     });
     let mut impulses = [Vec3::splat(params.zero()); 2];
     if (at_zero_slip[FIRST] | at_zero_slip[SECOND]).any() {
-        impulses = remove_slips(params, solids, state, &mut pair, at_zero_slip);
+        impulses = remove_slips(params, state, &mut pair, at_zero_slip);
     }
     let mode = FrictionMode::new(params, &pair, friction, at_zero_slip);
     let base = BaseForces::new(params, &pair, &mode, step_s);
@@ -94,23 +96,22 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     let middle = base.advance(params, state, half);
     let at_middle = remainder(params, solids, &middle, &mode, &base, half);
     let rest = sum(at_middle[FIRST], at_middle[SECOND]);
-    let mut last = base.advance(params, state, end.tau);
+    let mut next = base.advance(params, state, end.tau);
+    let mut last = next;
     last.position_m = last.position_m.add_scaled(rest.0, dt * dt * (1.0 / 3.0));
     kick(&mut last, rest, dt * 2.0);
     let at_end = remainder(params, solids, &last, &mode, &base, end.tau);
 
-    // The base, the kick in the middle with its echo, and the kick at the end.
-    let mut next = base.advance(params, state, end.tau);
+    // The base, the kick in the middle with the forces that it causes, and the kick at the end.
     let (weight_middle, weight_end) = (dt * (4.0 / 6.0), dt * (1.0 / 6.0));
     next.position_m = next.position_m.add_scaled(rest.0, weight_middle * dt * 0.5);
     kick(&mut next, rest, weight_middle);
-    let echo = base.after_kick(params, &pair, rest.0, weight_middle);
+    let caused = base.after_kick(params, &pair, rest.0, weight_middle);
     for i in [FIRST, SECOND] {
-        let (impulse, path) = echo.impulse_and_path(i, half);
+        let (impulse, path) = caused.impulse_and_path(i, half);
         let (linear, angular) = base.per_force[i];
         next.position_m = next.position_m.add_scaled(linear, path);
-        next.velocity_m_s = next.velocity_m_s.add_scaled(linear, impulse);
-        next.spin_rad_s = next.spin_rad_s.add_scaled(angular, impulse);
+        kick(&mut next, (linear, angular), impulse);
         kick(&mut next, at_end[i], weight_end);
         let (base_impulse, _) = base.oscillators.impulse_and_path(i, end.tau);
         impulses[i] = impulses[i]
@@ -118,6 +119,14 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
             .add_scaled(base.rolling[i].0, dt)
             .add_scaled(at_middle[i].0, weight_middle)
             .add_scaled(at_end[i].0, weight_end);
+        let pulls = end.zero_force[i].lt(end.tau);
+        if pulls.any() {
+            // The base slides with a negative force too, on the last way to zero compression.
+            let (at_zero_force, _) = base.oscillators.impulse_and_path(i, end.zero_force[i]);
+            let negative = (at_zero_force - base_impulse).select(pulls, params.zero());
+            kick(&mut next, base.sliding[i], negative);
+            impulses[i] = impulses[i].add_scaled(base.sliding[i].0, negative);
+        }
     }
     *state = next;
     for i in [FIRST, SECOND] {
@@ -197,17 +206,17 @@ impl<T: Real> BaseForces<T> {
         mode: &FrictionMode<T>,
         step_s: T,
     ) -> Self {
-        let (zero, one) = (params.zero(), params.one());
+        let zero = params.zero();
         let none = Vec2::splat(zero);
-        let per_force = for_both!(i => {
+        let sliding = for_both!(i => {
             let slides = pair.normals[i].is_positive() & !mode.rolling[i];
             let mu = pair.materials[i].friction_coefficient;
-            let tangent = friction_against(mu, mode.directions[i]).select(slides, none);
-            pair.response(i, ContactVector { normal: one, tangent })
+            let against = friction_against(mu, mode.directions[i]);
+            pair.response_to_friction(i, against.select(slides, none))
         });
+        let per_force = for_both!(i => (pair.axes[i][0] + sliding[i].0, sliding[i].1));
         let rolling = for_both!(i => {
-            let tangent = mode.frictions[i].select(mode.rolling[i], none);
-            pair.response(i, ContactVector { normal: zero, tangent })
+            pair.response_to_friction(i, mode.frictions[i].select(mode.rolling[i], none))
         });
         let start = CoupledStart {
             materials: &pair.materials,
@@ -224,6 +233,7 @@ impl<T: Real> BaseForces<T> {
         Self {
             oscillators: CoupledOscillators::new(step_s, &start),
             per_force,
+            sliding,
             rolling,
         }
     }
@@ -290,26 +300,21 @@ fn first_event<T: Real>(
     mode: &FrictionMode<T>,
     base: &BaseForces<T>,
 ) -> StepEnd<T> {
-    let (zero, one) = (params.zero(), params.one());
+    let one = params.one();
     let oscillators = &base.oscillators;
-    let all = params.splat_mask(true);
-    // The force ends before the compression of an outgoing ball does.
-    let pressing = for_both!(i => {
-        let (least, share) = NO_FORCE;
-        let damping = pair.materials[i].damping * pair.kinematics[i].velocity.normal.abs();
-        (damping * share + least).lt(pair.normals[i])
+    let parting = for_both!(i => oscillators.compression_series(i));
+    let parts = for_both!(i => parting[i].first_root(one, params.splat_mask(true)));
+    let until = Real::min(parts[FIRST].1, parts[SECOND].1);
+    // An outgoing ball reaches zero force this much before zero compression.
+    let relaxation = for_both!(i => pair.materials[i].relaxation_time / oscillators.step_s());
+    let zero_force = for_both!(i => {
+        let earlier = (parts[i].1 - relaxation[i]).positive_part();
+        earlier.select(parts[i].0, one)
     });
-    let ends = for_both!(i => {
-        let force = oscillators.force_series(i, one, zero);
-        let series = force.select(pressing[i], &oscillators.compression_series(i));
-        series.first_root(one, all)
-    });
-    let until = Real::min(ends[FIRST].1, ends[SECOND].1);
-    let changes = for_both!(i => {
+    let changing = for_both!(i => {
         let kinematics = &pair.kinematics[i];
         let (direction, speed) = (mode.directions[i], mode.slip_speeds[i]);
-        let swing = kinematics.slip_rate_swing();
-        let per_path = swing.dot(direction);
+        let per_path = kinematics.slip_rate_swing().dot(direction);
         let from_rolling = pair.slip_rate(i, base.rolling[1 - i]);
         let still = kinematics.frictionless_slip_rate() + from_rolling;
         let slip = SlipSeries {
@@ -324,16 +329,37 @@ fn first_event<T: Real>(
         let mu = pair.materials[i].friction_coefficient;
         // What rolling needs is hard to predict with two contacts; its limit is not.
         let reserve = oscillators.force_series(i, mu, mode.frictions[i].norm());
-        let series = reserve.select(mode.rolling[i], &oscillators.slip_series(i, &slip));
-        let can_change = mode.rolling[i] | (speed.is_positive() & pair.normals[i].is_positive());
-        series.first_root(until, can_change)
+        reserve.select(mode.rolling[i], &oscillators.slip_series(i, &slip))
     });
-    let first_change = Real::min(changes[FIRST].1, changes[SECOND].1);
-    let tau = Real::min(until, first_change);
+    let changes = for_both!(i => {
+        let slides = mode.slip_speeds[i].is_positive() & pair.normals[i].is_positive();
+        changing[i].first_root(Real::min(until, zero_force[i]), mode.rolling[i] | slides)
+    });
+    let change = Real::min(changes[FIRST].1, changes[SECOND].1);
+    let tau = Real::min(until, change);
+    let at = |event: &(T::Mask, T)| event.0 & event.1.le(tau);
+    let [first_parts, second_parts] = [at(&parts[FIRST]), at(&parts[SECOND])];
+    let [first_changes, second_changes] = [at(&changes[FIRST]), at(&changes[SECOND])];
+    let any = first_parts | second_parts | first_changes | second_changes;
+    let mut refined = tau;
+    if any.any() {
+        let earliest = parting[FIRST]
+            .select(first_parts, &parting[SECOND])
+            .select(first_parts | second_parts, &changing[FIRST])
+            .select(
+                first_parts | second_parts | first_changes,
+                &changing[SECOND],
+            );
+        refined = earliest.refined_root(tau).select(any, tau);
+    }
     StepEnd {
-        tau: Real::max(tau, one * SHORTEST_STEP),
-        parts: for_both!(i => ends[i].0 & !pressing[i] & ends[i].1.le(tau)),
-        ends_slip: for_both!(i => changes[i].0 & !mode.rolling[i] & changes[i].1.le(tau)),
+        tau: Real::max(refined, one * SHORTEST_STEP),
+        parts: [first_parts, second_parts],
+        zero_force,
+        ends_slip: [
+            first_changes & !mode.rolling[FIRST],
+            second_changes & !mode.rolling[SECOND],
+        ],
     }
 }
 
@@ -379,11 +405,13 @@ fn remainder<T: Real, A: Solid<T>, B: Solid<T>>(
         let force = ContactVector { normal: pair.normals[i], tangent: frictions[i] };
         let (linear, angular) = pair.response(i, force);
         let size = base.oscillators.force(i, tau);
+        let negative = (-size).positive_part();
         let (base_linear, base_angular) = base.per_force[i];
+        let (sliding_linear, sliding_angular) = base.sliding[i];
         let (rolling_linear, rolling_angular) = base.rolling[i];
         (
-            linear.add_scaled(base_linear, -size) - rolling_linear,
-            angular.add_scaled(base_angular, -size) - rolling_angular,
+            linear.add_scaled(base_linear, -size).add_scaled(sliding_linear, -negative) - rolling_linear,
+            angular.add_scaled(base_angular, -size).add_scaled(sliding_angular, -negative) - rolling_angular,
         )
     })
 }
@@ -399,9 +427,8 @@ pub(crate) fn rolling_time<T: Real>(friction: &[FrictionState<T>; 2], before: T,
 
 /// Removes the slips of the contacts at zero slip together; returns the impulses per unit of mass.
 #[inline(always)]
-fn remove_slips<T: Real, A: Solid<T>, B: Solid<T>>(
+fn remove_slips<T: Real>(
     params: &ModelParams<T>,
-    solids: (&A, &B),
     state: &mut BallState<T>,
     pair: &mut ContactPair<T>,
     at_zero_slip: [T::Mask; 2],
@@ -411,15 +438,10 @@ fn remove_slips<T: Real, A: Solid<T>, B: Solid<T>>(
         for_both!(i => (-pair.kinematics[i].slip()).select(at_zero_slip[i], Vec2::splat(zero)));
     let slip_impulses = pair.solve(params, at_zero_slip, right_side);
     let impulses = for_both!(i => {
-        let impulse = ContactVector {
-            normal: zero,
-            tangent: slip_impulses[i],
-        };
-        let (linear, angular) = pair.response(i, impulse);
-        state.velocity_m_s = state.velocity_m_s.add_scaled(linear, params.one());
-        state.spin_rad_s = state.spin_rad_s.add_scaled(angular, params.one());
-        linear
+        let response = pair.response_to_friction(i, slip_impulses[i]);
+        kick(state, response, params.one());
+        response.0
     });
-    *pair = ContactPair::new(params, solids, state);
+    pair.set_motion(state);
     impulses
 }

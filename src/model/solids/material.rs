@@ -9,6 +9,8 @@ pub(crate) struct Material<T> {
     pub(crate) stiffness: T,
     /// c/m, 1/s.
     pub(crate) damping: T,
+    /// c/k, s: about the time from zero force to zero compression of an outgoing ball.
+    pub(crate) relaxation_time: T,
     /// Coefficient of kinetic friction mu.
     pub(crate) friction_coefficient: T,
 }
@@ -19,6 +21,7 @@ impl Material<f64> {
         Material {
             stiffness: splat(self.stiffness),
             damping: splat(self.damping),
+            relaxation_time: splat(self.relaxation_time),
             friction_coefficient: splat(self.friction_coefficient),
         }
     }
