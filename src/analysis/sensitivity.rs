@@ -1,21 +1,19 @@
 //! How P depends on the errors of the shooter, on backspin and on the height of the release, and how wide the
 //! windows of a shot are.
 //!
-//! Every comparison is between two shots, or two shooters, under the same Sobol points. Each scramble gives a
-//! difference, and the scatter of these gives its standard error.
+//! Every comparison is between two shots, or two shooters, under the same Sobol points
+//! ([`crate::probability::SharedSample`]). Each scramble gives a difference, and the scatter of these gives its
+//! standard error. A shooter without an error, another backspin and another height are simulated. A shooter with a
+//! tenth less of an error, and other speeds of a shot, reuse the shots of the nearest simulated one.
 
 use super::aim_past_hoop::with_same_aim;
-use crate::math::sobol::ScrambleKey;
-use crate::probability::{Progress, REPLICATES, Sampler};
-use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseVariable, ShotKind};
+use crate::probability::{MadeReleases, Progress, SharedSample, Silent};
+use crate::shooter::{
+    Nominal, NominalVariable, Profile, ReleaseDistribution, ReleaseVariable, ShotKind,
+};
 use crate::units::FOOT_M;
-use rayon::prelude::*;
 use serde::Serialize;
 
-/// Points of each scramble.
-const POINTS: u32 = 512;
-/// Scrambles with which the speeds of a re-optimised shot are compared.
-const OPTIMISATION_SCRAMBLES: usize = 4;
 /// Speeds that a re-optimised shot is tried with, in standard deviations of the speed from its own.
 const SPEEDS: [f64; 5] = [-0.5, -0.25, 0.0, 0.25, 0.5];
 /// Number of backspins, from none to the shooter's limit.
@@ -167,56 +165,23 @@ pub fn analyse(
     topics: SensitivityTopics,
     progress: &dyn Progress,
 ) -> Sensitivity {
-    let analysis = Analysis {
-        profile,
-        nominal,
-        means: if topics.needs_probability() {
-            means(profile, nominal, REPLICATES as usize)
-        } else {
-            Vec::new()
-        },
-        progress,
-    };
-    let has_backspin = profile.shooter().max_backspin_rad_s > 0.0;
-    let backspins = if topics.backspin && has_backspin {
-        BACKSPINS
+    let (errors, backspins, heights) = if topics.needs_probability() {
+        Comparison::new(profile, nominal, topics).run(progress)
     } else {
-        0
+        Default::default()
     };
-    let heights = if topics.height { HEIGHTS_M.len() } else { 0 };
-    let total = ReleaseVariable::COUNT + backspins + heights;
-    progress.begin("comparing", total as u64);
-    let sensitivity = Sensitivity {
-        errors: if topics.errors {
-            analysis.errors()
-        } else {
-            Vec::new()
-        },
-        backspins: analysis.backspins(backspins),
-        heights: analysis.heights(&HEIGHTS_M[..heights]),
+    Sensitivity {
+        errors,
+        backspins,
+        heights,
         windows: ShotWindow::VARIABLES.map(|variable| ShotWindow {
             variable,
-            ends: topics.windows.then(|| analysis.window(variable)).flatten(),
+            ends: topics
+                .windows
+                .then(|| window(profile, nominal, variable))
+                .flatten(),
         }),
-    };
-    progress.end();
-    sensitivity
-}
-
-/// The share of made shots under each of the first `scrambles`.
-fn means(profile: &Profile, nominal: &Nominal, scrambles: usize) -> Vec<f64> {
-    let sampler = Sampler::new(profile);
-    (0..scrambles as u64)
-        .into_par_iter()
-        .map(|replicate| {
-            let scramble = sampler.scramble(ScrambleKey {
-                seed: profile.search().seed,
-                replicate,
-            });
-            let counts = sampler.count(nominal, &scramble, (0, POINTS));
-            counts.made() as f64 / f64::from(POINTS)
-        })
-        .collect()
+    }
 }
 
 fn difference(a: &[f64], b: &[f64]) -> Difference {
@@ -233,130 +198,211 @@ fn difference(a: &[f64], b: &[f64]) -> Difference {
     }
 }
 
-struct Analysis<'a> {
-    profile: &'a Profile,
-    nominal: &'a Nominal,
-    /// The share of made shots of the nominal shot under each scramble.
-    means: Vec<f64>,
-    progress: &'a dyn Progress,
+/// A nominal shot of a shooter, to be compared with another one.
+struct Variant {
+    of: VariantOf,
+    profile: Profile,
+    nominal: Nominal,
 }
 
-impl Analysis<'_> {
-    /// The errors of the shooter, the costliest first.
-    fn errors(&self) -> Vec<ErrorCost> {
-        let sigmas = self.profile.shooter().dispersion.sigmas(self.nominal);
-        let mut costs: Vec<ErrorCost> = ReleaseVariable::ALL
-            .into_iter()
-            .filter(|variable| sigmas[variable.index()] > 0.0)
-            .filter_map(|variable| {
-                self.progress.advance(1);
-                Some(ErrorCost {
-                    variable,
-                    without: self.gain_with_error_scaled(variable, 0.0)?,
-                    a_tenth_less: self.gain_with_error_scaled(variable, A_TENTH_LESS)?,
-                })
-            })
-            .collect();
-        costs.sort_by(|a, b| b.without.value.total_cmp(&a.without.value));
-        costs
-    }
+/// What is different.
+enum VariantOf {
+    /// A shooter without an error.
+    Error(ReleaseVariable),
+    /// The backspin, rad/s.
+    Backspin(f64),
+    /// The height of the release, m.
+    Height(f64),
+}
 
-    /// Evenly spaced backspins from none to the shooter's limit. (They do not change the kind of the shot.)
-    fn backspins(&self, count: usize) -> Vec<Variation> {
-        let most = self.profile.shooter().max_backspin_rad_s;
-        (0..count)
-            .filter_map(|i| {
-                self.progress.advance(1);
-                let value = most * i as f64 / (BACKSPINS - 1) as f64;
-                let shot = self.nominal.with(NominalVariable::Backspin, value);
-                let gain = self.gain_re_optimised(self.profile, &shot)?;
-                Some(Variation { value, gain })
-            })
-            .collect()
-    }
+/// The comparison of a shot with its variants.
+struct Comparison<'a> {
+    profile: &'a Profile,
+    nominal: &'a Nominal,
+    kind: ShotKind,
+    variants: Vec<Variant>,
+}
 
-    /// Heights of release that are possible.
-    fn heights(&self, changes_m: &[f64]) -> Vec<Variation> {
-        changes_m
-            .iter()
-            .filter_map(|by| {
-                self.progress.advance(1);
-                let other = self
-                    .profile
-                    .with(|settings| settings.shooter.release_height_m += by)
-                    .ok()?;
-                let shot = with_same_aim(self.profile, &other, self.nominal);
-                Some(Variation {
-                    value: other.shooter().release_height_m,
-                    gain: self.gain_re_optimised(&other, &shot)?,
-                })
-            })
-            .collect()
-    }
-
-    /// Gain in P if the standard deviation of one error is multiplied by `factor`, 0 to 1.
-    fn gain_with_error_scaled(&self, variable: ReleaseVariable, factor: f64) -> Option<Difference> {
-        let other = self
-            .profile
-            .with(|settings| {
-                let dispersion = &mut settings.shooter.dispersion;
-                *dispersion = dispersion.scaled(variable, factor);
-            })
-            .ok()?;
-        Some(self.gain(&other, self.nominal))
-    }
-
-    /// Gain in P of another profile or shot.
-    fn gain(&self, profile: &Profile, shot: &Nominal) -> Difference {
-        let other = means(profile, shot, self.means.len());
-        difference(&other, &self.means)
-    }
-
-    /// Gain in P of another profile or shot, at the best of a few speeds with which the shot is of the same kind,
-    /// direct or bank; `None` if there is no such speed.
-    fn gain_re_optimised(&self, profile: &Profile, shot: &Nominal) -> Option<Difference> {
-        let kind = ShotKind::of(self.profile, self.nominal);
-        let sigma = profile.shooter().dispersion.speed_m_s(shot.speed_m_s);
-        let best = SPEEDS
-            .iter()
-            .map(|by| shot.with(NominalVariable::Speed, shot.speed_m_s + by * sigma))
-            .filter(|shot| ShotKind::of(profile, shot) == kind)
-            .map(|shot| {
-                let made: f64 = means(profile, &shot, OPTIMISATION_SCRAMBLES).iter().sum();
-                (made, shot)
-            })
-            .reduce(|best, next| if next.0 > best.0 { next } else { best });
-        best.map(|(_, shot)| self.gain(profile, &shot))
-    }
-
-    /// The ends of the window about the error-free shot along a variable.
-    fn window(&self, variable: NominalVariable) -> Option<(f64, f64)> {
-        let centre = self.nominal.get(variable);
-        let is_made = |by: f64| {
-            let shot = self.nominal.with(variable, centre + by);
-            let start = self.profile.release(&shot).state();
-            self.profile.simulator().verdict(start).made
+impl<'a> Comparison<'a> {
+    fn new(profile: &'a Profile, nominal: &'a Nominal, topics: SensitivityTopics) -> Self {
+        let mut variants = Vec::new();
+        let mut add = |of, profile: Option<Profile>, nominal| {
+            variants.extend(profile.map(|profile| Variant {
+                of,
+                profile,
+                nominal,
+            }));
         };
-        if !is_made(0.0) {
-            return None;
-        }
-        let (step, far) = ShotWindow::search_range(variable);
-        let end = |sign: f64| {
-            let mut inside = 0.0;
-            while inside < far && is_made(sign * (inside + step)) {
-                inside += step;
-            }
-            let mut outside = inside + step;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (inside + outside);
-                if is_made(sign * middle) {
-                    inside = middle;
-                } else {
-                    outside = middle;
+        let shooter = profile.shooter();
+        if topics.errors {
+            let sigmas = shooter.dispersion.sigmas(nominal);
+            for variable in ReleaseVariable::ALL {
+                if sigmas[variable.index()] > 0.0 {
+                    let without = with_error_scaled(profile, variable, 0.0);
+                    add(VariantOf::Error(variable), without, *nominal);
                 }
             }
-            sign * inside
-        };
-        Some((centre + end(-1.0), centre + end(1.0)))
+        }
+        let most = shooter.max_backspin_rad_s;
+        if topics.backspin && most > 0.0 {
+            // Evenly spaced, from none to the shooter's limit. (They do not change the kind of the shot.)
+            for i in 0..BACKSPINS {
+                let value = most * i as f64 / (BACKSPINS - 1) as f64;
+                let shot = nominal.with(NominalVariable::Backspin, value);
+                add(VariantOf::Backspin(value), Some(profile.clone()), shot);
+            }
+        }
+        if topics.height {
+            // Only heights that are possible.
+            for by in HEIGHTS_M {
+                let other = profile.with(|settings| settings.shooter.release_height_m += by);
+                if let Ok(other) = other {
+                    let shot = with_same_aim(profile, &other, nominal);
+                    let height = other.shooter().release_height_m;
+                    add(VariantOf::Height(height), Some(other), shot);
+                }
+            }
+        }
+        Self {
+            profile,
+            nominal,
+            kind: ShotKind::of(profile, nominal),
+            variants,
+        }
     }
+
+    /// The errors, the costliest first; the backspins; the heights.
+    fn run(&self, progress: &dyn Progress) -> (Vec<ErrorCost>, Vec<Variation>, Vec<Variation>) {
+        let sample = SharedSample::new(self.profile);
+        let mut shots = vec![(self.profile, *self.nominal)];
+        shots.extend(self.variants.iter().map(|v| (&v.profile, v.nominal)));
+        let simulated = sample.simulate(self.profile.simulator(), &shots, progress);
+        let (base, simulated) = simulated
+            .split_first()
+            .expect("the shot itself is simulated");
+        let own = &sample.shares(base);
+        let (mut errors, mut backspins, mut heights) = (Vec::new(), Vec::new(), Vec::new());
+        for (variant, made) in self.variants.iter().zip(simulated) {
+            match variant.of {
+                VariantOf::Error(variable) => errors.push(ErrorCost {
+                    variable,
+                    without: difference(&sample.shares(made), own),
+                    a_tenth_less: self.gain_of_a_tenth(&sample, base, variable),
+                }),
+                VariantOf::Backspin(value) => {
+                    let gain = self.gain_re_optimised(&sample, made, variant, own);
+                    backspins.extend(gain.map(|gain| Variation { value, gain }));
+                }
+                VariantOf::Height(value) => {
+                    let gain = self.gain_re_optimised(&sample, made, variant, own);
+                    heights.extend(gain.map(|gain| Variation { value, gain }));
+                }
+            }
+        }
+        errors.sort_by(|a, b| b.without.value.total_cmp(&a.without.value));
+        (errors, backspins, heights)
+    }
+
+    /// Gain in P if the standard deviation of an error is a tenth less.
+    fn gain_of_a_tenth(
+        &self,
+        sample: &SharedSample,
+        base: &MadeReleases,
+        variable: ReleaseVariable,
+    ) -> Difference {
+        let own = sample.shares(base);
+        let Some(steadier) = with_error_scaled(self.profile, variable, A_TENTH_LESS) else {
+            return Difference::default();
+        };
+        let shares = self.shares_near(sample, base, &steadier, self.nominal);
+        difference(&shares, &own)
+    }
+
+    /// The shares of a shot that is near a simulated one: from its shots, or from new ones if the two overlap too
+    /// little.
+    fn shares_near(
+        &self,
+        sample: &SharedSample,
+        simulated: &MadeReleases,
+        profile: &Profile,
+        nominal: &Nominal,
+    ) -> Vec<f64> {
+        let distribution = ReleaseDistribution::new(profile, nominal);
+        sample
+            .shares_of_other(simulated, &distribution)
+            .unwrap_or_else(|| {
+                let shot = [(profile, *nominal)];
+                let made = sample.simulate(self.profile.simulator(), &shot, &Silent);
+                sample.shares(&made[0])
+            })
+    }
+
+    /// Gain in P of a variant over `own`, at the best of a few speeds with which the shot is of the same kind,
+    /// direct or bank; `None` if there is no such speed.
+    fn gain_re_optimised(
+        &self,
+        sample: &SharedSample,
+        made: &MadeReleases,
+        variant: &Variant,
+        own: &[f64],
+    ) -> Option<Difference> {
+        let Variant {
+            profile, nominal, ..
+        } = variant;
+        let sigma = profile.shooter().dispersion.speed_m_s(nominal.speed_m_s);
+        SPEEDS
+            .iter()
+            .map(|by| nominal.with(NominalVariable::Speed, nominal.speed_m_s + by * sigma))
+            .filter(|shot| ShotKind::of(profile, shot) == self.kind)
+            .map(|shot| {
+                let shares = if shot == *nominal {
+                    sample.shares(made)
+                } else {
+                    self.shares_near(sample, made, profile, &shot)
+                };
+                difference(&shares, own)
+            })
+            .reduce(|best, next| if next.value > best.value { next } else { best })
+    }
+}
+
+/// A profile with the standard deviation of one error multiplied by `factor`, 0 to 1.
+fn with_error_scaled(profile: &Profile, variable: ReleaseVariable, factor: f64) -> Option<Profile> {
+    profile
+        .with(|settings| {
+            let dispersion = &mut settings.shooter.dispersion;
+            *dispersion = dispersion.scaled(variable, factor);
+        })
+        .ok()
+}
+
+/// The ends of the window about the error-free shot along a variable.
+fn window(profile: &Profile, nominal: &Nominal, variable: NominalVariable) -> Option<(f64, f64)> {
+    let centre = nominal.get(variable);
+    let is_made = |by: f64| {
+        let shot = nominal.with(variable, centre + by);
+        let start = profile.release(&shot).state();
+        profile.simulator().verdict(start).made
+    };
+    if !is_made(0.0) {
+        return None;
+    }
+    let (step, far) = ShotWindow::search_range(variable);
+    let end = |sign: f64| {
+        let mut inside = 0.0;
+        while inside < far && is_made(sign * (inside + step)) {
+            inside += step;
+        }
+        let mut outside = inside + step;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            if is_made(sign * middle) {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        sign * inside
+    };
+    Some((centre + end(-1.0), centre + end(1.0)))
 }

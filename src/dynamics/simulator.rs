@@ -123,7 +123,7 @@ fn suits_single_precision(physics: &Physics) -> bool {
 
 /// Steps on the board and on the ring, as a share of the steps per contact: on the flat board larger steps are
 /// as good.
-const STEPS_ON: [f64; SolidId::COUNT] = [0.6, 0.9];
+const STEPS_ON: [f64; SolidId::COUNT] = [0.7, 0.9];
 /// The same in a double contact.
 const DOUBLE_STEPS: f64 = 1.4;
 

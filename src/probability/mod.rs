@@ -14,9 +14,11 @@ pub mod monte_carlo;
 mod nominal_probability_table;
 mod probability_and_error;
 mod progress;
+mod shared_sample;
 mod sobol_integration;
 
 pub use nominal_probability_table::{MAX_BATCH_BYTES, NominalProbabilities, NominalTable};
 pub use probability_and_error::{Estimate, MadeShares};
 pub use progress::{Progress, Silent};
+pub(crate) use shared_sample::{MadeReleases, SharedSample};
 pub use sobol_integration::{MAX_SHOTS, MIN_SHOTS, REPLICATES, Sampler};

@@ -107,6 +107,18 @@ impl Correlation {
         })
     }
 
+    /// Independent normals from correlated ones: the inverse of [`Correlation::apply`]. Not numbers if a variable is
+    /// fully determined by others.
+    #[must_use]
+    pub(crate) fn independent_of(&self, correlated: &[f64; N]) -> [f64; N] {
+        let mut independent = [0.0; N];
+        for i in 0..N {
+            let known: f64 = (0..i).map(|j| self.factor[(i, j)] * independent[j]).sum();
+            independent[i] = (correlated[i] - known) / self.factor[(i, i)];
+        }
+        independent
+    }
+
     /// Which independent normals matter, given the standard deviations of the errors.
     #[must_use]
     pub fn needed(&self, sigmas: &[f64; N]) -> [bool; N] {

@@ -50,6 +50,29 @@ impl ReleaseDistribution {
         }))
     }
 
+    /// Independent standard normals for uniform numbers, 0 to 1 exclusive, in the order of [`ReleaseVariable::ALL`].
+    pub(crate) fn normals(uniform: impl Fn(usize) -> f64) -> [f64; N] {
+        std::array::from_fn(|k| normal_distribution::quantile(uniform(k)))
+    }
+
+    /// The density of this distribution over that of `other`, at the release that `other` has for independent
+    /// standard normals. Not a number, or infinite, where that cannot be told.
+    pub(crate) fn relative_density(&self, other: &Self, independent: &[f64; N]) -> f64 {
+        let normals = other.correlation.apply(*independent);
+        let (mine, others) = (values(&self.centre), values(&other.centre));
+        let mut scales = 1.0;
+        let own: [f64; N] = std::array::from_fn(|k| {
+            if self.sigmas[k] == other.sigmas[k] && mine[k] == others[k] {
+                return normals[k];
+            }
+            scales *= other.sigmas[k] / self.sigmas[k];
+            (others[k] + other.sigmas[k] * normals[k] - mine[k]) / self.sigmas[k]
+        });
+        let own = self.correlation.independent_of(&own);
+        let squares = |z: &[f64; N]| z.iter().map(|z| z * z).sum::<f64>();
+        scales * libm::exp(0.5 * (squares(independent) - squares(&own)))
+    }
+
     /// The release for independent standard normals, in the order of [`ReleaseVariable::ALL`].
     #[must_use]
     pub fn from_normal(&self, independent: [f64; N]) -> Release {
@@ -69,4 +92,19 @@ impl ReleaseDistribution {
             height_above_hoop_m: centre.height_above_hoop_m + error(ReleaseVariable::Height),
         }
     }
+}
+
+/// The values of a release in the order of [`ReleaseVariable::ALL`].
+fn values(release: &Release) -> [f64; N] {
+    ReleaseVariable::ALL.map(|variable| match variable {
+        ReleaseVariable::Speed => release.speed_m_s,
+        ReleaseVariable::Pitch => release.pitch_rad,
+        ReleaseVariable::Polar => release.polar_rad,
+        ReleaseVariable::Backspin => release.backspin_rad_s,
+        ReleaseVariable::RifleSpin => release.rifle_spin_rad_s,
+        ReleaseVariable::SideSpin => release.side_spin_rad_s,
+        ReleaseVariable::Distance => release.distance_m,
+        ReleaseVariable::CourtAngle => release.court_angle_rad,
+        ReleaseVariable::Height => release.height_above_hoop_m,
+    })
 }

@@ -86,18 +86,15 @@ fn median_errors(shots: &[Release], steps: &[u32]) -> Vec<f64> {
         };
         let simulator = Simulator::with_integrator(&physics, integrator).unwrap();
         let after = |shot: &Release| after_first_contact(&simulator, shot.state());
-        shots.iter().filter_map(after).collect::<Vec<_>>()
+        shots.iter().map(after).collect::<Vec<_>>()
     };
     let reference = at(512);
-    assert!(reference.len() > 100, "{}", reference.len());
     let median = |steps: &u32| {
-        let found = at(*steps);
-        assert_eq!(found.len(), reference.len());
-        let mut errors: Vec<f64> = found
-            .iter()
-            .zip(&reference)
-            .map(|(a, b)| distance(*a, *b))
-            .collect();
+        // A shot that parts late with other steps may not part at all.
+        let pairs = at(*steps).into_iter().zip(&reference);
+        let both = pairs.filter_map(|(found, reference)| Some((found?, (*reference)?)));
+        let mut errors: Vec<f64> = both.map(|(a, b)| distance(a, b)).collect();
+        assert!(errors.len() > shots.len() / 2, "{}", errors.len());
         errors.sort_by(f64::total_cmp);
         errors[errors.len() / 2]
     };
@@ -113,8 +110,7 @@ fn order(coarse: f64, fine: f64, halvings: i32) -> f64 {
 #[test]
 fn val_convergence_orders() {
     let physics = Physics::paper();
-    // Most free throws touch the ring first, most shots from the side the board. On the board the error is
-    // small from the start, and stays where it is until a step is shorter than the time after N = 0: measured 1.9.
+    // Most free throws touch the ring first, most shots from the side the board.
     let mut orders = Vec::new();
     for shots in [free_throw_uniform(400, 5), side_uniform(400, 6)] {
         let errors = median_errors(&shots, &[5, 10, 20, 40, 80, 160]);
@@ -123,7 +119,7 @@ fn val_convergence_orders() {
         assert!(errors[5] < 3e-7, "{errors:?}");
     }
     assert!(
-        orders[0] > 2.0 && orders[1] > 1.8,
+        orders[0] > 2.0 && orders[1] > 2.0,
         "event-driven: {orders:?}"
     );
     let start = BallState {

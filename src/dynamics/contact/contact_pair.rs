@@ -110,15 +110,16 @@ impl<T: Real> ContactPair<T> {
         )
     }
 
-    /// Takes the velocities of a state at the same position.
+    /// Takes the velocities of a state at the same position, where `changed`.
     #[inline(always)]
-    pub(super) fn set_motion(&mut self, state: &BallState<T>) {
+    pub(super) fn set_motion(&mut self, state: &BallState<T>, changed: T::Mask) {
         for i in [FIRST, SECOND] {
             let [n, tangent_1, tangent_2] = self.axes[i];
             let along =
                 |v: Vec3<T>| ContactVector::new(n.dot(v), tangent_1.dot(v), tangent_2.dot(v));
-            self.kinematics[i].velocity = along(state.velocity_m_s);
-            self.kinematics[i].spin = along(state.spin_rad_s);
+            let kinematics = &mut self.kinematics[i];
+            kinematics.velocity = along(state.velocity_m_s).select(changed, kinematics.velocity);
+            kinematics.spin = along(state.spin_rad_s).select(changed, kinematics.spin);
             self.normals[i] = self.kinematics[i].normal_force(&self.materials[i]);
         }
     }

@@ -114,6 +114,8 @@ struct StepStart<T: Real> {
     required: T,
     rolling: T::Mask,
     rolling_failed: T::Mask,
+    /// The direction of the slip is that of its rate.
+    follows_rate: T::Mask,
 }
 
 /// Where a step ends.
@@ -294,10 +296,10 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             - material.stiffness * motion.velocity.normal;
         let pressing = normal.positive_part();
         let limit = material.friction_coefficient * pressing;
-        // The slip that a failed roll leaves is small. Its direction is that which it soon has.
-        let soon = at.slip + scaled(at.slip_rate, self.oscillator.soon);
-        let slip = soon.select(friction.rolling_failed, at.slip);
-        let slip_or_rate = at.slip_rate.select(at_zero_slip, slip);
+        // Small slip after a failed roll follows the slip rate, and faster than a step can.
+        let soon = at.slip_rate.norm_squared() * self.oscillator.soon.squared();
+        let follows_rate = friction.rolling_failed & at.slip.norm_squared().le(soon);
+        let slip_or_rate = at.slip_rate.select(at_zero_slip | follows_rate, at.slip);
         let size = slip_or_rate.norm();
         let direction = scaled(slip_or_rate, one / size.select(size.is_positive(), one));
         let required = effective_mass * size;
@@ -309,6 +311,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         StepStart {
             rolling: at_zero_slip & suffices & !rolling_failed,
             rolling_failed,
+            follows_rate: follows_rate | at_zero_slip,
             slip_speed: zero.select(at_zero_slip | friction.rolling_failed, size),
             motion,
             at,
@@ -452,12 +455,12 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let threshold = start.slip_speed * DIRECTION_SLIP_FRACTION;
         let has_direction = threshold.lt(at.slip.dot(start.direction));
         let slip = at.slip.select(has_direction, start.direction);
-        let speed = slip.norm();
-        let speed = speed.select(speed.is_positive(), one);
-        let numerator = at.slip_rate.select(start.rolling, slip);
+        let numerator = at.slip_rate.select(start.follows_rate, slip);
+        let size = numerator.norm();
+        let size = size.select(size.is_positive(), one);
         let inverse_effective_mass =
             at.distances.lever.squared() * self.params.ball.mass_over_inertia + 1.0;
-        let factor = -(one / inverse_effective_mass.select(start.rolling, speed));
+        let factor = -(one / inverse_effective_mass.select(start.rolling, size));
         let direction = scaled(numerator, factor);
         let limit = self.material().friction_coefficient * normal;
         StageFriction {

@@ -213,7 +213,8 @@ impl<T: Real> EventSeries<T> {
             let (value, slope) = self.value_and_slope(tau);
             let usable = slope.is_negative();
             let next = tau - value / slope.select(usable, tau.one());
-            tau = Real::max(Real::min(next.select(usable, tau), tau.one()), tau.zero());
+            let inside = next.is_positive() & next.le(tau.one());
+            tau = next.select(usable & inside, tau);
         }
         tau
     }

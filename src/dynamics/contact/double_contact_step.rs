@@ -442,6 +442,6 @@ fn remove_slips<T: Real>(
         kick(state, response, params.one());
         response.0
     });
-    pair.set_motion(state);
+    pair.set_motion(state, at_zero_slip[FIRST] | at_zero_slip[SECOND]);
     impulses
 }

@@ -258,9 +258,10 @@ impl<T: Real> EventFunction<T> {
             let now = motion.after(material, oscillator, oscillator.at(tau));
             let slope = self.slope(material, oscillator.step_s, now);
             let usable = slope.is_negative();
-            let change = self.value(now, tau) / slope.select(usable, one);
-            let next = (tau - change).select(usable, tau);
-            tau = Real::max(Real::min(next, until), zero);
+            let next = tau - self.value(now, tau) / slope.select(usable, one);
+            // Where the function is nearly level a step may lead anywhere: then the parabola is better.
+            let inside = next.is_positive() & next.le(until);
+            tau = next.select(usable & inside, tau);
         }
         tau
     }
