@@ -1,7 +1,6 @@
 //! The pattern search that climbs from a start to a local optimum.
 
 use crate::analysis::aim_past_hoop::centre_speed_m_s;
-use crate::probability::Progress;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
@@ -25,7 +24,6 @@ fn first_step(variable: NominalVariable) -> f64 {
 pub(super) struct Climb<'a> {
     pub(super) profile: &'a Profile,
     pub(super) bracket: &'a Bracket,
-    pub(super) progress: &'a dyn Progress,
 }
 
 impl Climb<'_> {
@@ -40,7 +38,6 @@ impl Climb<'_> {
         let mut best = (value(&start), start);
         let mut moves = 0;
         let mut scale = 1.0;
-        self.progress.begin("climbing", u64::from(HALVINGS + 1));
         for _ in 0..=HALVINGS {
             let mut moved = true;
             while moved && moves < MAX_MOVES {
@@ -63,9 +60,7 @@ impl Climb<'_> {
                 }
             }
             scale *= 0.5;
-            self.progress.advance(1);
         }
-        self.progress.end();
         best.1
     }
 

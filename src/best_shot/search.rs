@@ -354,12 +354,20 @@ impl BestShotSearch<'_> {
     ) -> Option<Nominal> {
         let points = self.profile.search().climb_samples;
         let compared = (0, COMPARISON_FACTOR * points);
-        starts
-            .iter()
+        self.progress.begin("climbing", starts.len() as u64);
+        // The climbs run side by side: each of them takes one small step after the other.
+        let optima: Vec<(u64, Nominal)> = starts
+            .par_iter()
             .map(|&start| {
                 let optimum = self.climb(kind, start, sampler, scramble, points);
-                (sampler.count(&optimum, scramble, compared).made(), optimum)
+                let made = sampler.count(&optimum, scramble, compared).made();
+                self.progress.advance(1);
+                (made, optimum)
             })
+            .collect();
+        self.progress.end();
+        optima
+            .into_iter()
             .reduce(|best, next| if next.0 > best.0 { next } else { best })
             .filter(|(made, _)| *made > 0)
             .map(|(_, optimum)| optimum)
@@ -376,7 +384,6 @@ impl BestShotSearch<'_> {
         let climb = Climb {
             profile: self.profile,
             bracket: &self.plan.bracket,
-            progress: self.progress,
         };
         climb.run(kind, start, |nominal| {
             sampler.count(nominal, scramble, (0, points)).made()

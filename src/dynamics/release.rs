@@ -35,6 +35,16 @@ impl Release {
         ReleaseWithoutSpeed::new(self).state(self.speed_m_s, self.backspin_rad_s)
     }
 
+    /// Position of the ball's centre relative to that of the hoop, m.
+    pub(crate) fn position_m(&self) -> Vec3<f64> {
+        let (sin_court, cos_court) = libm::sincos(self.court_angle_rad);
+        Vec3::new(
+            self.distance_m * cos_court,
+            self.distance_m * sin_court,
+            self.height_above_hoop_m,
+        )
+    }
+
     /// The same release mirrored in the plane of symmetry (y -> -y).
     #[must_use]
     pub fn mirrored(&self) -> Self {
@@ -64,15 +74,15 @@ impl ReleaseWithoutSpeed {
     /// `release` without its speed and backspin.
     #[must_use]
     pub fn new(release: &Release) -> Self {
+        Self::at(release.position_m(), release)
+    }
+
+    /// The same for a release whose position is known.
+    pub(crate) fn at(position_m: Vec3<f64>, release: &Release) -> Self {
         let (sin_pitch, cos_pitch) = libm::sincos(release.pitch_rad);
         let (sin_polar, cos_polar) = libm::sincos(release.polar_rad);
-        let (sin_court, cos_court) = libm::sincos(release.court_angle_rad);
         Self {
-            position_m: Vec3::new(
-                release.distance_m * cos_court,
-                release.distance_m * sin_court,
-                release.height_above_hoop_m,
-            ),
+            position_m,
             sin_pitch,
             cos_pitch,
             sin_polar,

@@ -72,6 +72,7 @@ impl Sobol {
         random.set_stream(key.replicate);
         let mut scramble = Scramble {
             directions: self.directions,
+            prefixes: [[0; 32]; DIMENSIONS],
             shifts: [0; DIMENSIONS],
         };
         for (directions, shift) in scramble.directions.iter_mut().zip(&mut scramble.shifts) {
@@ -86,6 +87,14 @@ impl Sobol {
                 });
             }
             *shift = random.next_u32();
+        }
+        let pairs = scramble.prefixes.iter_mut().zip(&scramble.directions);
+        for (prefixes, directions) in pairs {
+            let mut all = 0;
+            for (prefix, direction) in prefixes.iter_mut().zip(directions) {
+                all ^= direction;
+                *prefix = all;
+            }
         }
         scramble
     }
@@ -104,16 +113,57 @@ pub struct ScrambleKey {
 #[derive(Clone, Debug)]
 pub struct Scramble {
     directions: [[u32; 32]; DIMENSIONS],
+    /// For each direction, the exclusive or of all up to it.
+    prefixes: [[u32; 32]; DIMENSIONS],
     shifts: [u32; DIMENSIONS],
 }
 
+/// The points of a scramble one after the other: each follows from the one before by one exclusive or.
+#[derive(Clone, Debug)]
+pub(crate) struct Sequence<'a> {
+    scramble: &'a Scramble,
+    index: u32,
+    bits: [u32; DIMENSIONS],
+}
+
+impl Sequence<'_> {
+    /// A coordinate of the present point, as [`Scramble::point`].
+    pub(crate) fn coordinate(&self, dimension: usize) -> f64 {
+        as_fraction(self.bits[dimension] ^ self.scramble.shifts[dimension])
+    }
+
+    /// Goes on to the next point.
+    pub(crate) fn advance(&mut self) {
+        self.index = self.index.wrapping_add(1);
+        // From i to i + 1 the last zero bit and the ones after it change.
+        let last_changed = self.index.trailing_zeros() as usize & 31;
+        for (bits, prefixes) in self.bits.iter_mut().zip(&self.scramble.prefixes) {
+            *bits ^= prefixes[last_changed];
+        }
+    }
+}
+
 impl Scramble {
+    /// The points from number `index` on.
+    pub(crate) fn sequence(&self, index: u32) -> Sequence<'_> {
+        Sequence {
+            scramble: self,
+            index,
+            bits: std::array::from_fn(|k| fraction(&self.directions[k], index)),
+        }
+    }
+
     /// Coordinate `dimension` of point `index`, above 0 and below 1.
     #[must_use]
     pub fn point(&self, index: u32, dimension: usize) -> f64 {
         let bits = fraction(&self.directions[dimension], index) ^ self.shifts[dimension];
-        (f64::from(bits) + 0.5) / 4_294_967_296.0
+        as_fraction(bits)
     }
+}
+
+/// 32 bits as a number above 0 and below 1.
+fn as_fraction(bits: u32) -> f64 {
+    (f64::from(bits) + 0.5) / 4_294_967_296.0
 }
 
 /// A coordinate of point `index` as a 32-bit fraction.
@@ -153,6 +203,21 @@ mod tests {
                     plain.iter().chain(&scrambled).all(|&n| n == 1),
                     "{dimension} {m}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn prop_a_sequence_has_the_points_of_the_scramble() {
+        let scramble = Sobol::new().scrambled(KEY);
+        for start in [0, 1, 1000, (1 << 21) - 3] {
+            let mut sequence = scramble.sequence(start);
+            for index in start..start + 70 {
+                for dimension in 0..DIMENSIONS {
+                    let coordinate = sequence.coordinate(dimension);
+                    assert_eq!(coordinate, scramble.point(index, dimension), "{index}");
+                }
+                sequence.advance();
             }
         }
     }

@@ -78,7 +78,7 @@ impl SharedSample {
                 .for_each_init(BatchWorkspace::default, |workspace, (made, normals)| {
                     let starts: Vec<BallState> = normals
                         .iter()
-                        .map(|normals| distribution.from_normal(*normals).state())
+                        .map(|normals| distribution.state(*normals))
                         .collect();
                     let verdicts = simulator.finite_verdicts(&starts, workspace);
                     for (made, verdict) in made.iter_mut().zip(verdicts) {

@@ -78,13 +78,8 @@ impl<'a> Sampler<'a> {
         workspace: &mut BatchWorkspace,
     ) -> Counts {
         let distribution = ReleaseDistribution::new(self.profile, nominal);
-        let starts: Vec<BallState> = (from..to)
-            .map(|index| {
-                let release =
-                    distribution.from_uniform(|dimension| scramble.point(index, dimension));
-                release.state()
-            })
-            .collect();
+        let mut starts: Vec<BallState> = Vec::with_capacity((to - from) as usize);
+        distribution.for_each_state(scramble, (from, to), |state| starts.push(state));
         let simulator = self.profile.simulator();
         Counts::of(simulator.finite_verdicts(&starts, workspace))
     }
@@ -96,7 +91,8 @@ impl<'a> Sampler<'a> {
         scramble: &Scramble,
         (from, to): (u32, u32),
     ) -> Counts {
-        let block = ((to - from) / 8).clamp(MIN_BLOCK, MAX_BLOCK);
+        let threads = rayon::current_num_threads() as u32;
+        let block = ((to - from) / threads).clamp(MIN_BLOCK, MAX_BLOCK);
         (from..to)
             .into_par_iter()
             .step_by(block as usize)

@@ -18,6 +18,8 @@ pub struct Correlation {
     coefficients: Matrix,
     /// Lower triangular.
     factor: Matrix,
+    /// Whether the factor is not that of independent errors.
+    is_correlated: bool,
 }
 
 impl Default for Correlation {
@@ -63,6 +65,7 @@ impl Correlation {
     pub const NONE: Self = Self {
         coefficients: identity(),
         factor: identity(),
+        is_correlated: false,
     };
 
     /// From the coefficients (-1 to 1) of pairs of variables. `None` if they are impossible together: the
@@ -76,6 +79,7 @@ impl Correlation {
         };
         Some(Self {
             coefficients,
+            is_correlated: factor != identity(),
             factor,
         })
     }
@@ -95,6 +99,9 @@ impl Correlation {
     /// Correlated standard normals from independent ones.
     #[must_use]
     pub fn apply(&self, independent: [f64; N]) -> [f64; N] {
+        if !self.is_correlated {
+            return independent;
+        }
         std::array::from_fn(|i| {
             (0..=i).fold(0.0, |sum, j| {
                 let weight = self.factor[(i, j)];
@@ -111,10 +118,19 @@ impl Correlation {
     /// fully determined by others.
     #[must_use]
     pub(crate) fn independent_of(&self, correlated: &[f64; N]) -> [f64; N] {
+        if !self.is_correlated {
+            return *correlated;
+        }
         let mut independent = [0.0; N];
         for i in 0..N {
-            let known: f64 = (0..i).map(|j| self.factor[(i, j)] * independent[j]).sum();
-            independent[i] = (correlated[i] - known) / self.factor[(i, i)];
+            let mut rest = correlated[i];
+            for j in 0..i {
+                let weight = self.factor[(i, j)];
+                if weight != 0.0 {
+                    rest -= weight * independent[j];
+                }
+            }
+            independent[i] = rest / self.factor[(i, i)];
         }
         independent
     }

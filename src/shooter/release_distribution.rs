@@ -4,8 +4,11 @@ use super::correlation::Correlation;
 use super::nominal::Nominal;
 use super::profile::Profile;
 use super::release_variable::ReleaseVariable;
-use crate::dynamics::Release;
+use crate::dynamics::{Release, ReleaseWithoutSpeed};
 use crate::math::normal_distribution;
+use crate::math::sobol::Scramble;
+use crate::math::vector::Vec3;
+use crate::model::BallState;
 
 const N: usize = ReleaseVariable::COUNT;
 
@@ -16,6 +19,8 @@ pub struct ReleaseDistribution {
     sigmas: [f64; N],
     needed: [bool; N],
     correlation: Correlation,
+    /// Position of the release, m, if it has no error.
+    position_m: Option<Vec3<f64>>,
 }
 
 impl ReleaseDistribution {
@@ -24,8 +29,16 @@ impl ReleaseDistribution {
     pub fn new(profile: &Profile, nominal: &Nominal) -> Self {
         let dispersion = &profile.shooter().dispersion;
         let sigmas = dispersion.sigmas(nominal);
+        let centre = profile.release(nominal);
+        let of_position = [
+            ReleaseVariable::Distance,
+            ReleaseVariable::CourtAngle,
+            ReleaseVariable::Height,
+        ];
+        let is_fixed = of_position.iter().all(|v| sigmas[v.index()] == 0.0);
         Self {
-            centre: profile.release(nominal),
+            position_m: is_fixed.then(|| centre.position_m()),
+            centre,
             sigmas,
             needed: dispersion.correlation.needed(&sigmas),
             correlation: dispersion.correlation,
@@ -36,6 +49,46 @@ impl ReleaseDistribution {
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.sigmas.iter().all(|&sigma| sigma == 0.0)
+    }
+
+    /// The state at the release for independent standard normals.
+    pub(crate) fn state(&self, independent: [f64; N]) -> BallState {
+        let release = self.from_normal(independent);
+        let position_m = self.position_m.unwrap_or_else(|| release.position_m());
+        ReleaseWithoutSpeed::at(position_m, &release)
+            .state(release.speed_m_s, release.backspin_rad_s)
+    }
+
+    /// Calls `use_state` with the state at the release of each point `from..to` of a scramble. The points are drawn
+    /// in blocks: the normals of a block, variable by variable, are those of [`ReleaseDistribution::from_uniform`].
+    pub(crate) fn for_each_state(
+        &self,
+        scramble: &Scramble,
+        (from, to): (u32, u32),
+        mut use_state: impl FnMut(BallState),
+    ) {
+        const BLOCK: usize = 256;
+        let mut normals = [[0.0; BLOCK]; N];
+        let mut sequence = scramble.sequence(from);
+        for start in (from..to).step_by(BLOCK) {
+            let count = BLOCK.min((to - start) as usize);
+            for i in 0..count {
+                for k in 0..N {
+                    if self.needed[k] {
+                        normals[k][i] = sequence.coordinate(k);
+                    }
+                }
+                sequence.advance();
+            }
+            for k in 0..N {
+                if self.needed[k] {
+                    normal_distribution::quantiles(&mut normals[k][..count]);
+                }
+            }
+            for i in 0..count {
+                use_state(self.state(std::array::from_fn(|k| normals[k][i])));
+            }
+        }
     }
 
     /// The release for uniform numbers, 0 to 1 exclusive. `uniform` gives the one of each dimension that
@@ -60,14 +113,14 @@ impl ReleaseDistribution {
     pub(crate) fn relative_density(&self, other: &Self, independent: &[f64; N]) -> f64 {
         let normals = other.correlation.apply(*independent);
         let (mine, others) = (values(&self.centre), values(&other.centre));
+        let mut own = normals;
         let mut scales = 1.0;
-        let own: [f64; N] = std::array::from_fn(|k| {
-            if self.sigmas[k] == other.sigmas[k] && mine[k] == others[k] {
-                return normals[k];
+        for k in 0..N {
+            if self.sigmas[k] != other.sigmas[k] || mine[k] != others[k] {
+                scales *= other.sigmas[k] / self.sigmas[k];
+                own[k] = (others[k] + other.sigmas[k] * normals[k] - mine[k]) / self.sigmas[k];
             }
-            scales *= other.sigmas[k] / self.sigmas[k];
-            (others[k] + other.sigmas[k] * normals[k] - mine[k]) / self.sigmas[k]
-        });
+        }
         let own = self.correlation.independent_of(&own);
         let squares = |z: &[f64; N]| z.iter().map(|z| z * z).sum::<f64>();
         scales * libm::exp(0.5 * (squares(independent) - squares(&own)))

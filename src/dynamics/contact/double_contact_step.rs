@@ -39,6 +39,8 @@ struct FrictionMode<T: Real> {
     rolling: [T::Mask; 2],
     /// Contacts at zero slip that cannot roll from now on.
     fails_now: [T::Mask; 2],
+    /// Contacts that slide, but so slowly that their direction is that against the friction which rolling needs.
+    follows: [T::Mask; 2],
     /// Friction at the start.
     frictions: [Vec2<T>; 2],
     /// Slips at the start, 0 where they have ended.
@@ -87,7 +89,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     if (at_zero_slip[FIRST] | at_zero_slip[SECOND]).any() {
         impulses = remove_slips(params, state, &mut pair, at_zero_slip);
     }
-    let mode = FrictionMode::new(params, &pair, friction, at_zero_slip);
+    let mode = FrictionMode::new(params, &pair, friction, at_zero_slip, step_s);
     let base = BaseForces::new(params, &pair, &mode, step_s);
     let end = first_event(params, &pair, &mode, &base);
     let (dt, half) = (end.tau * step_s, end.tau * 0.5);
@@ -155,20 +157,33 @@ impl<T: Real> FrictionMode<T> {
         pair: &ContactPair<T>,
         friction: &[FrictionState<T>; 2],
         at_zero_slip: [T::Mask; 2],
+        step_s: T,
     ) -> Self {
         let slips = for_both!(i => pair.kinematics[i].slip());
+        let sizes = for_both!(i => slips[i].norm());
         let limits = for_both!(i => pair.friction_limit(i));
+        let failed = for_both!(i => friction[i].rolling_failed);
+        let against_slip = for_both!(i => {
+            friction_against(limits[i], unit(slips[i], sizes[i]))
+        });
+        // What rolling needs. A failed roll leaves hardly any slip: it follows this, faster than a step can.
+        let candidates = for_both!(i => at_zero_slip[i] | failed[i]);
+        let required = pair.frictions(params, candidates, against_slip);
+        let follows = for_both!(i => {
+            let rate = required[i].norm() * pair.kinematics[i].inverse_effective_mass(&params.ball);
+            at_zero_slip[i] | (failed[i] & sizes[i].le(rate * step_s * 0.5))
+        });
         let directions = for_both!(i => {
-            let slip_rate = pair.frictionless_slip_rate(i, pair.normal_only(params, 1 - i));
-            let slip_or_slip_rate = slip_rate.select(at_zero_slip[i], slips[i]);
-            let size = slip_or_slip_rate.norm();
-            let inverse_size = params.one() / size.select(size.is_positive(), params.one());
-            Vec2::new(slip_or_slip_rate.x * inverse_size, slip_or_slip_rate.y * inverse_size)
+            let against_required = unit(-required[i], required[i].norm());
+            against_required.select(follows[i], unit(slips[i], sizes[i]))
         });
         let sliding = for_both!(i => friction_against(limits[i], directions[i]));
-        let mut rolling = for_both!(i => at_zero_slip[i] & !friction[i].rolling_failed);
+        let mut rolling = for_both!(i => at_zero_slip[i] & !failed[i]);
         let mut fails_now = [params.splat_mask(false); 2];
-        let mut frictions = pair.frictions(params, rolling, sliding);
+        let mut frictions = required;
+        if (failed[FIRST] | failed[SECOND]).any() {
+            frictions = pair.frictions(params, rolling, sliding);
+        }
         // At most two passes: each ends the roll of one contact.
         loop {
             let [first, second] = for_both!(i => {
@@ -192,7 +207,8 @@ impl<T: Real> FrictionMode<T> {
             rolling,
             fails_now,
             frictions,
-            slip_speeds: for_both!(i => params.zero().select(at_zero_slip[i], slips[i].norm())),
+            follows: for_both!(i => follows[i] & !rolling[i]),
+            slip_speeds: for_both!(i => params.zero().select(candidates[i], sizes[i])),
             directions,
         }
     }
@@ -363,6 +379,13 @@ fn first_event<T: Real>(
     }
 }
 
+/// A vector of the length `size` as a vector of the length one.
+#[inline(always)]
+fn unit<T: Real>(vector: Vec2<T>, size: T) -> Vec2<T> {
+    let inverse = size.one() / size.select(size.is_positive(), size.one());
+    Vec2::new(vector.x * inverse, vector.y * inverse)
+}
+
 /// Friction of the size `limit` against a direction of slip.
 #[inline(always)]
 fn friction_against<T: Real>(limit: T, direction: Vec2<T>) -> Vec2<T> {
@@ -400,6 +423,16 @@ fn remainder<T: Real, A: Solid<T>, B: Solid<T>>(
         let now = Vec2::new(slip.x * inverse, slip.y * inverse);
         friction_against(pair.friction_limit(i), now.select(has_direction, initial))
     });
+    let mut sliding = sliding;
+    if (mode.follows[FIRST] | mode.follows[SECOND]).any() {
+        let constrained = for_both!(i => mode.rolling[i] | mode.follows[i]);
+        let required = pair.frictions(params, constrained, sliding);
+        sliding = for_both!(i => {
+            let against_required = unit(-required[i], required[i].norm());
+            let now = friction_against(pair.friction_limit(i), against_required);
+            now.select(mode.follows[i], sliding[i])
+        });
+    }
     let frictions = pair.frictions(params, mode.rolling, sliding);
     for_both!(i => {
         let force = ContactVector { normal: pair.normals[i], tangent: frictions[i] };
