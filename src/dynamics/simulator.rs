@@ -123,9 +123,9 @@ fn suits_single_precision(physics: &Physics) -> bool {
 
 /// Steps on the board and on the ring, as a share of the steps per contact: on the flat board larger steps are
 /// as good.
-const STEPS_ON: [f64; SolidId::COUNT] = [0.7, 0.9];
+const STEPS_ON: [f64; SolidId::COUNT] = [0.7, 0.8];
 /// The same in a double contact.
-const DOUBLE_STEPS: f64 = 1.4;
+const DOUBLE_STEPS: f64 = 1.2;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
 /// steps; some constants that are far from any ball would take steps without end.
