@@ -1,16 +1,17 @@
 //! The free flights of a batch: closed form, a block at a time.
 
 use super::batch_state::Batch;
-use super::lane_block::{LaneBlock, bit, lanes_in};
+use super::lane_block::{LaneBlock, bit, lanes_in, set_bit};
 use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
 use crate::dynamics::flight::FlightEvents;
-use crate::dynamics::integrators::event_driven::MAX_SEGMENTS;
-use crate::dynamics::outcome::Ending;
-use crate::math::real::{LaneBits, SimdReal};
-use crate::model::SolidId;
+use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS, solids_touched_at_release};
+use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
+use crate::math::real::{LaneBits, MAX_F64_LANES, SimdReal};
+use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
+use crate::model::{BallState, SolidId};
 use fearless_simd::Simd;
 
 /// Flies every shot that waits for flight, to its end or its next touch.
@@ -28,6 +29,21 @@ where
     );
 }
 
+/// Flies the first arcs of shots that have not started yet, as long as there are free slots.
+#[inline(never)]
+pub(super) fn fly_from_release<S, T, const WIDE: bool>(
+    batch: &mut Batch<S, WIDE>,
+    starts: &[BallState],
+) where
+    S: Simd,
+    T: SimdReal<Simd = S, Element = f64>,
+{
+    batch.simd.vectorize(
+        #[inline(always)]
+        || batch.fly_first_arcs::<T>(starts),
+    );
+}
+
 impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     #[inline(always)]
     fn fly_all<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
@@ -40,36 +56,89 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             let mut next = slots.iter().copied().chain(std::iter::repeat(last));
             let shots_in_progress = &mut self.workspace.slots;
             block.fill(T::ALL, self.params, shots_in_progress, || next.next());
-            let mut shots = block.load::<T>(self.simd);
-            block.leave_ring(self.simd, params, &mut shots.state);
-            let start = shots.state;
-            let flight = FlightEvents::new(params, &start);
-            let dt = flight.first_end();
-            shots.crossing.after_flight(params, &start, dt);
-            shots.state = start.after_flight(&params.ball, dt);
-            shots.time_s = shots.time_s + dt;
-            let late = params.splat(self.limits.time_limit_s).lt(shots.time_s);
-            let end = FlightEnd {
-                needs_scalar: T::mask_to_bits(
-                    flight.beside_board.lt(dt) | flight.unresolved | late,
-                ),
-                made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
-                touches: [
-                    T::mask_to_bits(flight.touch_of(SolidId::Board).le(dt)),
-                    T::mask_to_bits(flight.touch_of(SolidId::Ring).le(dt)),
-                ],
-                rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
-            };
-            block.store(&shots);
-            let [_, on_ring] = end.touches;
-            if on_ring & !end.needs_scalar != 0 {
-                let motion = params.ring.to_contact(&params.ball, &shots.state);
-                block.store_ring_motion(&motion);
-            }
+            let end = self.fly_lanes(params, &mut block);
             let real_lanes = T::ALL >> (T::LANES - slots.len());
             self.finish_flights(&mut block, slots, real_lanes, &end);
         }
         self.workspace.return_queue(queue);
+    }
+
+    /// The same for shots at their release. Those that touch nothing never take a slot.
+    #[inline(always)]
+    fn fly_first_arcs<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
+        let params = &self.lane_params::<T>();
+        let mut block = LaneBlock::new();
+        loop {
+            let shots = self.workspace.next_starts(T::LANES);
+            if shots.is_empty() {
+                return;
+            }
+            let starts = &starts[shots.clone()];
+            block.fill_at_release(starts);
+            let end = self.fly_lanes(params, &mut block);
+            let in_flight = |start| !solids_touched_at_release(self.params, start).contains(&true);
+            let mut flying = 0;
+            for (lane, start) in starts.iter().enumerate() {
+                set_bit(&mut flying, lane, in_flight(start));
+            }
+            let real_lanes = T::ALL >> (T::LANES - starts.len());
+            for lane in lanes_in(real_lanes & !flying) {
+                self.workspace.verdicts[shots.start + lane] =
+                    event_driven::run(self.params, self.limits, starts[lane], &mut ());
+            }
+            let [on_board, on_ring] = end.touches;
+            let go_on = flying & (on_board | on_ring | end.needs_scalar);
+            for lane in lanes_in(flying & !go_on) {
+                let ending = flight_ending(bit(end.rose, lane));
+                self.workspace.verdicts[shots.start + lane] = Verdict {
+                    made: ending == Ending::Fell && bit(end.made, lane),
+                    ending,
+                    contacts: ContactSequence::default(),
+                    time_s: block.time_s(lane),
+                };
+            }
+            let mut slots = [0; MAX_F64_LANES];
+            for lane in lanes_in(go_on) {
+                slots[lane] = self
+                    .workspace
+                    .occupy(self.params, shots.start + lane, &starts[lane]);
+            }
+            self.finish_flights(&mut block, &slots, go_on, &end);
+        }
+    }
+
+    /// Flies the lanes of a block to the ends of their arcs.
+    #[inline(always)]
+    fn fly_lanes<T: SimdReal<Simd = S, Element = f64>>(
+        &self,
+        params: &ModelParams<T>,
+        block: &mut LaneBlock,
+    ) -> FlightEnd {
+        let mut shots = block.load::<T>(self.simd);
+        block.leave_ring(self.simd, params, &mut shots.state);
+        let start = shots.state;
+        let flight = FlightEvents::new(params, &start);
+        let dt = flight.first_end();
+        shots.crossing.after_flight(params, &start, dt);
+        shots.state = start.after_flight(&params.ball, dt);
+        shots.time_s = shots.time_s + dt;
+        let late = params.splat(self.limits.time_limit_s).lt(shots.time_s);
+        let end = FlightEnd {
+            needs_scalar: T::mask_to_bits(flight.beside_board.lt(dt) | flight.unresolved | late),
+            made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
+            touches: [
+                T::mask_to_bits(flight.touch_of(SolidId::Board).le(dt)),
+                T::mask_to_bits(flight.touch_of(SolidId::Ring).le(dt)),
+            ],
+            rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
+        };
+        block.store(&shots);
+        let [_, on_ring] = end.touches;
+        if on_ring & !end.needs_scalar != 0 {
+            let motion = params.ring.to_contact(&params.ball, &shots.state);
+            block.store_ring_motion(&motion);
+        }
+        end
     }
 
     /// Takes the shots of a block out of their lanes after a flight, grouped by outcome: a branch in each

@@ -123,6 +123,29 @@ impl LaneBlock {
         self.flags = flags;
     }
 
+    /// Puts shots at their release into the lanes; those that are left repeat the last one.
+    #[inline(always)]
+    pub(super) fn fill_at_release(&mut self, starts: &[BallState]) {
+        self.flags = LaneFlags::default();
+        self.times_s = ZEROS;
+        self.steps = [0; ZEROS.len()];
+        let last = starts.len() - 1;
+        for lane in 0..ZEROS.len() {
+            let start = &starts[lane.min(last)];
+            for (row, value) in self.state.iter_mut().zip(start.to_array()) {
+                row[lane] = value;
+            }
+            let is_above = start.position_m.z >= 0.0;
+            set_bit(&mut self.flags.has_been_above, lane, is_above);
+        }
+    }
+
+    /// The time of the shot in a lane, s.
+    #[inline(always)]
+    pub(super) fn time_s(&self, lane: usize) -> f64 {
+        self.times_s[lane]
+    }
+
     /// The slot of the shot in a lane.
     #[inline(always)]
     pub(super) fn slot(&self, lane: usize) -> u32 {

@@ -12,7 +12,7 @@
 use super::batch_state::{Batch, Narrow, NarrowSingle, Wide, WideSingle};
 use super::board_contact_phase::board_contact;
 use super::double_contact_phase::board_and_ring;
-use super::flight_phase::fly;
+use super::flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
@@ -62,7 +62,11 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             workspace,
         };
         loop {
-            batch.workspace.start_shots(params, limits, starts);
+            if WIDE {
+                fly_from_release::<S, Wide<S>, WIDE>(&mut batch, starts);
+            } else {
+                fly_from_release::<S, Narrow<S>, WIDE>(&mut batch, starts);
+            }
             if batch.workspace.is_idle() {
                 return;
             }

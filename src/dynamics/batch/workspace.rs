@@ -1,12 +1,10 @@
 //! The memory of a batch: the shots in progress, and the queues in which they wait.
 
-use crate::dynamics::end_rules::ShotLimits;
-use crate::dynamics::integrators::event_driven::{
-    self, ContactState, ShotProgress, solids_touched_at_release,
-};
+use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
+use std::ops::Range;
 
 /// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache (some
 /// 350 bytes each).
@@ -77,33 +75,27 @@ impl BatchWorkspace {
         self.verdicts.resize(count, PENDING);
     }
 
-    /// Starts shots while there are free slots.
-    pub(super) fn start_shots(
-        &mut self,
-        params: &ModelParams,
-        limits: &ShotLimits,
-        starts: &[BallState],
-    ) {
-        while let Some(start) = starts.get(self.started) {
-            if solids_touched_at_release(params, start).contains(&true) {
-                self.verdicts[self.started] = event_driven::run(params, limits, *start, &mut ());
-                self.started += 1;
-                continue;
-            }
-            let shot = ShotProgress::at_release(params, *start);
-            let slot = if let Some(slot) = self.free_slots.pop() {
-                self.slots[slot as usize] = shot;
-                self.shots[slot as usize] = self.started as u32;
-                slot
-            } else if self.slots.len() < SLOTS {
-                self.slots.push(shot);
-                self.shots.push(self.started as u32);
-                self.slots.len() as u32 - 1
-            } else {
-                return;
-            };
-            self.queues[Phase::Flight.index()].push(slot);
-            self.started += 1;
+    /// The numbers of the next shots to start, at most `lanes`; none while there are fewer free slots than `lanes`.
+    pub(super) fn next_starts(&mut self, lanes: usize) -> Range<usize> {
+        let free = self.free_slots.len() + (SLOTS - self.slots.len());
+        let first = self.started;
+        if lanes <= free {
+            self.started = (first + lanes).min(self.verdicts.len());
+        }
+        first..self.started
+    }
+
+    /// A slot for a shot that starts at `start`.
+    pub(super) fn occupy(&mut self, params: &ModelParams, shot: usize, start: &BallState) -> u32 {
+        let progress = ShotProgress::at_release(params, *start);
+        if let Some(slot) = self.free_slots.pop() {
+            self.slots[slot as usize] = progress;
+            self.shots[slot as usize] = shot as u32;
+            slot
+        } else {
+            self.slots.push(progress);
+            self.shots.push(shot as u32);
+            self.slots.len() as u32 - 1
         }
     }
 
