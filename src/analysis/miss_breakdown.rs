@@ -3,7 +3,7 @@
 //! The kind of a miss needs the full outcome of a shot, which costs several times its verdict. So a part of the
 //! Sobol points is classified, and the shares are scaled to the share of misses of all points.
 
-use crate::dynamics::OutcomeKind;
+use crate::dynamics::{BatchWorkspace, OutcomeKind};
 use crate::math::sobol::ScrambleKey;
 use crate::probability::{Estimate, Sampler};
 use crate::shooter::{Nominal, Profile, ReleaseDistribution};
@@ -12,6 +12,8 @@ use serde::Serialize;
 
 /// Classified shots.
 const CLASSIFIED: u32 = 16384;
+/// Shots that are simulated together.
+const BATCH: usize = 2048;
 
 /// Shares of all shots by the way they were missed. With the shares of the made shots they sum to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -47,12 +49,22 @@ pub fn classify_misses(
     let sampler = Sampler::new(profile);
     let scramble = sampler.scramble(ScrambleKey { seed, replicate: 0 });
     let distribution = ReleaseDistribution::new(profile, nominal);
-    let kinds: Vec<(OutcomeKind, f64)> = (0..CLASSIFIED)
-        .into_par_iter()
-        .map(|index| {
-            let release = distribution.from_uniform(|dimension| scramble.point(index, dimension));
-            let outcome = profile.simulator().outcome(release.state());
-            (outcome.kind, outcome.right_of_centre_m)
+    let mut starts = Vec::with_capacity(CLASSIFIED as usize);
+    distribution.for_each_state(&scramble, (0, CLASSIFIED), |state| starts.push(state));
+    let simulator = profile.simulator();
+    // In lanes first: only misses need their path.
+    let kinds: Vec<(OutcomeKind, f64)> = starts
+        .par_chunks(BATCH)
+        .flat_map_iter(|starts| {
+            let mut workspace = BatchWorkspace::default();
+            let verdicts = simulator.finite_verdicts(starts, &mut workspace).iter();
+            let misses = verdicts.zip(starts).filter(|(verdict, _)| !verdict.made);
+            misses
+                .map(|(_, start)| {
+                    let outcome = simulator.outcome(*start);
+                    (outcome.kind, outcome.right_of_centre_m)
+                })
+                .collect::<Vec<_>>()
         })
         .collect();
     let mut counts = MissBreakdown::default();

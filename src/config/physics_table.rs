@@ -129,7 +129,7 @@ fn read_integrator(
     }
     match name.as_deref() {
         None | Some("exact") => Integrator::EventDriven {
-            steps_per_contact: steps.unwrap_or(5),
+            steps_per_contact: steps.unwrap_or(4),
             precision,
         },
         Some("paper") => Integrator::PaperRk4 { dt_max_s, dt_min_s },

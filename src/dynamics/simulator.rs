@@ -22,7 +22,7 @@ use serde::Serialize;
 pub enum Integrator {
     /// Closed-form flight, and contacts in steps that end on the events of friction.
     EventDriven {
-        /// Steps per head-on contact time, 1 or more. More is finer; the default is 5.
+        /// Steps per head-on contact time, 1 or more. More is finer; the default is 4.
         steps_per_contact: u32,
         /// The numbers in contacts with one solid. Flights are always in double precision.
         precision: Precision,
@@ -38,7 +38,7 @@ pub enum Integrator {
 
 impl Integrator {
     /// The default integrator with its default step.
-    pub const EVENT_DRIVEN: Self = Self::event_driven(5);
+    pub const EVENT_DRIVEN: Self = Self::event_driven(4);
     /// The paper's method with the paper's steps.
     pub const PAPER_RK4: Self = Self::PaperRk4 {
         dt_max_s: 0.015,
@@ -123,15 +123,15 @@ fn suits_single_precision(physics: &Physics) -> bool {
 
 /// Steps on the board and on the ring, as a share of the steps per contact: on the flat board larger steps are
 /// as good.
-const STEPS_ON: [f64; SolidId::COUNT] = [0.7, 0.8];
+const STEPS_ON: [f64; SolidId::COUNT] = [0.875, 1.0];
 /// The same in a double contact.
-const DOUBLE_STEPS: f64 = 1.2;
+const DOUBLE_STEPS: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
 /// steps; some constants that are far from any ball would take steps without end.
 fn max_steps(integrator: Integrator) -> u32 {
     const STEPS: u32 = 20_000;
-    const AT_STEPS_PER_CONTACT: u32 = 5;
+    const AT_STEPS_PER_CONTACT: u32 = 4;
     match integrator {
         Integrator::EventDriven {
             steps_per_contact, ..

@@ -124,10 +124,10 @@ impl Correlation {
         let mut independent = [0.0; N];
         for i in 0..N {
             let mut rest = correlated[i];
-            for j in 0..i {
+            for (j, known) in independent.iter().enumerate().take(i) {
                 let weight = self.factor[(i, j)];
                 if weight != 0.0 {
-                    rest -= weight * independent[j];
+                    rest -= weight * known;
                 }
             }
             independent[i] = rest / self.factor[(i, i)];

@@ -68,25 +68,33 @@ impl ReleaseDistribution {
         mut use_state: impl FnMut(BallState),
     ) {
         const BLOCK: usize = 256;
-        let mut normals = [[0.0; BLOCK]; N];
+        let mut points = [[0.0; N]; BLOCK];
+        let mut of_variable = [0.0; BLOCK];
         let mut sequence = scramble.sequence(from);
         for start in (from..to).step_by(BLOCK) {
-            let count = BLOCK.min((to - start) as usize);
-            for i in 0..count {
-                for k in 0..N {
-                    if self.needed[k] {
-                        normals[k][i] = sequence.coordinate(k);
-                    }
+            let points = &mut points[..BLOCK.min((to - start) as usize)];
+            for point in points.iter_mut() {
+                for (k, value) in point.iter_mut().enumerate() {
+                    *value = if self.needed[k] {
+                        sequence.coordinate(k)
+                    } else {
+                        0.0
+                    };
                 }
                 sequence.advance();
             }
-            for k in 0..N {
-                if self.needed[k] {
-                    normal_distribution::quantiles(&mut normals[k][..count]);
+            for k in (0..N).filter(|&k| self.needed[k]) {
+                let values = &mut of_variable[..points.len()];
+                for (value, point) in values.iter_mut().zip(&*points) {
+                    *value = point[k];
+                }
+                normal_distribution::quantiles(values);
+                for (value, point) in values.iter().zip(points.iter_mut()) {
+                    point[k] = *value;
                 }
             }
-            for i in 0..count {
-                use_state(self.state(std::array::from_fn(|k| normals[k][i])));
+            for point in points {
+                use_state(self.state(*point));
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Computes the missing jobs of a sweep.
 //!
-//! Each thread takes spot after spot, in the order of the list, and works on it alone. So the memory is that of one spot
-//! for each thread, and no result depends on the number of threads. A panic is the failure of its job. A spot
+//! As many spots as there are threads are in work at a time, in the order of the list, and all of them share the
+//! threads. So the memory is that of one spot for each thread, the last spots of a sweep have all threads, and no
+//! result depends on their number. A panic is the failure of its job. A spot
 //! that was being computed when the program aborted is computed alone at the next start, and given up if the
 //! program aborts there again.
 
@@ -16,6 +17,7 @@ use super::sweep_toml::SweepConfig;
 use crate::best_shot::{self, BestShotError, NoShot};
 use crate::probability::{Progress, Silent};
 use crate::search_space::PlanError;
+use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -188,8 +190,10 @@ impl<'a> SweepRun<'a> {
         let (alone, others): (Vec<usize>, Vec<usize>) = others
             .into_iter()
             .partition(|spot| self.alone.contains(spot));
-        self.compute_spots(&alone, 1, &save)?;
-        self.compute_spots(&others, self.options.threads.max(1), &save)?;
+        let threads = self.options.threads.max(1);
+        let pool = &shared_pool(threads)?;
+        self.compute_spots(&alone, 1, pool, &save)?;
+        self.compute_spots(&others, threads, pool, &save)?;
         progress.end();
         let failed_before = if self.options.retry_failed {
             0
@@ -209,11 +213,13 @@ impl<'a> SweepRun<'a> {
             .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Computes spots on several threads and saves each as it is finished.
+    /// Computes several spots at once and saves each as it is finished. All of them share the threads of `pool`: at the
+    /// end of a sweep the last spot has them all.
     fn compute_spots(
         &self,
         spots: &[usize],
-        threads: usize,
+        at_once: usize,
+        pool: &ThreadPool,
         save: &(dyn Fn(usize, &[ResultRow], f64) -> Result<(), StoreError> + Sync),
     ) -> Result<(), StoreError> {
         let next = AtomicUsize::new(0);
@@ -226,10 +232,6 @@ impl<'a> SweepRun<'a> {
             }
         };
         let work = || {
-            let pool = match single_thread_pool() {
-                Ok(pool) => pool,
-                Err(error) => return fail(error),
-            };
             while !stopped.load(Ordering::Relaxed) {
                 let Some(&spot) = spots.get(next.fetch_add(1, Ordering::Relaxed)) else {
                     break;
@@ -246,7 +248,7 @@ impl<'a> SweepRun<'a> {
             }
         };
         std::thread::scope(|scope| {
-            for _ in 0..threads.min(spots.len()) {
+            for _ in 0..at_once.min(spots.len()) {
                 if let Err(error) = std::thread::Builder::new().spawn_scoped(scope, work) {
                     fail(no_threads(&error));
                 }
@@ -304,10 +306,10 @@ impl<'a> SweepRun<'a> {
     }
 }
 
-/// A pool with one thread: a spot is computed on its thread alone.
-fn single_thread_pool() -> Result<rayon::ThreadPool, StoreError> {
+/// The threads that all spots of a run share.
+fn shared_pool(threads: usize) -> Result<ThreadPool, StoreError> {
     rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
+        .num_threads(threads)
         .build()
         .map_err(|error| no_threads(&error))
 }
@@ -319,43 +321,40 @@ fn no_threads(error: &dyn std::fmt::Display) -> StoreError {
     }
 }
 
-/// Computes all kinds at some spots, as a run would; returns the mean time of a spot on its thread, s. `None` if
-/// nothing could be computed.
+/// Computes all kinds at some of the spots, as a run would, until `budget` is spent; returns the mean time in which
+/// all threads together compute a spot, s, and the number of computed spots. `None` if there is none.
 #[must_use]
 pub fn mean_spot_time_s(
     config: &SweepConfig,
     jobs: &Jobs,
     spots: &[usize],
     threads: usize,
+    budget: Duration,
     progress: &dyn Progress,
-) -> Option<f64> {
+) -> Option<(f64, usize)> {
     let kinds: Vec<usize> = (0..jobs.kinds.len()).collect();
-    let next = AtomicUsize::new(0);
-    let times_s = Mutex::new(Vec::new());
+    let pool = shared_pool(threads).ok()?;
+    let (next, computed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     progress.begin("calibrating", spots.len() as u64);
+    let began = Instant::now();
     std::thread::scope(|scope| {
         for _ in 0..threads.min(spots.len()) {
             scope.spawn(|| {
-                let Ok(pool) = single_thread_pool() else {
-                    return;
-                };
                 while let Some(&spot) = spots.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let began = Instant::now();
                     let rows = pool.install(|| compute_jobs(config, jobs, spot, &kinds));
-                    if rows.is_ok()
-                        && let Ok(mut times_s) = times_s.lock()
-                    {
-                        times_s.push(began.elapsed().as_secs_f64());
-                    }
+                    computed.fetch_add(usize::from(rows.is_ok()), Ordering::Relaxed);
                     progress.advance(1);
+                    if began.elapsed() > budget {
+                        break;
+                    }
                 }
             });
         }
     });
     progress.end();
-    let times_s = times_s.into_inner().unwrap_or_default();
-    let mean = times_s.iter().sum::<f64>() / times_s.len() as f64;
-    (!times_s.is_empty()).then_some(mean)
+    let computed = computed.into_inner();
+    let mean_s = began.elapsed().as_secs_f64() / computed as f64;
+    (computed > 0).then_some((mean_s, computed))
 }
 
 /// Computes some of the kinds at a spot, given by their indices in [`Jobs::kinds`].

@@ -388,7 +388,7 @@ fn prop_single_precision_gives_the_shots_of_double_precision() {
     ] {
         let at = |precision| {
             let integrator = Integrator::EventDriven {
-                steps_per_contact: 5,
+                steps_per_contact: 4,
                 precision,
             };
             Simulator::with_integrator(&physics, integrator).unwrap()

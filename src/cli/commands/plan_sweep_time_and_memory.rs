@@ -12,9 +12,12 @@ use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::run::mean_spot_time_s;
 use serde_json::Value;
 use std::path::Path;
+use std::time::Duration;
 
-/// Greatest number of spots that the forecast is based on; of a small sweep, a quarter.
+/// Greatest number of spots that the forecast is based on, unless there are more threads.
 const MAX_CALIBRATION_SPOTS: usize = 8;
+/// After this time no more spots are begun.
+const BUDGET: Duration = Duration::from_millis(900);
 /// About the size of a job in the store, and of a row in the tables, bytes.
 const STORE_BYTES_PER_JOB: f64 = 600.0;
 /// See [`STORE_BYTES_PER_JOB`].
@@ -29,16 +32,12 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
     let jobs = Jobs::new(&config);
     let threads = rayon::current_num_threads();
     let spots = jobs.spots.len();
-    let calibrated = MAX_CALIBRATION_SPOTS
-        .min(spots.div_ceil(4))
-        .max(threads.min(spots));
-    let chosen: Vec<usize> = (0..calibrated)
-        .map(|i| (2 * i + 1) * spots / (2 * calibrated))
-        .collect();
+    let chosen = spread_out(spots, MAX_CALIBRATION_SPOTS.max(threads).min(spots));
     let table_bytes = table_bytes(&config, &jobs, &chosen)?;
     let bars = ProgressBars::new(quiet);
-    let seconds = mean_spot_time_s(&config, &jobs, &chosen, threads, &bars)
-        .map(|mean| mean * spots.div_ceil(threads) as f64);
+    let calibration = mean_spot_time_s(&config, &jobs, &chosen, threads, BUDGET, &bars);
+    let seconds = calibration.map(|(mean_s, _)| mean_s * spots as f64);
+    let calibrated = calibration.map_or(0, |(_, computed)| computed);
     let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
     let disk = STORE_BYTES_PER_JOB * jobs.count() as f64 + TABLE_BYTES_PER_ROW * rows;
     // Each thread has a table of the search or a window, and a batch of shots.
@@ -72,6 +71,17 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
         mib(memory),
         mib(disk)
     ))
+}
+
+/// `count` of `total` spots, far apart, in an order in which the first few are far apart too.
+fn spread_out(total: usize, count: usize) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..count).collect();
+    let bits = count.next_power_of_two().trailing_zeros();
+    places.sort_by_key(|i| i.reverse_bits() >> (usize::BITS - bits.max(1)));
+    places
+        .into_iter()
+        .map(|i| (2 * i + 1) * total / (2 * count))
+        .collect()
 }
 
 /// Memory of the table of a spot, bytes. From some spots nothing can go in; they have no table.
