@@ -121,10 +121,7 @@ fn suits_single_precision(physics: &Physics) -> bool {
         && (0.1..=100.0).contains(&physics.gravity_m_s2)
 }
 
-/// Steps on the board and on the ring, as a share of the steps per contact: on the flat board larger steps are
-/// as good.
-const STEPS_ON: [f64; SolidId::COUNT] = [0.875, 1.0];
-/// The same in a double contact.
+/// Steps in a double contact, as a share of the steps per contact. (Two solids together are stiffer.)
 const DOUBLE_STEPS: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
@@ -253,7 +250,7 @@ impl Simulator {
             limits: ShotLimits {
                 longest_step_s: physics.contact_time_s() / (steps * DOUBLE_STEPS),
                 single_precision: integrator.is_single_precision(physics),
-                oscillators: STEPS_ON.map(|share| Oscillator::new(physics, steps * share)),
+                oscillators: [Oscillator::new(physics, steps); SolidId::COUNT],
                 time_limit_s: physics.time_limit_s,
                 lodged_after_s: physics.lodged_after_s,
                 max_steps: max_steps(integrator),

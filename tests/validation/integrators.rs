@@ -113,7 +113,7 @@ fn val_convergence_orders() {
     // Most free throws touch the ring first, most shots from the side the board.
     let mut orders = Vec::new();
     for shots in [free_throw_uniform(400, 5), side_uniform(400, 6)] {
-        let errors = median_errors(&shots, &[5, 10, 20, 40, 80, 160]);
+        let errors = median_errors(&shots, &[4, 8, 16, 32, 64, 128]);
         println!("median errors: {errors:?} m/s");
         orders.push(order(errors[0], errors[5], 5));
         assert!(errors[5] < 3e-7, "{errors:?}");
