@@ -91,7 +91,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 } else {
                     shot.friction = SolidId::ALL.map(|solid| block.friction(solid, lane));
                     let separated = separated.map(|separated| bit(separated, lane));
-                    shot.after_double(self.params, separated);
+                    shot.leave(self.params, separated);
                     self.workspace.enqueue(slot);
                 }
             }

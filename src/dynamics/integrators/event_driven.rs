@@ -107,8 +107,8 @@ impl ShotProgress {
         self.friction[arrived.index()] = FrictionState::new(params);
     }
 
-    /// After a step on board and ring that the ball has left.
-    pub(crate) fn after_double(&mut self, params: &ModelParams, [off_board, off_ring]: [bool; 2]) {
+    /// The ball on board and ring leaves some of them: it goes on with what remains.
+    pub(crate) fn leave(&mut self, params: &ModelParams, [off_board, off_ring]: [bool; 2]) {
         match (off_board, off_ring) {
             (true, true) => self.contact = ContactState::Free,
             (true, false) => {
@@ -173,7 +173,7 @@ pub(crate) fn run<O: Observer>(
         }
     }
     shot.contact = ContactState::BoardAndRing;
-    shot.after_double(params, touched.map(|touched| !touched));
+    shot.leave(params, touched.map(|touched| !touched));
     let mut run = Run {
         params,
         limits,
@@ -286,7 +286,7 @@ impl<O: Observer> Run<'_, O> {
                 let shot = &mut self.shot;
                 shot.friction[solid.index()] = FrictionState::new(params);
                 shot.contact = ContactState::BoardAndRing;
-                shot.after_double(params, SolidId::ALL.map(|id| id != solid));
+                shot.leave(params, SolidId::ALL.map(|id| id != solid));
                 return None;
             }
         }
@@ -453,7 +453,7 @@ impl<O: Observer> Run<'_, O> {
                 }
             }
             if separated.contains(&true) {
-                self.shot.after_double(params, separated);
+                self.shot.leave(params, separated);
                 return None;
             }
         }
