@@ -2,7 +2,7 @@
 //! that end at contact events (the slip reaches zero, rolling fails, the ball parts, the other solid is touched).
 
 use crate::dynamics::contact::contact_step::{Contact, MacroStep};
-use crate::dynamics::contact::double_contact_step;
+use crate::dynamics::contact::double_contact_step::{self, DoubleContactStep};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::{TakenStep, has_arrived, passed};
 use crate::dynamics::end_rules::{
@@ -220,6 +220,18 @@ fn single_step<T: ScalarReal, S: Solid<T>>(
     contact.step(motion, friction, share)
 }
 
+/// The same on two solids.
+#[inline(never)]
+fn double_step<A: Solid<f64>, B: Solid<f64>>(
+    params: &ModelParams,
+    solids: (&A, &B),
+    state: &mut BallState,
+    friction: &mut [FrictionState; SolidId::COUNT],
+    longest_s: f64,
+) -> DoubleContactStep<f64> {
+    double_contact_step::step(params, solids, state, friction, longest_s)
+}
+
 /// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next segment.
 pub(crate) fn run_segment(
     params: &ModelParams,
@@ -421,12 +433,14 @@ impl<O: Observer> Run<'_, O> {
         let params = self.params;
         loop {
             let before = self.shot.state;
-            let step = double_contact_step::step(
+            let shot = &mut self.shot;
+            let longest_s = self.limits.longest_step_s;
+            let step = double_step(
                 params,
                 solids,
-                &mut self.shot.state,
-                &mut self.shot.friction,
-                self.limits.longest_step_s,
+                &mut shot.state,
+                &mut shot.friction,
+                longest_s,
             );
             let ending = self.after_step(step.dt, &before, step.impulses);
             let shot = &mut self.shot;
