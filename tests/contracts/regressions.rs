@@ -28,18 +28,18 @@ const PROBABILITIES: [u64; 3] = [
 /// Speed, pitch angle, polar angle, backspin and P: direct, bank.
 const BEST_SHOTS: [[u64; 5]; 2] = [
     [
-        0x401b_7d30_7678_c023,
-        0x3fef_5f2b_92b8_a6e1,
-        0x3feb_efc1_550e_2b7b,
+        0x401b_7d31_92f6_9953,
+        0x3fef_5f36_0bd6_5c14,
+        0x3feb_efc4_e109_9b95,
         0x4032_d97c_7f33_21d2,
-        0x3fe6_b400_0000_0000,
+        0x3fe6_b700_0000_0000,
     ],
     [
-        0x401c_bb7a_fd78_e5a3,
-        0x3fee_b8c2_5a73_b409,
-        0x3fe8_f25a_3c31_cccd,
+        0x401c_b687_29e7_918f,
+        0x3fee_7c10_b148_dca6,
+        0x3fe8_f2e8_b5d3_7718,
         0x4032_d97c_7f33_21d2,
-        0x3fe7_a600_0000_0000,
+        0x3fe7_9000_0000_0000,
     ],
 ];
 
