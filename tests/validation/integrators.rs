@@ -147,7 +147,7 @@ fn val_convergence_orders() {
 /// P of 40 nominal shots at the default steps against 1000 steps in double precision, with common samples: the
 /// difference is bias, not chance. Its standard error is 6e-5 at 2^17 samples (5e-4 of the shots disagree).
 #[test]
-#[ignore = "ten minutes: cargo test --test validation campaign_bias -- --ignored --nocapture"]
+#[ignore = "fifteen minutes: cargo test --test validation campaign_bias -- --ignored --nocapture"]
 fn campaign_bias_of_p_at_the_default_steps() {
     const SAMPLES: u64 = 1 << 17;
     let mut differences = Vec::new();
