@@ -2,7 +2,7 @@
 //! windows of a shot are.
 //!
 //! Every comparison is between two shots, or two shooters, under the same Sobol points
-//! ([`crate::probability::SharedSample`]). Each scramble gives a difference, and the scatter of these gives its
+//! (`probability/shared_sample.rs`). Each scramble gives a difference, and the scatter of these gives its
 //! standard error. A shooter without an error, another backspin and another height are simulated. A shooter with a
 //! tenth less of an error, and other speeds of a shot, reuse the shots of the nearest simulated one.
 
