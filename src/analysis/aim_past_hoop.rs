@@ -1,31 +1,36 @@
-//! Where the parabola of a nominal shot passes the plane of the hoop.
+//! Where the undisturbed path of a nominal shot passes the plane of the hoop.
 
 use crate::shooter::{Nominal, Profile};
 
-/// Horizontal length of the parabola from a release to its fall through the plane of the hoop, m; `None` if it
-/// does not rise above that plane.
+/// Horizontal length of the undisturbed path from a release to its fall through the plane of the hoop, m; `None` if
+/// it does not rise above that plane.
 fn length_to_hoop_plane_m(profile: &Profile, nominal: &Nominal) -> Option<f64> {
-    let (sin, cos) = libm::sincos(nominal.pitch_rad);
-    let g = profile.physics().gravity_m_s2;
-    let up = nominal.speed_m_s * sin;
-    let square = up * up + 2.0 * g * profile.height_above_hoop_m();
-    let length = nominal.speed_m_s * cos * (up + square.max(0.0).sqrt()) / g;
-    (square > 0.0).then_some(length)
+    profile
+        .simulator()
+        .length_to_hoop_plane_m(&profile.release(nominal))
 }
 
-/// Speed of the parabola that falls through the plane of the hoop after the horizontal length, m/s; `None` if
-/// the pitch angle is too low.
-fn speed_for_length_m_s(profile: &Profile, pitch_rad: f64, length_m: f64) -> Option<f64> {
-    let (sin, cos) = libm::sincos(pitch_rad);
-    let over = profile.height_above_hoop_m() + length_m * sin / cos;
-    let g = profile.physics().gravity_m_s2;
-    (over > 0.0 && cos > 1e-6).then(|| length_m / cos * (0.5 * g / over).sqrt())
+/// Speed of the path in the direction of `nominal` that falls through the plane of the hoop after the horizontal length,
+/// m/s; `None` if the pitch angle is too low.
+fn speed_for_length_m_s(profile: &Profile, nominal: &Nominal, length_m: f64) -> Option<f64> {
+    profile
+        .simulator()
+        .speed_through_m_s(&profile.release(nominal), length_m, 0.0)
 }
 
-/// Speed of the parabola through the hoop's centre, m/s; `None` if the pitch angle is too low.
+/// Speed of the undisturbed path without spin through the hoop's centre, m/s; `None` if the pitch angle is too low.
 #[must_use]
 pub fn centre_speed_m_s(profile: &Profile, pitch_rad: f64) -> Option<f64> {
-    speed_for_length_m_s(profile, pitch_rad, profile.location().distance_m)
+    let location = profile.location();
+    let nominal = Nominal {
+        speed_m_s: 0.0,
+        pitch_rad,
+        polar_rad: location.angle_rad,
+        backspin_rad_s: 0.0,
+        rifle_spin_rad_s: 0.0,
+        side_spin_rad_s: 0.0,
+    };
+    speed_for_length_m_s(profile, &nominal, location.distance_m)
 }
 
 /// How far past the hoop's centre the undisturbed path falls through the plane of the hoop, along its own
@@ -42,7 +47,7 @@ pub fn aim_past_centre_m(profile: &Profile, nominal: &Nominal) -> Option<f64> {
 #[must_use]
 pub fn with_same_aim(profile: &Profile, other: &Profile, nominal: &Nominal) -> Nominal {
     let speed = length_to_hoop_plane_m(profile, nominal)
-        .and_then(|length_m| speed_for_length_m_s(other, nominal.pitch_rad, length_m));
+        .and_then(|length_m| speed_for_length_m_s(other, nominal, length_m));
     Nominal {
         speed_m_s: speed.unwrap_or(nominal.speed_m_s),
         ..*nominal

@@ -64,7 +64,7 @@ impl Limit {
 }
 
 /// The best shot of one kind.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct BestShot {
     /// The nominal shot.
     pub nominal: Nominal,

@@ -3,7 +3,7 @@
 use super::diagnostics::{ConfigError, Diagnostic};
 use super::toml_reader::{TableReader, parse_toml};
 use crate::dynamics::{Integrator, Precision};
-use crate::model::Physics;
+use crate::model::{BoardEdge, PRESETS, Physics, Preset, SolidId};
 use crate::units::Dimension;
 
 /// Steps of the paper's integrator that a file can give, s.
@@ -42,22 +42,17 @@ pub(super) fn read_physics(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> (Physics, Integrator) {
     let mut table = root.table("physics", diagnostics);
-    let mut physics = Physics::paper();
-    let preset = table.text("preset", diagnostics);
-    if preset.is_some_and(|preset| preset != "paper") {
-        let message = "must be \"paper\" (set restitution for a livelier or duller ball)";
+    let name = table.text("preset", diagnostics);
+    let preset = Preset::named(name.as_deref().unwrap_or("paper"));
+    if preset.is_none() {
+        let names: Vec<_> = PRESETS.iter().map(|preset| preset.name).collect();
+        let message = format!("must be one of {}", names.join(", "));
         diagnostics.push(table.diagnostic("preset", message));
     }
+    let mut physics = preset.map_or_else(Physics::paper, Preset::physics);
     read_constants(&mut table, &mut physics, diagnostics);
-    if let Some(restitution) = table.quantity("restitution", Dimension::Number, diagnostics) {
-        if table.has("damping") {
-            let message = "give either restitution or damping";
-            diagnostics.push(table.diagnostic("restitution", message));
-        } else if let Err(error) = physics.set_restitution(restitution) {
-            let message = format!("must be {}", error.allowed);
-            diagnostics.push(table.diagnostic("restitution", message));
-        }
-    }
+    let default = preset.filter(|preset| preset.name != "paper");
+    read_contacts(&mut table, &mut physics, default, diagnostics);
     let integrator = read_integrator(&mut table, diagnostics);
     table.report_unknown_keys(diagnostics);
     (physics, integrator)
@@ -69,11 +64,17 @@ fn read_constants(
     diagnostics: &mut Vec<Diagnostic>,
 ) {
     let p = physics;
-    let constants: [(&'static str, Dimension, &mut f64); 15] = [
+    let constants: [(&'static str, Dimension, &mut f64); 17] = [
         ("ball_radius", Dimension::Length, &mut p.ball_radius_m),
         ("ball_mass", Dimension::Mass, &mut p.ball_mass_kg),
         ("inertia_ratio", Dimension::Number, &mut p.inertia_ratio),
         ("ring_radius", Dimension::Length, &mut p.ring_radius_m),
+        (
+            "ring_tube_diameter",
+            Dimension::Length,
+            &mut p.ring_tube_diameter_m,
+        ),
+        ("bracket_width", Dimension::Length, &mut p.bracket_width_m),
         ("board_distance", Dimension::Length, &mut p.board_distance_m),
         ("board_width", Dimension::Length, &mut p.board_width_m),
         ("board_height", Dimension::Length, &mut p.board_height_m),
@@ -84,9 +85,17 @@ fn read_constants(
         ),
         ("hoop_height", Dimension::Length, &mut p.hoop_height_m),
         ("gravity", Dimension::Acceleration, &mut p.gravity_m_s2),
-        ("stiffness", Dimension::Stiffness, &mut p.stiffness_n_m),
-        ("damping", Dimension::Damping, &mut p.damping_kg_s),
-        ("friction", Dimension::Number, &mut p.friction),
+        (
+            "air_density",
+            Dimension::Density,
+            &mut p.air.density_kg_m3,
+        ),
+        (
+            "drag_coefficient",
+            Dimension::Number,
+            &mut p.air.drag_coefficient,
+        ),
+        ("lift_slope", Dimension::Number, &mut p.air.lift_slope),
         ("time_limit", Dimension::Time, &mut p.time_limit_s),
         ("lodged_after", Dimension::Time, &mut p.lodged_after_s),
     ];
@@ -94,6 +103,99 @@ fn read_constants(
         if let Some(value) = table.quantity(key, dimension, diagnostics) {
             *constant = value;
         }
+    }
+    if let Some(radius_m) = table.quantity("board_edge_radius", Dimension::Length, diagnostics) {
+        p.board_edge = BoardEdge::Rounded { radius_m };
+    }
+}
+
+/// The keys of one constant of the contacts: for both, for the board's, for the hoop's.
+struct ContactKeys {
+    dimension: Dimension,
+    keys: [&'static str; 3],
+}
+
+impl ContactKeys {
+    const STIFFNESS: Self = Self {
+        dimension: Dimension::Stiffness,
+        keys: ["stiffness", "board_stiffness", "hoop_stiffness"],
+    };
+    const DAMPING: Self = Self {
+        dimension: Dimension::Damping,
+        keys: ["damping", "board_damping", "hoop_damping"],
+    };
+    const FRICTION: Self = Self {
+        dimension: Dimension::Number,
+        keys: ["friction", "board_friction", "hoop_friction"],
+    };
+    const RESTITUTION: Self = Self {
+        dimension: Dimension::Number,
+        keys: ["restitution", "board_restitution", "hoop_restitution"],
+    };
+
+    /// The values for board and hoop, each with its key.
+    fn read(
+        &self,
+        table: &mut TableReader<'_, '_>,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> [Option<(&'static str, f64)>; SolidId::COUNT] {
+        let mut read = |key| Some((key, table.quantity(key, self.dimension, diagnostics)?));
+        let [common, board, hoop] = self.keys.map(&mut read);
+        for (key, _) in [board, hoop].into_iter().flatten() {
+            if common.is_some() {
+                let message = format!("give either {} or {key}", self.keys[0]);
+                diagnostics.push(table.diagnostic(key, message));
+            }
+        }
+        [board.or(common), hoop.or(common)]
+    }
+}
+
+/// Reads the contacts with board and hoop. A `preset` whose contacts are defined by their restitutions keeps those
+/// when mass or stiffness change.
+fn read_contacts(
+    table: &mut TableReader<'_, '_>,
+    physics: &mut Physics,
+    preset: Option<&Preset>,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    let stiffness = ContactKeys::STIFFNESS.read(table, diagnostics);
+    let damping = ContactKeys::DAMPING.read(table, diagnostics);
+    let friction = ContactKeys::FRICTION.read(table, diagnostics);
+    let restitution = ContactKeys::RESTITUTION.read(table, diagnostics);
+    let mut refused = Vec::new();
+    for solid in SolidId::ALL {
+        let i = solid.index();
+        let contact = physics.contact_mut(solid);
+        let set = |constant: &mut f64, value: Option<(&str, f64)>| {
+            *constant = value.map_or(*constant, |(_, value)| value);
+        };
+        set(&mut contact.stiffness_n_m, stiffness[i]);
+        set(&mut contact.damping_kg_s, damping[i]);
+        set(&mut contact.friction, friction[i]);
+        match (restitution[i], damping[i]) {
+            (Some((key, _)), Some((other, _))) => {
+                refused.push((key, format!("give either {key} or {other}")));
+            }
+            (Some((key, value)), None) => {
+                if let Err(error) = physics.set_restitution_on(solid, value) {
+                    refused.push((key, format!("must be {}", error.allowed)));
+                }
+            }
+            (None, None) => {
+                if let Some(preset) = preset {
+                    let usual = preset.physics().restitution_on(solid);
+                    physics
+                        .set_restitution_on(solid, usual)
+                        .expect("the restitution of a preset");
+                }
+            }
+            (None, Some(_)) => {}
+        }
+    }
+    refused.dedup();
+    for (key, message) in refused {
+        diagnostics.push(table.diagnostic(key, message));
     }
 }
 

@@ -10,7 +10,7 @@ use crate::model::{BallState, SolidId};
 /// Limits of a simulation that are not part of the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotLimits {
-    /// Longest step in a double contact, s.
+    /// Longest step of a contact in the frame of space, s.
     pub(crate) longest_step_s: f64,
     /// Contacts with one solid are computed in single precision.
     pub(crate) single_precision: bool,
@@ -37,16 +37,10 @@ impl<T: Real> ShotEndFlags<T> {
     #[inline(always)]
     pub(crate) fn new(params: &ModelParams<T>, state: &BallState<T>, too_late: T::Mask) -> Self {
         Self {
-            behind_board: state.position_m.x.lt(params.board.face_x),
+            behind_board: state.position_m.x.lt(params.board.core.low.x),
             fell: fell_below_ring(params, state),
             too_late,
         }
-    }
-
-    /// Whether the shot has ended.
-    #[inline(always)]
-    pub(crate) fn any(&self) -> T::Mask {
-        self.behind_board | self.fell | self.too_late
     }
 
     /// Applies `f` to each mask, in the order of [`first_ending`].
@@ -78,17 +72,17 @@ pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<
     }
 }
 
-/// Whether the centre is below `z = -R` and falls. The ring can no longer touch the ball, and the shot ends.
+/// Whether the centre is below `z = -(R + r)` (r the radius of the rod) and falls. The ring can no longer touch the ball, and the shot ends.
 #[inline(always)]
 pub(crate) fn fell_below_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
-    state.position_m.z.lt(-params.ball.radius) & state.velocity_m_s.z.is_negative()
+    state.position_m.z.lt(-params.ring.reach) & state.velocity_m_s.z.is_negative()
 }
 
-/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -R`. One that never
+/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -(R + r)` (r the radius of the rod). One that never
 /// rises so high ends at its highest point.
 #[inline(always)]
 pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
-    let height = params.splat(-1.0) * params.ball.radius - TOUCH_GAP_M;
+    let height = params.splat(-1.0) * params.ring.reach - TOUCH_GAP_M;
     height.lt(state.position_m.z)
 }
 

@@ -6,9 +6,13 @@
 //! in (6 of 1000 shots that would count as made without this condition are missed with it; `docs/model.md`
 //! gives the measured effect).
 
-use crate::math::real::Real;
+use super::flight::FlightPath;
+use crate::math::real::{Mask, Real};
 use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
+
+/// Height to which the search for a crossing converges where there is one, m.
+const CROSSING_TOLERANCE_M: f64 = 1e-9;
 
 /// The crossings of the plane of the hoop so far.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +42,31 @@ impl<T: Real> HoopCrossing<T> {
         let rises =
             p.z.is_negative() & params.zero().le(discriminant) & v.z.is_positive() & t.lt(dt);
         let distance_squared = (p.x + v.x * t).squared() + (p.y + v.y * t).squared();
+        let inside = distance_squared.lt(params.ring.radius.squared());
+        self.rose_through = self.rose_through | (rises & inside);
+        self.has_been_above = self.has_been_above | rises;
+    }
+
+    /// Updates the crossings after a part of a flight that starts at the height `z` with the rate `vz`.
+    #[inline(always)]
+    pub(crate) fn after_path(
+        &mut self,
+        params: &ModelParams<T>,
+        path: &FlightPath<T>,
+        (z, vz): (T, T),
+        dt: T,
+    ) {
+        let zero = params.zero();
+        let may_rise = z.is_negative() & vz.is_positive();
+        if !may_rise.any() {
+            return;
+        }
+        let t = path.rises_through(zero, zero);
+        let (position, velocity) = path.position_and_velocity(t);
+        let arrived = position.z.abs().lt(params.splat(CROSSING_TOLERANCE_M));
+        let rises =
+            may_rise & arrived & velocity.z.is_positive() & zero.lt(t) & t.lt(dt);
+        let distance_squared = position.x.squared() + position.y.squared();
         let inside = distance_squared.lt(params.ring.radius.squared());
         self.rose_through = self.rose_through | (rises & inside);
         self.has_been_above = self.has_been_above | rises;

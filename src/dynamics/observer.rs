@@ -3,6 +3,7 @@
 //! The integrators report to an [`Observer`]. The silent one, `()`, costs nothing. So the loop that feeds a
 //! probability and the one that records a trajectory are the same code.
 
+use super::flight::FlightPath;
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
@@ -15,8 +16,8 @@ pub(crate) const NO_IMPULSES: Impulses = [Vec3::new(0.0, 0.0, 0.0); SolidId::COU
 
 /// Receives each segment of a shot in order.
 pub(crate) trait Observer {
-    /// Free flight for `dt` from the state `start` at the time `t`.
-    fn flight(&mut self, _params: &ModelParams, _t: f64, _dt: f64, _start: &BallState) {}
+    /// Free flight for `dt` along a path that starts at the time `t`.
+    fn flight(&mut self, _params: &ModelParams, _t: f64, _dt: f64, _path: &FlightPath) {}
     /// A contact begins.
     fn touch(&mut self, _t: f64, _solid: SolidId, _state: &BallState) {}
     /// A step of `dt` in contact, from the first state to the second.
@@ -28,9 +29,9 @@ pub(crate) trait Observer {
 impl Observer for () {}
 
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    fn flight(&mut self, params: &ModelParams, t: f64, dt: f64, start: &BallState) {
-        self.0.flight(params, t, dt, start);
-        self.1.flight(params, t, dt, start);
+    fn flight(&mut self, params: &ModelParams, t: f64, dt: f64, path: &FlightPath) {
+        self.0.flight(params, t, dt, path);
+        self.1.flight(params, t, dt, path);
     }
     fn touch(&mut self, t: f64, solid: SolidId, state: &BallState) {
         self.0.touch(t, solid, state);

@@ -1,6 +1,7 @@
 //! Derives the full [`Outcome`] of a shot from what an observer sees: how it was made or missed, its entry
 //! and its apex.
 
+use super::flight::{FlightPath, falls_through, highest_point_m};
 use super::observer::{Impulses, Observer};
 use super::outcome::{Ending, Entry, Outcome, OutcomeKind, Verdict};
 use crate::math::vector::Vec3;
@@ -107,25 +108,21 @@ impl OutcomeClassifier {
 }
 
 impl Observer for OutcomeClassifier {
-    fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, start: &BallState) {
-        let (p, v) = (start.position_m, start.velocity_m_s);
-        let top = v.z / params.ball.gravity;
-        if top > 0.0 && top < dt {
-            self.apex_m = self.apex_m.max(p.z + 0.5 * v.z * top);
-        }
-        let end = start.after_flight(&params.ball, dt);
-        self.apex_m = self.apex_m.max(end.position_m.z);
-        let discriminant = v.z * v.z + 2.0 * params.ball.gravity * p.z;
-        if discriminant >= 0.0 {
-            let t = (v.z + discriminant.sqrt()) / params.ball.gravity;
-            let crossing = (p.x + v.x * t, p.y + v.y * t);
-            let is_first_flight =
-                self.undisturbed_crossing_m.is_none() && self.first_contact.is_none();
-            if is_first_flight || self.awaits_flight_off_board {
-                self.undisturbed_crossing_m = Some(crossing);
-            }
-            if t > 0.0 && t <= dt {
-                self.record_entry(crossing, Vec3::new(v.x, v.y, v.z - params.ball.gravity * t));
+    fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, path: &FlightPath) {
+        self.apex_m = self.apex_m.max(highest_point_m(params, path, dt));
+        let is_first_flight = self.undisturbed_crossing_m.is_none() && self.first_contact.is_none();
+        let is_wanted = is_first_flight || self.awaits_flight_off_board;
+        let (z, vz) = path.height_and_rate(dt);
+        let crosses = z <= 0.0 && vz < 0.0;
+        if is_wanted || crosses {
+            if let Some((state, t)) = falls_through(params, &path.state_after(0.0), 0.0) {
+                let crossing = (state.position_m.x, state.position_m.y);
+                if is_wanted {
+                    self.undisturbed_crossing_m = Some(crossing);
+                }
+                if t > 0.0 && t <= dt {
+                    self.record_entry(crossing, state.velocity_m_s);
+                }
             }
         }
         self.awaits_flight_off_board = false;

@@ -3,7 +3,7 @@
 use super::batch::{self, BatchWorkspace, InstructionSet};
 use super::contact::oscillator::Oscillator;
 use super::end_rules::ShotLimits;
-use super::flight::FlightEvents;
+use super::flight::{FlightEvents, FlightSegment, falls_through, height_at_length_m};
 use super::integrators::event_driven;
 use super::integrators::paper_rk4::{self, StepRange};
 use super::observer::Observer;
@@ -116,13 +116,15 @@ const MAX_SINGLE_STEPS: u32 = 16;
 fn suits_single_precision(physics: &Physics) -> bool {
     (0.05..=0.5).contains(&physics.ball_radius_m)
         && (0.1..=1.0).contains(&physics.ring_radius_m)
-        && (0.001..=0.1).contains(&physics.contact_time_s())
-        && (0.2..=0.99).contains(&physics.restitution())
+        && SolidId::ALL.into_iter().all(|solid| {
+            (0.001..=0.1).contains(&physics.contact_time_on_s(solid))
+                && (0.2..=0.99).contains(&physics.restitution_on(solid))
+        })
         && (0.1..=100.0).contains(&physics.gravity_m_s2)
 }
 
-/// Steps in a double contact, as a share of the steps per contact. (Two solids together are stiffer.)
-const DOUBLE_STEPS: f64 = 1.5;
+/// Steps in the frame of space, as a share of the steps per contact. (Two solids together are stiffer.)
+const SPACE_STEPS: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
 /// steps; some constants that are far from any ball would take steps without end.
@@ -243,14 +245,18 @@ impl Simulator {
             } => f64::from(steps_per_contact),
             Integrator::PaperRk4 { .. } => 1.0,
         };
+        let params = ModelParams::new(physics);
         Ok(Self {
             physics: physics.clone(),
             integrator,
-            params: ModelParams::new(physics),
+            params,
             limits: ShotLimits {
-                longest_step_s: physics.contact_time_s() / (steps * DOUBLE_STEPS),
+                longest_step_s: physics.contact_time_s() / (steps * SPACE_STEPS),
                 single_precision: integrator.is_single_precision(physics),
-                oscillators: [Oscillator::new(physics, steps); SolidId::COUNT],
+                oscillators: [
+                    Oscillator::new(&params.board.material, steps),
+                    Oscillator::new(&params.ring.material, steps),
+                ],
                 time_limit_s: physics.time_limit_s,
                 lodged_after_s: physics.lodged_after_s,
                 max_steps: max_steps(integrator),
@@ -353,13 +359,74 @@ impl Simulator {
         );
         let verdict = self.run(start, &mut observer);
         let (classifier, recorder) = observer;
-        Ok(recorder.into_trace(&self.params, classifier.outcome(verdict)))
+        Ok(recorder.into_trace(classifier.outcome(verdict)))
     }
 
     /// What the ball touches first in flight; `None` if nothing, or if it comes beside the board first.
     #[must_use]
     pub fn first_touch(&self, release: &Release) -> Option<SolidId> {
-        FlightEvents::new(&self.params, &release.state()).first_touch()
+        let mut state = release.state();
+        if self.params.has_paper_flight() {
+            return FlightEvents::new(&self.params, &state).first_touch();
+        }
+        loop {
+            let segment = FlightSegment::new(&self.params, &state);
+            if segment.ends() {
+                let touches = |solid: &SolidId| segment.touches[solid.index()];
+                return SolidId::ALL.into_iter().find(touches);
+            }
+            state = segment.path.state_after(segment.dt);
+        }
+    }
+
+    /// Where an undisturbed shot falls through the plane of the hoop: its horizontal distance from the release, m;
+    /// `None` if it stays below that plane.
+    pub(crate) fn length_to_hoop_plane_m(&self, release: &Release) -> Option<f64> {
+        let start = release.state();
+        let (state, _) = falls_through(&self.params, &start, 0.0)?;
+        let moved = state.position_m - start.position_m;
+        Some((moved.x * moved.x + moved.y * moved.y).sqrt())
+    }
+
+    /// Speed of the undisturbed shot that passes the height `z_m` at the horizontal distance `length_m`, m/s, in the
+    /// direction and with the spin of `release`; `None` if there is none.
+    pub(crate) fn speed_through_m_s(
+        &self,
+        release: &Release,
+        length_m: f64,
+        z_m: f64,
+    ) -> Option<f64> {
+        const MAX_STEPS: u32 = 60;
+        const TOLERANCE_M: f64 = 1e-9;
+        let (sin, cos) = libm::sincos(release.pitch_rad);
+        let over = release.height_above_hoop_m - z_m + length_m * sin / cos;
+        if !(over > 0.0 && cos > 1e-6) {
+            return None;
+        }
+        let mut speed = length_m / cos * (0.5 * self.params.ball.gravity / over).sqrt();
+        if !self.params.ball.has_air {
+            return Some(speed);
+        }
+        // Newton's steps with the derivative of the parabola.
+        for _ in 0..MAX_STEPS {
+            let start = Release {
+                speed_m_s: speed,
+                ..*release
+            };
+            let height = height_at_length_m(&self.params, &start.state(), length_m);
+            if !height.is_finite() {
+                speed *= 1.1;
+                continue;
+            }
+            let miss = z_m - height;
+            if miss.abs() < TOLERANCE_M {
+                return Some(speed);
+            }
+            let fallen = release.height_above_hoop_m + length_m * sin / cos - height;
+            let step = 0.5 * miss * speed / fallen.max(1e-3);
+            speed += step.clamp(-0.2 * speed, 0.2 * speed);
+        }
+        None
     }
 
     /// As [`Simulator::simulate_state`], for a state that is known to be finite.

@@ -1,5 +1,6 @@
 //! One shot in full: its events and its trajectory.
 
+use super::flight::FlightPath;
 use super::observer::{Impulses, Observer};
 use super::outcome::Outcome;
 use crate::math::vector::Vec3;
@@ -71,12 +72,14 @@ pub struct Trace {
 pub(crate) struct Recorder {
     mass_kg: f64,
     interval_s: f64,
+    /// When the next sample of a flight is due, s.
+    next_sample_s: f64,
     events: Vec<Event>,
     samples: Vec<Sample>,
     /// For each solid, the contact in progress.
     open: [Option<OpenContact>; SolidId::COUNT],
-    /// The last known state: its time, the state, and the time of flight since.
-    last: (f64, BallState, f64),
+    /// The last known state and its time.
+    last: (f64, BallState),
 }
 
 /// Longest time between two samples in contact, s.
@@ -114,10 +117,11 @@ impl Recorder {
         Self {
             mass_kg,
             interval_s: interval_s.max(1e-5),
+            next_sample_s: 0.0,
             events: vec![release],
             samples: Vec::new(),
             open: [None; SolidId::COUNT],
-            last: (0.0, start, 0.0),
+            last: (0.0, start),
         }
     }
 
@@ -137,14 +141,8 @@ impl Recorder {
         });
     }
 
-    pub(crate) fn into_trace(mut self, params: &ModelParams, outcome: Outcome) -> Trace {
-        let (time_s, state, flight_s) = self.last;
-        let state = if flight_s > 0.0 {
-            state.after_flight(&params.ball, flight_s)
-        } else {
-            state
-        };
-        let time_s = time_s + flight_s;
+    pub(crate) fn into_trace(mut self, outcome: Outcome) -> Trace {
+        let (time_s, state) = self.last;
         self.sample(time_s, state);
         self.event(time_s, EventKind::End, state);
         Trace {
@@ -156,13 +154,15 @@ impl Recorder {
 }
 
 impl Observer for Recorder {
-    fn flight(&mut self, params: &ModelParams, t: f64, dt: f64, start: &BallState) {
-        let mut done = 0.0;
+    fn flight(&mut self, _params: &ModelParams, t: f64, dt: f64, path: &FlightPath) {
+        // A flight in several parts is sampled evenly as a whole.
+        let mut done = (self.next_sample_s - t).max(0.0);
         while done < dt {
-            self.sample(t + done, start.after_flight(&params.ball, done));
+            self.sample(t + done, path.state_after(done));
             done += self.interval_s;
         }
-        self.last = (t, *start, dt);
+        self.next_sample_s = t + done;
+        self.last = (t + dt, path.state_after(dt));
     }
 
     fn touch(&mut self, t: f64, solid: SolidId, state: &BallState) {
@@ -186,7 +186,8 @@ impl Observer for Recorder {
                 contact.impulse = contact.impulse + impulse;
             }
         }
-        self.last = (t + dt, *states.1, 0.0);
+        self.last = (t + dt, *states.1);
+        self.next_sample_s = t + dt;
     }
 
     fn part(&mut self, t: f64, solid: SolidId, state: &BallState) {

@@ -1,6 +1,7 @@
-//! The ball and gravity, as the equations of motion use them.
+//! The ball, gravity and the air, as the equations of motion use them.
 
 use crate::math::real::Real;
+use crate::math::vector::{RealVector, Vec3};
 
 /// The parameters of a ball in free motion.
 #[derive(Clone, Copy, Debug)]
@@ -9,11 +10,17 @@ pub(crate) struct BallParams<T = f64> {
     pub(crate) radius: T,
     /// m/I, 1/m^2.
     pub(crate) mass_over_inertia: T,
-    /// g, m/s^2.
+    /// g less buoyancy, m/s^2.
     pub(crate) gravity: T,
     pub(crate) half_gravity: T,
     /// 1/g, s^2/m.
     pub(crate) inverse_gravity: T,
+    /// Deceleration by drag over the square of the speed, 1/m.
+    pub(crate) drag: T,
+    /// Acceleration by lift over the product of spin and speed.
+    pub(crate) lift: T,
+    /// Drag or lift act.
+    pub(crate) has_air: bool,
     /// Time of an event that will not happen, s.
     pub(crate) never_s: T,
 }
@@ -27,6 +34,9 @@ impl BallParams {
             gravity: splat(self.gravity),
             half_gravity: splat(self.half_gravity),
             inverse_gravity: splat(self.inverse_gravity),
+            drag: splat(self.drag),
+            lift: splat(self.lift),
+            has_air: self.has_air,
             never_s: splat(self.never_s),
         }
     }
@@ -50,5 +60,29 @@ impl<T: Real> BallParams<T> {
     #[inline(always)]
     pub(crate) fn splat_mask(&self, value: bool) -> T::Mask {
         self.gravity.splat_mask(value)
+    }
+
+    /// The acceleration by drag and lift of a ball with the given velocity and spin, in any right-handed frame.
+    /// It is zero without air.
+    #[inline(always)]
+    pub(crate) fn air_acceleration(&self, velocity: Vec3<T>, spin: Vec3<T>) -> Vec3<T> {
+        let (v, w) = (velocity, spin);
+        let drag = -(self.drag * v.norm());
+        Vec3::new(
+            drag * v.x + self.lift * (w.y * v.z - w.z * v.y),
+            drag * v.y + self.lift * (w.z * v.x - w.x * v.z),
+            drag * v.z + self.lift * (w.x * v.y - w.y * v.x),
+        )
+    }
+
+    /// The acceleration by gravity, drag and lift.
+    #[inline(always)]
+    pub(crate) fn free_acceleration(&self, velocity: Vec3<T>, spin: Vec3<T>) -> Vec3<T> {
+        let gravity = Vec3::new(self.zero(), self.zero(), -self.gravity);
+        if self.has_air {
+            gravity + self.air_acceleration(velocity, spin)
+        } else {
+            gravity
+        }
     }
 }

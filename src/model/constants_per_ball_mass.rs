@@ -2,9 +2,10 @@
 //! for each lane.
 
 use super::ball_params::BallParams;
-use super::physics::Physics;
-use super::solids::{Board, Material, Ring, SolidId};
+use super::physics::{BoardEdge, Physics};
+use super::solids::{Board, Material, Rectangle, Ring, SolidId};
 use crate::math::real::Real;
+use crate::math::vector::Vec3;
 
 /// The parameters of the equations of motion.
 #[derive(Clone, Copy, Debug)]
@@ -19,34 +20,22 @@ impl ModelParams {
     pub(crate) fn new(physics: &Physics) -> Self {
         let radius = physics.ball_radius_m;
         let inertia = physics.inertia_ratio * radius * radius;
-        let half_height = 0.5 * physics.board_height_m;
-        let material = |_: SolidId| Material {
-            stiffness: physics.stiffness_n_m / physics.ball_mass_kg,
-            damping: physics.damping_kg_s / physics.ball_mass_kg,
-            relaxation_time: physics.damping_kg_s / physics.stiffness_n_m,
-            friction_coefficient: physics.friction,
-        };
+        let gravity = physics.gravity_less_buoyancy_m_s2();
+        let (drag, lift) = (physics.drag_per_m(), physics.lift_factor());
         Self {
             ball: BallParams {
                 radius,
                 mass_over_inertia: 1.0 / inertia,
-                gravity: physics.gravity_m_s2,
-                half_gravity: 0.5 * physics.gravity_m_s2,
-                inverse_gravity: 1.0 / physics.gravity_m_s2,
+                gravity,
+                half_gravity: 0.5 * gravity,
+                inverse_gravity: 1.0 / gravity,
+                drag,
+                lift,
+                has_air: drag != 0.0 || lift != 0.0,
                 never_s: 1e9,
             },
-            board: Board {
-                touch_x: radius - physics.board_distance_m,
-                face_x: -physics.board_distance_m,
-                half_width: 0.5 * physics.board_width_m,
-                bottom_z: physics.board_centre_height_m - half_height,
-                top_z: physics.board_centre_height_m + half_height,
-                material: material(SolidId::Board),
-            },
-            ring: Ring {
-                radius: physics.ring_radius_m,
-                material: material(SolidId::Ring),
-            },
+            board: board(physics),
+            ring: ring(physics),
         }
     }
 
@@ -62,6 +51,13 @@ impl ModelParams {
 }
 
 impl<T: Real> ModelParams<T> {
+    /// Whether arcs of flight are parabolas that end at the paper's solids: then the first touch has nearly a closed
+    /// form.
+    #[inline(always)]
+    pub(crate) fn has_paper_flight(&self) -> bool {
+        !self.ball.has_air && !self.board.has_edges && !self.ring.has_bracket
+    }
+
     /// `value` in every lane.
     #[inline(always)]
     pub(crate) fn splat(&self, value: f64) -> T {
@@ -79,5 +75,58 @@ impl<T: Real> ModelParams<T> {
     #[inline(always)]
     pub(crate) fn splat_mask(&self, value: bool) -> T::Mask {
         self.ball.splat_mask(value)
+    }
+}
+
+fn material(physics: &Physics, solid: SolidId) -> Material<f64> {
+    let contact = physics.contact(solid);
+    Material {
+        stiffness: contact.stiffness_n_m / physics.ball_mass_kg,
+        damping: contact.damping_kg_s / physics.ball_mass_kg,
+        relaxation_time: contact.damping_kg_s / contact.stiffness_n_m,
+        friction_coefficient: contact.friction,
+    }
+}
+
+fn board(physics: &Physics) -> Board {
+    let edge = physics.board_edge.radius_m();
+    let half_width = 0.5 * physics.board_width_m - edge;
+    let half_height = 0.5 * physics.board_height_m - edge;
+    let centre_z = physics.board_centre_z_m();
+    let (bottom_z, top_z) = (centre_z - half_height, centre_z + half_height);
+    let core_x = -physics.board_distance_m - edge;
+    Board {
+        touch_x: physics.ball_radius_m - physics.board_distance_m,
+        face_x: -physics.board_distance_m,
+        half_width,
+        bottom_z,
+        top_z,
+        core: Rectangle {
+            low: Vec3::new(core_x, -half_width, bottom_z),
+            high: Vec3::new(core_x, half_width, top_z),
+            reach: physics.ball_radius_m + edge,
+            radius: edge,
+        },
+        has_edges: physics.board_edge != BoardEdge::None,
+        material: material(physics, SolidId::Board),
+    }
+}
+
+fn ring(physics: &Physics) -> Ring {
+    let tube = physics.ring_tube_radius_m();
+    let half_width = 0.5 * physics.bracket_width_m;
+    let reach = physics.ball_radius_m + tube;
+    Ring {
+        radius: physics.ring_radius_m,
+        tube_radius: tube,
+        reach,
+        bracket: Rectangle {
+            low: Vec3::new(-physics.board_distance_m, -half_width, 0.0),
+            high: Vec3::new(-physics.ring_radius_m, half_width, 0.0),
+            reach,
+            radius: tube,
+        },
+        has_bracket: physics.bracket_width_m > 0.0,
+        material: material(physics, SolidId::Ring),
     }
 }

@@ -10,6 +10,8 @@ pub(crate) mod solids;
 
 pub use ball_state::BallState;
 pub(crate) use ball_state::StateDerivative;
-pub use physics::{Physics, PhysicsError};
+mod physics_presets;
+pub use physics::{Air, BoardEdge, ContactLaw, Physics, PhysicsError};
+pub use physics_presets::{PRESETS, Preset};
 pub use restitution::{contact_time_s, damping_for_restitution_kg_s, restitution_of_damping};
 pub use solids::SolidId;

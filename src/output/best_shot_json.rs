@@ -26,7 +26,7 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: UnitSystem) -> Rec
     let estimate = &shot.estimate;
     let outcome = &shot.outcome;
     let board_point = outcome.board_point_m;
-    let apex_m = outcome.apex_m + profile.physics().hoop_height_m;
+    let apex_m = outcome.apex_m + profile.physics().hoop_plane_height_m();
     let optional = |value: Option<f64>| value.map_or(Value::Null, number);
     let named = |name: &str, value: Value| (name.to_owned(), value);
     vec![

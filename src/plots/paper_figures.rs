@@ -148,7 +148,7 @@ fn draw_shot(name: &str, profile: &Profile, title: &str) -> Result<Plot, FigureE
 fn swirl_start(physics: &Physics, delta_rad: f64) -> BallState {
     let (sin, cos) = libm::sincos(delta_rad);
     let weight_n = physics.ball_mass_kg * physics.gravity_m_s2;
-    let lever_m = physics.ball_radius_m - weight_n / (physics.stiffness_n_m * cos);
+    let lever_m = physics.ball_radius_m - weight_n / (physics.hoop_contact.stiffness_n_m * cos);
     let circle_m = physics.ring_radius_m - lever_m * sin;
     let speed_m_s = -(physics.gravity_m_s2 * (sin / cos) * circle_m).sqrt();
     BallState {

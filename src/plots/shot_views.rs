@@ -200,8 +200,8 @@ impl Panel {
 fn board_edges(physics: &Physics) -> (f64, f64) {
     let half_height = 0.5 * physics.board_height_m;
     (
-        physics.board_centre_height_m - half_height,
-        physics.board_centre_height_m + half_height,
+        physics.board_centre_z_m() - half_height,
+        physics.board_centre_z_m() + half_height,
     )
 }
 

@@ -75,11 +75,11 @@ impl Scene {
         let mut record = serde_json::to_value(self.court).unwrap_or_default();
         for (name, value) in [
             ("three_break_x_m", self.court.three_break_x_m()),
-            ("hoop_height_m", physics.hoop_height_m),
+            ("hoop_height_m", physics.hoop_plane_height_m()),
             ("board_distance_m", physics.board_distance_m),
             ("board_width_m", physics.board_width_m),
             ("board_height_m", physics.board_height_m),
-            ("board_centre_height_m", physics.board_centre_height_m),
+            ("board_centre_height_m", physics.board_centre_z_m()),
             ("ring_radius_m", physics.ring_radius_m),
             ("ball_radius_m", physics.ball_radius_m),
         ] {

@@ -48,7 +48,8 @@ pub fn sweep_page(
         scene: Scene {
             simulator: Simulator::with_integrator(&settings.physics, settings.integrator)?,
             court: config.league.court(),
-            height_above_hoop_m: settings.shooter.release_height_m - settings.physics.hoop_height_m,
+            height_above_hoop_m: settings.shooter.release_height_m
+                - settings.physics.hoop_plane_height_m(),
             units: settings.output.units,
         },
         footer: format!(

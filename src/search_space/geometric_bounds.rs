@@ -5,7 +5,12 @@
 //! speed for each pitch angle. Its direction must lead within reach of the ring, or to a point on the board
 //! from which a bounce can. A bounce keeps between about half and all of its sideways velocity (3/5 for a
 //! rigid ball that rolls at the end), and the restitution's share of the velocity towards the board.
+//!
+//! With air the speeds are those of the paths under drag. A faster path in the same direction lies above a slower one
+//! all along, with drag too; and the path in a vacuum lies above both. Lift depends on the spin: the bounds are those for
+//! the greatest backspin and the greatest forward spin that errors bring about.
 
+use crate::dynamics::{Release, Simulator};
 use crate::shooter::{Location, Nominal, Profile};
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
@@ -20,7 +25,7 @@ const SIDEWAYS_KEPT: (f64, f64) = (0.4, 1.1);
 const MAX_SPEED_FACTOR: f64 = 2.0;
 
 /// The speeds (for each direction) and the polar angles of the releases that can go in.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Bracket {
     /// Least and greatest polar angle, rad.
     pub polar_rad: (f64, f64),
@@ -29,8 +34,13 @@ pub struct Bracket {
     location: Location,
     start_height_m: f64,
     reach_m: f64,
+    /// Distance of the centre of a touching ball from the ring's circle, m.
+    contact_m: f64,
     ball_radius_m: f64,
     gravity_m_s2: f64,
+    /// With air, the paths; and the spins to bound.
+    #[serde(skip)]
+    air: Option<(Simulator, [f64; 2])>,
     face_x_m: f64,
     board_top_m: f64,
     board_half_width_m: f64,
@@ -43,7 +53,10 @@ impl Bracket {
         let physics = profile.physics();
         let location = profile.location();
         let start_height_m = profile.height_above_hoop_m();
-        let least = least_speed_m_s(location.distance_m, -start_height_m, physics.gravity_m_s2);
+        let gravity_m_s2 = physics.gravity_less_buoyancy_m_s2();
+        let drag = physics.drag_per_m() * location.distance_m;
+        let least = least_speed_m_s(location.distance_m, -start_height_m, gravity_m_s2) * (1.0 + drag);
+        let contact_m = physics.ball_radius_m + physics.ring_tube_radius_m();
         let mut bracket = Self {
             polar_rad: (0.0, 0.0),
             speed_max_m_s: profile
@@ -52,11 +65,13 @@ impl Bracket {
                 .unwrap_or(MAX_SPEED_FACTOR * least),
             location,
             start_height_m,
-            reach_m: physics.ring_radius_m + physics.ball_radius_m,
+            reach_m: physics.ring_radius_m + contact_m,
+            contact_m,
             ball_radius_m: physics.ball_radius_m,
-            gravity_m_s2: physics.gravity_m_s2,
+            gravity_m_s2,
+            air: paths_in_air(profile),
             face_x_m: -physics.board_distance_m,
-            board_top_m: physics.board_centre_height_m + 0.5 * physics.board_height_m,
+            board_top_m: physics.board_centre_z_m() + 0.5 * physics.board_height_m,
             board_half_width_m: 0.5 * physics.board_width_m,
         };
         let restitution = physics.restitution();
@@ -130,14 +145,13 @@ impl Bracket {
         let near = (self.location.distance_m - self.reach_m).max(1e-3);
         let far = self.location.distance_m + self.reach_m;
         let end = self.path_to_board(polar_rad).unwrap_or(far).max(near);
-        // A slower shot is below z = -R all the way from `near` to `end`.
-        let least = (0..=PATH_POINTS)
-            .map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS))
-            .map(|s| self.speed_through(s, -self.ball_radius_m, pitch_rad))
-            .fold(f64::INFINITY, f64::min);
+        // A slower shot is below the ring's reach all the way from `near` to `end`.
+        let lengths = (0..=PATH_POINTS)
+            .map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS));
+        let least = self.least_speed_through(lengths, -self.contact_m, pitch_rad);
         // A faster shot passes above the far side of the ring, and above the board both where the ball
         // would touch it (on the way up) and at its face (on the way down).
-        let over_ring = self.speed_through(far, self.ball_radius_m, pitch_rad);
+        let over_ring = self.speed_through(far, self.contact_m, pitch_rad);
         let over_board = self.path_to_board(polar_rad).map_or(0.0, |face| {
             let touch = face - self.ball_radius_m / libm::cos(polar_rad);
             [touch, face]
@@ -149,9 +163,75 @@ impl Bracket {
         (least < most).then_some((least, most))
     }
 
-    /// Speed of the parabola that passes the height `z` at the horizontal distance `s`; infinite if there is
+    /// The least speed of the paths that pass the height `z` at the horizontal distances `lengths`.
+    fn least_speed_through(
+        &self,
+        lengths: impl Iterator<Item = f64>,
+        z: f64,
+        pitch_rad: f64,
+    ) -> f64 {
+        let in_vacuum = lengths.map(|s| (self.parabola_speed_through(s, z, pitch_rad), s));
+        let Some((_, spins)) = &self.air else {
+            return in_vacuum.map(|(speed, _)| speed).fold(f64::INFINITY, f64::min);
+        };
+        let mut in_vacuum: Vec<_> = in_vacuum.collect();
+        in_vacuum.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let lifts = spins[0] != spins[1];
+        let mut least = f64::INFINITY;
+        for (speed, s) in in_vacuum {
+            // Drag makes every speed greater.
+            if !lifts && speed >= least {
+                break;
+            }
+            let [slow, fast] = self.speeds_in_air(s, z, pitch_rad);
+            least = least.min(slow).min(fast);
+        }
+        least
+    }
+
+    /// The greatest speed of the paths that pass the height `z` at the horizontal distance `s`; infinite if there is
     /// none.
     fn speed_through(&self, s: f64, z: f64, pitch_rad: f64) -> f64 {
+        if self.air.is_some() {
+            let [slow, fast] = self.speeds_in_air(s, z, pitch_rad);
+            slow.max(fast)
+        } else {
+            self.parabola_speed_through(s, z, pitch_rad)
+        }
+    }
+
+    /// The speeds with air, for both spins.
+    fn speeds_in_air(&self, s: f64, z: f64, pitch_rad: f64) -> [f64; 2] {
+        let Some((simulator, spins)) = &self.air else {
+            return [self.parabola_speed_through(s, z, pitch_rad); 2];
+        };
+        let speed = |backspin_rad_s| {
+            let release = Release {
+                distance_m: self.location.distance_m,
+                court_angle_rad: self.location.angle_rad,
+                height_above_hoop_m: self.start_height_m,
+                speed_m_s: 0.0,
+                pitch_rad,
+                polar_rad: self.location.angle_rad,
+                backspin_rad_s,
+                rifle_spin_rad_s: 0.0,
+                side_spin_rad_s: 0.0,
+            };
+            simulator
+                .speed_through_m_s(&release, s, z)
+                .unwrap_or(f64::INFINITY)
+        };
+        let first = speed(spins[0]);
+        if spins[0] == spins[1] {
+            [first; 2]
+        } else {
+            [first, speed(spins[1])]
+        }
+    }
+
+    /// Speed of the parabola that passes the height `z` at the horizontal distance `s`; infinite if there is
+    /// none.
+    fn parabola_speed_through(&self, s: f64, z: f64, pitch_rad: f64) -> f64 {
         let (sin, cos) = libm::sincos(pitch_rad);
         let over = self.start_height_m - z + s * sin / cos;
         if over <= 0.0 || cos <= 1e-6 {
@@ -169,6 +249,23 @@ impl Bracket {
                 .speeds_m_s(shot.pitch_rad, shot.polar_rad)
                 .is_some_and(|(least, most)| shot.speed_m_s >= least && shot.speed_m_s <= most)
     }
+}
+
+/// The simulator of a profile with drag or lift, and the least and the greatest backspin whose lift counts, rad/s.
+fn paths_in_air(profile: &Profile) -> Option<(Simulator, [f64; 2])> {
+    /// Standard deviations of the errors in spin that are counted.
+    const DEVIATIONS: f64 = 4.0;
+    let physics = profile.physics();
+    if physics.drag_per_m() == 0.0 && physics.lift_factor() == 0.0 {
+        return None;
+    }
+    let mut spins = [0.0; 2];
+    if physics.lift_factor() != 0.0 {
+        let (low, high) = profile.backspin_range_rad_s();
+        let error = DEVIATIONS * profile.shooter().dispersion.backspin_rad_s(high);
+        spins = [low - error, high + error];
+    }
+    Some((profile.simulator().clone(), spins))
 }
 
 /// The least speed with which a parabola reaches a point `s` away and `rise` above (Brancazio

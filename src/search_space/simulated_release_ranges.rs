@@ -39,7 +39,7 @@ type Range = (f64, f64);
 /// [`TablePlan::for_search`] covers everything the shooter can intend, coarsely, to find where the good
 /// shots are. [`TablePlan::window`] covers what the errors can lead to from the nominal shots about one of
 /// them, finely.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct TablePlan {
     /// The releases that can go in.
     pub bracket: Bracket,

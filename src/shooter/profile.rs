@@ -165,7 +165,7 @@ impl ProfileSettings {
             return Err(ProfileError::Settings(errors));
         }
         location.check(&self.physics)?;
-        let height_m = self.shooter.release_height_m - self.physics.hoop_height_m;
+        let height_m = self.shooter.release_height_m - self.physics.hoop_plane_height_m();
         let search = Search::new(&self.search, &self.nominal, location.distance_m, height_m);
         let (low_rad, high_rad) = (search.pitch_min_rad, search.pitch_max_rad);
         if search.choice.includes(NominalVariable::Pitch) && !(low_rad < high_rad) {
@@ -356,7 +356,7 @@ impl Profile {
     /// Height of the release above the plane of the hoop (negative below), m.
     #[must_use]
     pub fn height_above_hoop_m(&self) -> f64 {
-        self.settings.shooter.release_height_m - self.settings.physics.hoop_height_m
+        self.settings.shooter.release_height_m - self.settings.physics.hoop_plane_height_m()
     }
 
     /// Least and largest nominal backspin, rad/s.

@@ -175,7 +175,7 @@ impl ResultRow {
                 self.set_real(column, value);
             }
         }
-        let apex_m = outcome.apex_m + profile.physics().hoop_height_m;
+        let apex_m = outcome.apex_m + profile.physics().hoop_plane_height_m();
         self.set_real(columns::APEX_ABOVE_FLOOR, apex_m);
         self.set_real(columns::FLIGHT_TIME, outcome.verdict.time_s);
     }

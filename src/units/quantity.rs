@@ -31,6 +31,8 @@ pub enum Dimension {
     Damping,
     /// m/s^2.
     Acceleration,
+    /// kg/m^3.
+    Density,
 }
 
 impl Dimension {
@@ -76,6 +78,10 @@ impl Dimension {
                 ("kg/s", 1.0),
             ],
             Self::Acceleration => &[("ft/s^2", FOOT_M), ("m/s^2", 1.0)],
+            Self::Density => &[
+                ("kg/m^3", 1.0),
+                ("lb/ft^3", POUND_KG / (FOOT_M * FOOT_M * FOOT_M)),
+            ],
         }
     }
 

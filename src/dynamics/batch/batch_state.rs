@@ -63,7 +63,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         let free = T::ALL & !block.occupied();
         let (slots, queue) = self.workspace.slots_and_queue(phase);
         block.fill(free, self.params, slots, || queue.pop());
-        block.load_friction_of(free, slots);
+        block.load_contacts_of(free, slots);
     }
 
     /// Whether to leave a phase whose lanes cannot be filled, because another phase has enough shots.

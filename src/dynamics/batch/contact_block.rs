@@ -1,6 +1,6 @@
 //! The shots in contact with one solid, side by side in lanes.
 
-use super::lane_block::{bit, lanes_in, set_bit};
+use super::lane_block::{bit, count_step, lanes_in, set_bit};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::integrators::event_driven::ShotProgress;
@@ -71,6 +71,12 @@ impl<E: LaneElement> ContactBlock<E> {
         self.flags.occupied
     }
 
+    /// The solid that the shots are on.
+    #[inline(always)]
+    pub(super) fn solid(&self) -> SolidId {
+        self.solid
+    }
+
     /// The slot of the shot in a lane.
     #[inline(always)]
     pub(super) fn slot(&self, lane: usize) -> u32 {
@@ -119,12 +125,7 @@ impl<E: LaneElement> ContactBlock<E> {
     /// among them.)
     #[inline(always)]
     pub(super) fn count_step(&mut self, max_steps: u32) -> LaneBits {
-        let mut reached = 0;
-        for (lane, steps) in self.steps.iter_mut().enumerate() {
-            *steps = steps.wrapping_add(1);
-            reached |= LaneBits::from(*steps >= max_steps) << lane;
-        }
-        reached
+        count_step(&mut self.steps, max_steps)
     }
 
     /// Takes the shot out of a lane.

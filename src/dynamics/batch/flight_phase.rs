@@ -1,14 +1,13 @@
 //! The free flights of a batch: closed form, a block at a time.
 
 use super::batch_state::Batch;
-use super::lane_block::{LaneBlock, bit, lanes_in, set_bit};
-use super::workspace::Phase;
+use super::lane_block::{LaneBlock, LaneShots, bit, lanes_in, set_bit};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
-use crate::dynamics::flight::FlightEvents;
+use crate::dynamics::flight::{FlightEvents, FlightSegment};
 use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS, solids_touched_at_release};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
-use crate::math::real::{LaneBits, MAX_F64_LANES, SimdReal};
+use crate::math::real::{LaneBits, MAX_F64_LANES, Mask, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId};
@@ -89,7 +88,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             let [on_board, on_ring] = end.touches;
             let go_on = flying & (on_board | on_ring | end.needs_scalar);
             for lane in lanes_in(flying & !go_on) {
-                let ending = flight_ending(bit(end.rose, lane));
+                let ending = end.ending(lane);
                 self.workspace.verdicts[shots.start + lane] = Verdict {
                     made: ending == Ending::Fell && bit(end.made, lane),
                     ending,
@@ -116,6 +115,9 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     ) -> FlightEnd {
         let mut shots = block.load::<T>(self.simd);
         block.leave_ring(self.simd, params, &mut shots.state);
+        if !params.has_paper_flight() {
+            return self.fly_segments(params, block, &mut shots);
+        }
         let start = shots.state;
         let flight = FlightEvents::new(params, &start);
         let dt = flight.first_end();
@@ -130,14 +132,54 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 T::mask_to_bits(flight.touch_of(SolidId::Board).le(dt)),
                 T::mask_to_bits(flight.touch_of(SolidId::Ring).le(dt)),
             ],
+            in_frame: [T::ALL; SolidId::COUNT],
             rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
+            behind_board: 0,
         };
-        block.store(&shots);
-        let [_, on_ring] = end.touches;
-        if on_ring & !end.needs_scalar != 0 {
-            let motion = params.ring.to_contact(&params.ball, &shots.state);
-            block.store_ring_motion(&motion);
+        store_flight(params, block, &shots, &end);
+        end
+    }
+
+    /// The same as a sequence of segments.
+    #[inline(always)]
+    fn fly_segments<T: SimdReal<Simd = S, Element = f64>>(
+        &self,
+        params: &ModelParams<T>,
+        block: &mut LaneBlock,
+        shots: &mut LaneShots<T>,
+    ) -> FlightEnd {
+        let none = params.splat_mask(false);
+        let (mut touches, mut behind_board, mut needs_scalar) = ([none; 2], none, none);
+        let mut flying = params.splat_mask(true);
+        let time_limit = params.splat(self.limits.time_limit_s);
+        while flying.any() {
+            let segment = FlightSegment::new(params, &shots.state);
+            let dt = segment.dt.select(flying, params.zero());
+            let start = (shots.state.position_m.z, shots.state.velocity_m_s.z);
+            shots.crossing.after_path(params, &segment.path, start, dt);
+            shots.state = segment.path.state_after(dt).select(flying, shots.state);
+            shots.time_s = shots.time_s + dt;
+            let late = time_limit.lt(shots.time_s);
+            for i in [0, 1] {
+                touches[i] = touches[i] | (segment.touches[i] & flying);
+            }
+            behind_board = behind_board | (segment.behind_board & flying);
+            needs_scalar = needs_scalar | ((segment.unresolved | late) & flying);
+            flying = flying & !segment.ends() & !late;
         }
+        let [on_board, on_ring] = touches;
+        let end = FlightEnd {
+            needs_scalar: T::mask_to_bits(needs_scalar),
+            made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
+            touches: [T::mask_to_bits(on_board), T::mask_to_bits(on_ring)],
+            in_frame: [
+                T::mask_to_bits(params.board.is_in_frame(&shots.state)),
+                T::mask_to_bits(params.ring.is_in_frame(&shots.state)),
+            ],
+            rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
+            behind_board: T::mask_to_bits(behind_board),
+        };
+        store_flight(params, block, shots, &end);
         end
     }
 
@@ -160,7 +202,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 continue;
             }
             shot.segments += 1;
-            if bit(end.touches[SolidId::Ring.index()], lane) {
+            if bit(end.ring_motions(), lane) {
                 block.remove_on_ring(lane, shot);
             } else {
                 block.remove(lane, shot);
@@ -172,19 +214,19 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             for lane in lanes_in(remaining & touches) {
                 let shot = &mut self.workspace.slots[slots[lane] as usize];
                 shot.contacts.push(solid);
-                if solid == SolidId::Board {
-                    shot.motion = self.params.board.to_contact(&self.params.ball, &shot.state);
-                }
                 shot.friction[solid.index()] = new_friction;
-                shot.begin_single_contact(solid);
-                self.workspace
-                    .queue_mut(Phase::Single(solid))
-                    .push(slots[lane]);
+                if solid == SolidId::Ring && bit(end.ring_motions(), lane) {
+                    shot.begin_single_contact(solid);
+                } else {
+                    shot.step_share = 1.0;
+                    shot.go_on_touching(self.params, SolidId::ALL.map(|id| id == solid));
+                }
+                self.workspace.enqueue(slots[lane]);
             }
             remaining &= !touches;
         }
         for lane in lanes_in(remaining) {
-            let ending = flight_ending(bit(end.rose, lane));
+            let ending = end.ending(lane);
             let made = ending == Ending::Fell && bit(end.made, lane);
             self.workspace.finish(slots[lane], ending, made);
         }
@@ -196,7 +238,41 @@ struct FlightEnd {
     /// Left to the scalar code, which repeats the flight from its start.
     needs_scalar: LaneBits,
     made: LaneBits,
-    /// The ball touches each solid.
+    /// The ball touches each solid, and the part of it that a frame of contact describes.
     touches: [LaneBits; SolidId::COUNT],
+    in_frame: [LaneBits; SolidId::COUNT],
     rose: LaneBits,
+    behind_board: LaneBits,
+}
+
+impl FlightEnd {
+    /// How the shot in a lane that touches nothing ended.
+    fn ending(&self, lane: usize) -> Ending {
+        if bit(self.behind_board, lane) {
+            Ending::BehindBoard
+        } else {
+            flight_ending(bit(self.rose, lane))
+        }
+    }
+
+    /// The shots that have their motion in the frame of the ring.
+    fn ring_motions(&self) -> LaneBits {
+        let ring = SolidId::Ring.index();
+        self.touches[ring] & self.in_frame[ring]
+    }
+}
+
+/// Stores the shots at the ends of their flights; those on the ring also in its frame.
+#[inline(always)]
+fn store_flight<T: SimdReal<Element = f64>>(
+    params: &ModelParams<T>,
+    block: &mut LaneBlock,
+    shots: &LaneShots<T>,
+    end: &FlightEnd,
+) {
+    block.store(shots);
+    if end.ring_motions() & !end.needs_scalar != 0 {
+        let motion = params.ring.to_contact(&params.ball, &shots.state);
+        block.store_ring_motion(&motion);
+    }
 }

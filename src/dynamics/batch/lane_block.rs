@@ -24,6 +24,8 @@ pub(super) struct LaneBlock {
     /// [`FrictionState::slip_tolerance`] of each solid.
     slip_tolerances: [LaneArray; SolidId::COUNT],
     rolling_times_s: LaneArray,
+    /// [`ShotProgress::step_share`].
+    step_shares: LaneArray,
     slots: [u32; ZEROS.len()],
     /// [`ShotProgress::steps`].
     steps: [u32; ZEROS.len()],
@@ -37,6 +39,8 @@ struct LaneFlags {
     rose_through: LaneBits,
     rolling: [LaneBits; SolidId::COUNT],
     rolling_failed: [LaneBits; SolidId::COUNT],
+    /// [`ShotProgress::touching`].
+    touching: [LaneBits; SolidId::COUNT],
     /// The ball comes from the ring: `ring_motion` holds.
     from_ring: LaneBits,
     /// The lane has a shot.
@@ -74,6 +78,17 @@ pub(super) fn set_bit(bits: &mut LaneBits, lane: usize, value: bool) {
     *bits = *bits & !(1 << lane) | LaneBits::from(value) << lane;
 }
 
+/// Counts a step of every lane; returns the lanes that have reached `max_steps`.
+#[inline(always)]
+pub(super) fn count_step(steps: &mut [u32], max_steps: u32) -> LaneBits {
+    let mut reached = 0;
+    for (lane, steps) in steps.iter_mut().enumerate() {
+        *steps = steps.wrapping_add(1);
+        reached |= LaneBits::from(*steps >= max_steps) << lane;
+    }
+    reached
+}
+
 impl LaneBlock {
     pub(super) fn new() -> Self {
         Self {
@@ -82,6 +97,7 @@ impl LaneBlock {
             times_s: ZEROS,
             slip_tolerances: [ZEROS; SolidId::COUNT],
             rolling_times_s: ZEROS,
+            step_shares: ZEROS,
             slots: [0; ZEROS.len()],
             steps: [0; ZEROS.len()],
             flags: LaneFlags::default(),
@@ -171,18 +187,20 @@ impl LaneBlock {
         set_bit(&mut flags.occupied, lane, true);
     }
 
-    /// Copies the friction of the shots in some lanes from their slots.
+    /// Copies the contacts of the shots in some lanes from their slots.
     #[inline(always)]
-    pub(super) fn load_friction_of(&mut self, lanes: LaneBits, slots: &[ShotProgress]) {
+    pub(super) fn load_contacts_of(&mut self, lanes: LaneBits, slots: &[ShotProgress]) {
         let mut flags = self.flags;
         for lane in lanes_in(lanes & flags.occupied) {
             let shot = &slots[self.slots[lane] as usize];
             for (i, friction) in shot.friction.iter().enumerate() {
                 set_bit(&mut flags.rolling[i], lane, friction.rolling);
                 set_bit(&mut flags.rolling_failed[i], lane, friction.rolling_failed);
+                set_bit(&mut flags.touching[i], lane, shot.touching[i]);
                 self.slip_tolerances[i][lane] = friction.slip_tolerance;
             }
             self.rolling_times_s[lane] = shot.rolling_time_s;
+            self.step_shares[lane] = shot.step_share;
         }
         self.flags = flags;
     }
@@ -191,12 +209,7 @@ impl LaneBlock {
     /// among them.)
     #[inline(always)]
     pub(super) fn count_step(&mut self, max_steps: u32) -> LaneBits {
-        let mut reached = 0;
-        for (lane, steps) in self.steps.iter_mut().enumerate() {
-            *steps = steps.wrapping_add(1);
-            reached |= LaneBits::from(*steps >= max_steps) << lane;
-        }
-        reached
+        count_step(&mut self.steps, max_steps)
     }
 
     /// Takes the shot out of a lane; its contacts are left as they were.
@@ -249,9 +262,36 @@ impl LaneBlock {
         }
     }
 
-    /// Time for which the ball in a lane has rolled on two solids, s.
-    pub(super) fn rolling_time_s(&self, lane: usize) -> f64 {
-        self.rolling_times_s[lane]
+    /// Takes the contacts of the shot in a lane out of it.
+    #[inline(always)]
+    pub(super) fn remove_contacts(&self, lane: usize, shot: &mut ShotProgress) {
+        shot.friction = SolidId::ALL.map(|solid| self.friction(solid, lane));
+        shot.touching = self.flags.touching.map(|bits| bit(bits, lane));
+        shot.rolling_time_s = self.rolling_times_s[lane];
+        shot.step_share = self.step_shares[lane];
+    }
+
+    /// The solids that the balls touch.
+    #[inline(always)]
+    pub(super) fn load_touching<T: SimdReal<Element = f64>>(
+        &self,
+        simd: T::Simd,
+    ) -> [T::Mask; SolidId::COUNT] {
+        let [board, ring] = self.flags.touching;
+        [
+            T::mask_from_bits(simd, board),
+            T::mask_from_bits(simd, ring),
+        ]
+    }
+
+    #[inline(always)]
+    pub(super) fn load_step_shares<T: SimdReal<Element = f64>>(&self, simd: T::Simd) -> T {
+        T::load(simd, &self.step_shares)
+    }
+
+    #[inline(always)]
+    pub(super) fn store_step_shares<T: SimdReal<Element = f64>>(&mut self, shares: T) {
+        shares.store(&mut self.step_shares);
     }
 
     /// The state of balls that come from the ring, from the frame of that contact.
@@ -358,19 +398,20 @@ impl LaneBlock {
 }
 
 impl<T: SimdReal<Element = f64>> LaneShots<T> {
-    /// Updates time and hoop crossing after a step of `dt` from `before`; returns the shots that end.
+    /// Updates time and hoop crossing after a step of `dt` from `before`, in the lanes of `stepped`; returns the shots
+    /// that end.
     #[inline(always)]
     pub(super) fn after_step(
         &mut self,
         params: &ModelParams<T>,
         before: &BallState<T>,
-        dt: T,
+        (dt, stepped): (T, T::Mask),
         time_limit_s: f64,
     ) -> ShotEndFlags<T> {
-        self.time_s = self.time_s + dt;
+        self.time_s = self.time_s + dt.select(stepped, params.zero());
         let was_below = before.position_m.z.is_negative();
         self.crossing
-            .after_step(params, was_below, &self.state, dt.is_positive());
+            .after_step(params, was_below, &self.state, stepped);
         let too_late = params.splat(time_limit_s).lt(self.time_s);
         ShotEndFlags::new(params, &self.state, too_late)
     }

@@ -3,13 +3,13 @@
 mod batch_state;
 mod board_contact_phase;
 mod contact_block;
-mod double_contact_phase;
 mod flight_phase;
 mod instruction_set;
 mod lane_block;
 mod ring_contact_phase;
 mod scheduler;
 mod single_contact_phase;
+mod space_contact_phase;
 mod workspace;
 
 pub use instruction_set::InstructionSet;

@@ -1,6 +1,6 @@
 //! Runs the shots of a batch, eight or sixteen to a step.
 //!
-//! The shots wait in queues by phase: flight, contact with one solid, contact with two. Flights are closed
+//! The shots wait in queues by phase: flight, contact in the frame of one solid, contact in the frame of space. Flights are closed
 //! form and are done a block at a time. In contact the shots of a block step together. Finished lanes are
 //! refilled at once, so short and long contacts mix without waiting. Rare events (from one contact to two,
 //! the board's edges, the time limit in flight, an unresolved search) are left to the scalar code; after them the
@@ -11,9 +11,9 @@
 
 use super::batch_state::{Batch, Narrow, NarrowSingle, Wide, WideSingle};
 use super::board_contact_phase::board_contact;
-use super::double_contact_phase::board_and_ring;
 use super::flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
+use super::space_contact_phase::in_space;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
 use crate::math::real::SimdReal;
@@ -86,7 +86,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             }
             Phase::Single(solid) if WIDE => on_solid::<S, WideSingle<S>, WIDE>(self, solid),
             Phase::Single(solid) => on_solid::<S, NarrowSingle<S>, WIDE>(self, solid),
-            Phase::BoardAndRing => board_and_ring::<S, Narrow<S>, WIDE>(self),
+            Phase::InSpace => in_space::<S, Narrow<S>, WIDE>(self),
         }
     }
 }

@@ -6,11 +6,11 @@ use super::lane_block::{bit, lanes_in};
 use super::workspace::Phase;
 use crate::dynamics::contact::contact_step::Contact;
 use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::contact::other_solid_touch::{TakenStep, has_arrived, passed};
+use crate::dynamics::contact::other_solid_touch::{GapAtEnd, has_arrived, passed};
 use crate::dynamics::end_rules::ShotEndFlags;
 use crate::dynamics::integrators::event_driven::ContactState;
 use crate::dynamics::outcome::Ending;
-use crate::math::real::{LaneBits, LaneElement, SimdReal};
+use crate::math::real::{LaneBits, LaneElement, Mask, SimdReal};
 use crate::model::SolidId;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
@@ -21,8 +21,10 @@ struct StepResult {
     parts: LaneBits,
     /// On the other solid.
     arrived: LaneBits,
-    /// No longer in front of the solid.
+    /// Where the solid does not act.
     beside: LaneBits,
+    /// Beyond the part of the solid that the frame describes.
+    leaves_frame: LaneBits,
     /// The flags of the rules that end a shot.
     ends: [LaneBits; 3],
     made: LaneBits,
@@ -81,7 +83,12 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     ) {
         let [a, b, c] = result.ends;
         let ended = a | b | c;
-        let done = (result.parts | result.arrived | result.beside | ended | result.given_up)
+        let done = (result.parts
+            | result.arrived
+            | result.beside
+            | result.leaves_frame
+            | ended
+            | result.given_up)
             & block.occupied();
         for lane in lanes_in(done) {
             let slot = block.slot(lane);
@@ -97,7 +104,10 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
                 self.workspace.queue_mut(Phase::Flight).push(slot);
             } else if bit(result.arrived, lane) {
                 shot.arrive(self.params, other);
-                self.workspace.queue_mut(Phase::BoardAndRing).push(slot);
+                self.workspace.queue_mut(Phase::InSpace).push(slot);
+            } else if !bit(result.beside, lane) {
+                shot.leave_frame(self.params, block.solid());
+                self.workspace.queue_mut(Phase::InSpace).push(slot);
             } else {
                 shot.end_single_contact(ContactState::Free);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
@@ -119,14 +129,13 @@ fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
     let shots = block.load::<T>(simd);
     let step = contact.step(&shots.motion, &shots.friction, shots.step_share);
     let after = solid.to_space(&params.ball, &step.motion);
-    let taken = TakenStep {
-        solid,
-        from: &shots.motion,
-        to: &step.motion,
-        after: &after,
-        dt: step.dt,
-    };
-    let (again, share) = passed(params, other, &taken);
+    let path = (shots.motion.speed_bound() + step.motion.speed_bound()) * step.dt;
+    let end = GapAtEnd::new(params, other, &after, path);
+    let (mut again, mut share) = (end.is_near, params.one());
+    if end.is_near.any() {
+        let before = solid.to_space(&params.ball, &shots.motion);
+        (again, share) = passed(params, other, &before, &end, step.dt);
+    }
     let stays = again | T::mask_from_bits(simd, given_up);
     let mut next = ContactShots {
         motion: step.motion,
@@ -152,7 +161,8 @@ fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
     StepResult {
         parts: T::mask_to_bits(step.parts) & counts,
         arrived: T::mask_to_bits(has_arrived(params, other, &after)) & counts,
-        beside: T::mask_to_bits(!solid.faces(&after)) & counts,
+        beside: T::mask_to_bits(!solid.acts(&after)) & counts,
+        leaves_frame: T::mask_to_bits(!solid.is_in_frame(&after)) & counts,
         ends: ends.map(
             #[inline(always)]
             |rule| T::mask_to_bits(rule) & counts,

@@ -6,7 +6,7 @@ use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{ContactFrame, ContactKinematics, ContactVector, Material, Solid};
+use crate::model::solids::{ContactKinematics, ContactVector, Material, Solid};
 
 /// Index of the first and of the second contact of a pair.
 pub(super) const FIRST: usize = 0;
@@ -47,29 +47,23 @@ pub(super) struct ContactPair<T> {
     pub(super) normals: [T; 2],
 }
 
-#[inline(always)]
-fn axes_of<T: Real, F: ContactFrame<T>>(params: &ModelParams<T>, frame: F) -> [Vec3<T>; 3] {
-    let (zero, one) = (params.zero(), params.one());
-    [
-        frame.to_space(ContactVector::new(one, zero, zero)),
-        frame.to_space(ContactVector::new(zero, one, zero)),
-        frame.to_space(ContactVector::new(zero, zero, one)),
-    ]
-}
-
 impl<T: Real> ContactPair<T> {
     #[inline(always)]
     pub(super) fn new<A: Solid<T>, B: Solid<T>>(
         params: &ModelParams<T>,
         (first, second): (&A, &B),
         state: &BallState<T>,
+        touching: [T::Mask; 2],
     ) -> Self {
-        let (first_kinematics, first_frame) = first.contact(&params.ball, state);
-        let (second_kinematics, second_frame) = second.contact(&params.ball, state);
+        let (first_kinematics, first_axes) = first.contact(&params.ball, state);
+        let (second_kinematics, second_axes) = second.contact(&params.ball, state);
         let kinematics = [first_kinematics, second_kinematics];
-        let materials = [*first.material(), *second.material()];
+        let materials = [
+            first.material().where_touching(touching[FIRST]),
+            second.material().where_touching(touching[SECOND]),
+        ];
         Self {
-            axes: [axes_of(params, first_frame), axes_of(params, second_frame)],
+            axes: [first_axes, second_axes],
             lever_over_inertia: for_both!(i => kinematics[i].lever * params.ball.mass_over_inertia),
             normals: for_both!(i => kinematics[i].normal_force(&materials[i])),
             kinematics,
@@ -290,7 +284,7 @@ mod tests {
             velocity_m_s: Vec3::new(-0.3, 0.2, -1.0),
             spin_rad_s: Vec3::new(3.0, -2.0, 1.0),
         };
-        let pair = ContactPair::new(&params, (&params.board, &params.ring), &state);
+        let pair = ContactPair::new(&params, (&params.board, &params.ring), &state, [true; 2]);
         (params, pair)
     }
 

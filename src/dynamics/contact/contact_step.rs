@@ -11,7 +11,7 @@
 //! Sliding is the paper's law (Eqs. 3 and 13). Rolling is its exact limit (a Filippov solution on the surface
 //! of zero slip; the paper's Appendix 2 approaches it by chattering): the friction that keeps the slip at zero.
 //!
-//! On the ring the steps use `l v1` and `D v2` (l the distance to the contact point, D that to the
+//! On the ring the steps use `d v1` and `D v2` (d the distance from the ring's circle, D that from the
 //! hoop's axis) in place of v1 and v2. Without friction they change little: this halves the error.
 
 use super::friction::{DIRECTION_SLIP_FRACTION, FrictionState, SLIP_TOLERANCE_M_S};
@@ -48,7 +48,7 @@ pub(crate) struct MacroStep<T: Real> {
 /// The rates of what changes slowly, without friction.
 #[derive(Clone, Copy)]
 struct SlowRates<T> {
-    /// On the ring that of l v1; on a flat solid that of v1.
+    /// On the ring those of d v1 and D v2; on a flat solid those of v1 and v2.
     v1: T,
     v2: T,
     spin: ContactVector<T>,
@@ -89,8 +89,8 @@ struct Evaluation<T> {
     slip_rate: Vec2<T>,
 }
 
-/// Friction's impulses over a step, per unit of mass: along 1, along 2 (on the ring times D), and the same times
-/// the lever.
+/// Friction's impulses over a step, per unit of mass: along 1 and 2 (on the ring times d and D), and along both
+/// times the lever.
 #[derive(Clone, Copy)]
 struct FrictionImpulse<T> {
     linear: Vec2<T>,
@@ -163,7 +163,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
     #[inline(always)]
     fn evaluate(&self, motion: &ContactMotion<T>, distances: ContactDistances<T>) -> Evaluation<T> {
         let (v, w) = (motion.velocity, motion.spin);
-        let gravity = self.solid.gravity(&self.params.ball, motion);
+        let gravity = self.solid.free_acceleration(&self.params.ball, motion);
         let slip = motion.slip(distances.lever);
         let zero = self.params.zero();
         if S::FLAT {
@@ -198,8 +198,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         Evaluation {
             normal_acceleration: turn.x * v.tangent.x + (turn.y * v.tangent.y + gravity.normal),
             rates: SlowRates {
-                v1: distances.lever * (gravity.tangent.x + torsion * v.tangent.y),
-                v2: gravity.tangent.y,
+                v1: distances.core * (gravity.tangent.x + torsion * v.tangent.y),
+                v2: distances.axis * gravity.tangent.y,
                 spin: ContactVector::new(
                     turn.x * w.tangent.x + turn.y * w.tangent.y,
                     torsion * w.tangent.y - turn.x * w.normal,
@@ -248,9 +248,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             )
         } else {
             Vec2::new(
-                (rates.v1 * h + (v.x * before.lever + impulse.times_lever.x))
-                    * distances.inverse_lever,
-                (v.y * before.axis + impulse.linear.y) * distances.inverse_axis,
+                (rates.v1 * h + (v.x * before.core + impulse.linear.x)) * distances.inverse_core,
+                (rates.v2 * h + (v.y * before.axis + impulse.linear.y)) * distances.inverse_axis,
             )
         };
         let motion = ContactMotion {
@@ -540,7 +539,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             .select(rolling, scaled(start.direction, -impulse));
         let lever = params.ball.radius - (start.motion.compression + u_m) * 0.5;
         let kick = FrictionImpulse {
-            linear: self.times_axis(linear, &at.distances),
+            linear: self.times_distances(linear, &at.distances),
             times_lever: scaled(linear, lever),
         };
         let (middle, distances_m) = self.advance(&start, &at.rates, half, (u_m, vn_m), &kick);
@@ -571,7 +570,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             scaled(scaled(friction_m.direction, two) + start.direction, impulse),
         );
         let kick = FrictionImpulse {
-            linear: self.times_axis(linear, &distances_m),
+            linear: self.times_distances(linear, &distances_m),
             times_lever: scaled(linear, distances_m.lever),
         };
         let rates = at_m.rates.mix(2.0, &at.rates, -1.0);
@@ -605,10 +604,10 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let kick = FrictionImpulse {
             linear: simpson_2(
                 sixth,
-                self.times_axis(friction_s, d_s),
-                self.times_axis(friction_m.friction, d_m),
-                self.times_axis(friction_e.friction, d_e),
-            ) + self.times_axis(extra, d_m),
+                self.times_distances(friction_s, d_s),
+                self.times_distances(friction_m.friction, d_m),
+                self.times_distances(friction_e.friction, d_e),
+            ) + self.times_distances(extra, d_m),
             times_lever: simpson_2(
                 sixth,
                 scaled(friction_s, d_s.lever),
@@ -636,13 +635,13 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         }
     }
 
-    /// On the ring, the component along 2 times the distance from the axis.
+    /// On the ring, the components times the distances from the circle and from the axis.
     #[inline(always)]
-    fn times_axis(&self, v: Vec2<T>, distances: &ContactDistances<T>) -> Vec2<T> {
+    fn times_distances(&self, v: Vec2<T>, distances: &ContactDistances<T>) -> Vec2<T> {
         if S::FLAT {
             v
         } else {
-            Vec2::new(v.x, v.y * distances.axis)
+            Vec2::new(v.x * distances.core, v.y * distances.axis)
         }
     }
 }

@@ -3,7 +3,7 @@
 mod contact_pair;
 pub(crate) mod contact_step;
 mod coupled_oscillators;
-pub(crate) mod double_contact_step;
 pub(crate) mod friction;
 pub(crate) mod oscillator;
 pub(crate) mod other_solid_touch;
+pub(crate) mod space_contact_step;

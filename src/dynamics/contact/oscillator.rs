@@ -12,7 +12,6 @@
 //! the same for all shots. They interpolate at Chebyshev nodes: with three steps in a bounce they err by 1e-7 at most.
 
 use crate::math::real::Real;
-use crate::model::Physics;
 use crate::model::solids::Material;
 
 /// Degree of the polynomials, without their constant terms.
@@ -60,9 +59,8 @@ pub(crate) struct Oscillator<T = f64> {
 
 impl Oscillator {
     /// For `steps` steps in half an undamped period.
-    pub(crate) fn new(physics: &Physics, steps: f64) -> Self {
-        let stiffness = physics.stiffness_n_m / physics.ball_mass_kg;
-        let damping = physics.damping_kg_s / physics.ball_mass_kg;
+    pub(crate) fn new(material: &Material<f64>, steps: f64) -> Self {
+        let (stiffness, damping) = (material.stiffness, material.damping);
         let step_s = std::f64::consts::PI / (stiffness.sqrt() * steps);
         let half_damping = 0.5 * damping;
         let kh2 = stiffness * step_s * step_s;
@@ -286,16 +284,19 @@ pub(super) fn parabola_root<T: Real>(first: T, slope: T, last: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Physics;
+    use crate::model::constants_per_ball_mass::ModelParams;
 
     /// Authority: the closed form.
     #[test]
     fn val_the_polynomials_are_the_oscillation() {
         for restitution in [1.0, 0.8, 0.3, 0.01] {
             let physics = Physics::with_restitution(restitution).unwrap();
-            let a = 0.5 * physics.damping_kg_s / physics.ball_mass_kg;
-            let w = (physics.stiffness_n_m / physics.ball_mass_kg - a * a).sqrt();
+            let material = ModelParams::new(&physics).board.material;
+            let a = 0.5 * material.damping;
+            let w = (material.stiffness - a * a).sqrt();
             for (steps, allowed) in [(3.0, 2e-6), (5.0, 1e-7), (1000.0, 1e-15)] {
-                let oscillator = Oscillator::new(&physics, steps);
+                let oscillator = Oscillator::new(&material, steps);
                 for i in 0..=20 {
                     let tau = 0.05 * f64::from(i);
                     let t = tau * oscillator.step_s;

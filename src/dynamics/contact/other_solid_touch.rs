@@ -7,9 +7,9 @@
 //! [`GRAZE_M`] inside the step is taken again too, as far as the closest point: no touch is lost.
 
 use crate::math::real::{Mask, Real};
-use crate::model::BallState;
+use crate::model::{BallState, SolidId};
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{ContactMotion, Solid};
+use crate::model::solids::Solid;
 
 /// Gap at which an approached solid counts as touched, m. A compression of this size changes the speed of a
 /// bounce by less than 1e-6 m/s.
@@ -29,37 +29,47 @@ pub(crate) fn has_arrived<T: Real, S: Solid<T>>(
     state: &BallState<T>,
 ) -> T::Mask {
     let (gap, rate) = other.gap(&params.ball, state);
-    gap.le(params.splat(ARRIVED_M)) & rate.is_negative() & other.faces(state)
+    gap.le(params.splat(ARRIVED_M)) & rate.is_negative() & other.acts(state)
 }
 
-/// A step in contact with a solid.
-pub(crate) struct TakenStep<'a, T: Real, S> {
-    pub(crate) solid: &'a S,
-    pub(crate) from: &'a ContactMotion<T>,
-    pub(crate) to: &'a ContactMotion<T>,
-    /// The state in space at its end.
-    pub(crate) after: &'a BallState<T>,
-    pub(crate) dt: T,
+/// The gap to a solid at the end of a step, and its rate.
+pub(crate) struct GapAtEnd<T: Real> {
+    gap: T,
+    rate: T,
+    /// The step may have come to the solid.
+    pub(crate) is_near: T::Mask,
 }
 
-/// Where a step passes `other`, and after which part of the step it reaches it (1 elsewhere).
+impl<T: Real> GapAtEnd<T> {
+    /// After a step to `after` on a path of at most `longest_path`.
+    #[inline(always)]
+    pub(crate) fn new<O: Solid<T>>(
+        params: &ModelParams<T>,
+        other: &O,
+        after: &BallState<T>,
+        longest_path: T,
+    ) -> Self {
+        let (gap, rate) = other.gap(&params.ball, after);
+        Self {
+            gap,
+            rate,
+            is_near: gap.lt(longest_path) & other.acts(after),
+        }
+    }
+}
+
+/// Where a step of `dt` from `before` passes `other`, and after which part of the step it reaches it (1 elsewhere).
 #[inline(always)]
-pub(crate) fn passed<T: Real, S: Solid<T>, O: Solid<T>>(
+pub(crate) fn passed<T: Real, O: Solid<T>>(
     params: &ModelParams<T>,
     other: &O,
-    step: &TakenStep<'_, T, S>,
+    before: &BallState<T>,
+    end: &GapAtEnd<T>,
+    dt: T,
 ) -> (T::Mask, T) {
     let one = params.one();
-    let TakenStep { after, dt, .. } = *step;
-    let (gap_1, rate_1) = other.gap(&params.ball, after);
-    // The speed changes monotonously within a step.
-    let max_path = (step.from.speed_bound() + step.to.speed_bound()) * dt;
-    let near = gap_1.lt(max_path) & other.faces(after);
-    if !near.any() {
-        return (near, one);
-    }
-    let before = &step.solid.to_space(&params.ball, step.from);
     let (gap_0, rate_0) = other.gap(&params.ball, before);
+    let (gap_1, rate_1, near) = (end.gap, end.rate, end.is_near);
     let apart = params.splat(-ARRIVED_M).lt(gap_0);
     // gap_0 + a s + c s^2 + d s^3 at the share s of the step.
     let (a, b, change) = (rate_0 * dt, rate_1 * dt, gap_1 - gap_0);
@@ -89,6 +99,66 @@ pub(crate) fn passed<T: Real, S: Solid<T>, O: Solid<T>>(
     let share = Real::max(Real::min(share, one * most), one * least);
     let again = near & apart & (passes | grazes);
     (again, share.select(again, one))
+}
+
+/// How a step in the frame of space came to the solids that the ball did not touch.
+pub(crate) struct Approach<T: Real> {
+    /// The step passed a solid, and is to be taken again.
+    pub(crate) again: T::Mask,
+    /// The share of it that is to be taken then; 1 elsewhere.
+    pub(crate) share: T,
+    /// The ball has arrived at each solid.
+    pub(crate) arrived: [T::Mask; SolidId::COUNT],
+}
+
+/// The approach to other solids in a step of `dt` from the first state to the second.
+#[inline(always)]
+pub(crate) fn approach_in_space<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
+    solids: (&A, &B),
+    touching: [T::Mask; SolidId::COUNT],
+    (before, after): (&BallState<T>, &BallState<T>),
+    dt: T,
+) -> Approach<T> {
+    let none = params.splat_mask(false);
+    let mut approach = Approach {
+        again: none,
+        share: params.one(),
+        arrived: [none; SolidId::COUNT],
+    };
+    let [on_first, on_second] = touching;
+    if (on_first & on_second).all() {
+        return approach;
+    }
+    let (v, u) = (before.velocity_m_s, after.velocity_m_s);
+    let bound = v.x.abs() + v.y.abs() + v.z.abs() + (u.x.abs() + u.y.abs() + u.z.abs());
+    let path = bound * dt;
+    approach.look_at(params, solids.0, on_first, (before, after), (dt, path));
+    approach.look_at(params, solids.1, on_second, (before, after), (dt, path));
+    approach
+}
+
+impl<T: Real> Approach<T> {
+    #[inline(always)]
+    fn look_at<S: Solid<T>>(
+        &mut self,
+        params: &ModelParams<T>,
+        solid: &S,
+        is_touching: T::Mask,
+        (before, after): (&BallState<T>, &BallState<T>),
+        (dt, path): (T, T),
+    ) {
+        let end = GapAtEnd::new(params, solid, after, path);
+        let looks = end.is_near & !is_touching;
+        if !looks.any() {
+            return;
+        }
+        let (again, share) = passed(params, solid, before, &end, dt);
+        let again = again & looks;
+        self.again = self.again | again;
+        self.share = Real::min(share.select(again, self.share), self.share);
+        self.arrived[S::ID.index()] = has_arrived(params, solid, after) & looks;
+    }
 }
 
 /// The gap during a step.
@@ -139,15 +209,8 @@ mod tests {
                 spin_rad_s: Vec3::zeros(),
             };
             let (before, after) = (at(0.0), at(dt));
-            let motion = |state| params.ring.to_contact(&params.ball, state);
-            let step = TakenStep {
-                solid: &params.ring,
-                from: &motion(&before),
-                to: &motion(&after),
-                after: &after,
-                dt,
-            };
-            let (again, share) = passed(&params, &params.board, &step);
+            let end = GapAtEnd::new(&params, &params.board, &after, 1.0);
+            let (again, share) = passed(&params, &params.board, &before, &end, dt);
             let turn = (-rate / acceleration).clamp(0.0, dt);
             let gap_at = |t: f64| params.board.gap(&params.ball, &at(t)).0;
             let least = gap_at(turn).min(gap_at(dt));

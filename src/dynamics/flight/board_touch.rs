@@ -54,7 +54,7 @@ pub(super) fn entry_from_beside(params: &ModelParams, state: &BallState, from: f
     ]
     .into_iter()
     .map(|t| t + PAST_S)
-    .filter(|&t| t > from && t < face && board.faces(&state.after_flight(&params.ball, t)))
+    .filter(|&t| t > from && t < face && board.is_in_frame(&state.after_flight(&params.ball, t)))
     .fold(params.ball.never_s, f64::min);
     (enters, face)
 }

@@ -27,7 +27,7 @@ impl<T: Real> FlightEvents<T> {
     #[inline(always)]
     pub(crate) fn new(params: &ModelParams<T>, state: &BallState<T>) -> Self {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-        let below_ring = falling_time(params, z, vz, -params.ball.radius).positive_part();
+        let below_ring = falling_time(params, z, vz, -params.ring.reach).positive_part();
         let (board, beside_board) = board_times(params, state, below_ring);
         let search_end = Real::min(Real::min(below_ring, board), beside_board);
         let (ring, unresolved) = ring_time(params, state, search_end);

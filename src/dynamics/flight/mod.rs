@@ -1,8 +1,17 @@
-//! Free flight: parabolas, and the first touch on them.
+//! Free flight, and the first touch on it.
+//!
+//! Without air, at the paper's solids, an arc is a parabola and its events have nearly closed forms
+//! ([`FlightEvents`]). Otherwise it is a sequence of polynomials ([`FlightSegment`]).
 
 mod board_touch;
 mod flight_events;
+mod flight_path;
+mod flight_segment;
 pub(crate) mod height_crossing;
 mod ring_search;
+mod undisturbed_flight;
 
 pub(crate) use flight_events::FlightEvents;
+pub(crate) use flight_path::FlightPath;
+pub(crate) use flight_segment::FlightSegment;
+pub(crate) use undisturbed_flight::{falls_through, height_at_length_m, highest_point_m};

@@ -105,20 +105,20 @@ impl<T: Real> SearchBounds<T> {
         (z, vz): (T, T),
         falls_to_top: T,
     ) -> Self {
-        let (ring_radius, ball_radius) = (params.ring.radius, params.ball.radius);
-        let inner = ring_radius - ball_radius;
+        let (ring_radius, reach) = (params.ring.radius, params.ring.reach);
+        let inner = ring_radius - reach;
         let half_time = motion
             .half_time_within_squared(inner)
             .positive_part()
             .sqrt();
         let nearest = Real::max(inner.squared(), motion.closest_squared);
         let inward = ring_radius - motion.distance_squared.sqrt();
-        let value = inward.squared() + z.squared() - ball_radius.squared();
+        let value = inward.squared() + z.squared() - reach.squared();
         Self {
             overlap: Real::min(value, value.zero()),
             falls_to_top,
-            rises_to_bottom: rising_time(params, z, vz, -ball_radius),
-            rises_to_top: rising_time(params, z, vz, ball_radius),
+            rises_to_bottom: rising_time(params, z, vz, -reach),
+            rises_to_top: rising_time(params, z, vz, reach),
             inner_enter: (motion.closest_time - half_time)
                 .select(!motion.is_vertical, -params.ball.never_s),
             inner_leave: (motion.closest_time + half_time)
@@ -138,9 +138,9 @@ pub(super) fn ring_time<T: Real>(
     search_end: T,
 ) -> (T, T::Mask) {
     let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-    let (zero, ball_radius) = (params.zero(), params.ball.radius);
+    let (zero, reach) = (params.zero(), params.ring.reach);
     let motion = HorizontalMotion::new(params, state);
-    let outer = params.ring.radius + ball_radius;
+    let outer = params.ring.radius + reach;
     let outer_time_squared = motion.half_time_within_squared(outer);
     let half_time = outer_time_squared.positive_part().sqrt();
     let enter_time = motion.closest_time - half_time;
@@ -149,12 +149,12 @@ pub(super) fn ring_time<T: Real>(
     let out_of_reach = !motion.is_vertical & outer_time_squared.is_negative()
         | motion.is_vertical & outer.squared().lt(motion.distance_squared);
     let stop = Real::min(search_end, leave_time);
-    let falls_to_top = falling_time(params, z, vz, ball_radius);
+    let falls_to_top = falling_time(params, z, vz, reach);
     let mut t = enter_time.select(!motion.is_vertical, zero).positive_part();
     // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
     // and still rising then (a release from beneath) starts when it has come near.
     let z_then = z + vz * t - params.ball.half_gravity * t * t;
-    t = Real::max(falls_to_top, t).select(ball_radius.lt(z_then), t);
+    t = Real::max(falls_to_top, t).select(reach.lt(z_then), t);
 
     let mut searching = t.lt(stop) & !out_of_reach;
     let mut found = params.ball.never_s;
@@ -182,17 +182,17 @@ fn search_step<T: Real>(
     (z, vz): (T, T),
     t: T,
 ) -> (T::Mask, T) {
-    let (zero, ball_radius) = (params.zero(), params.ball.radius);
+    let (zero, reach) = (params.zero(), params.ring.reach);
     let z_t = z + vz * t - params.ball.half_gravity * t * t;
     let vz_t = vz - params.ball.gravity * t;
     let distance = motion.distance(t);
     let inward = params.ring.radius - distance;
-    let value = inward.squared() + z_t.squared() - ball_radius.squared() - bounds.overlap;
+    let value = inward.squared() + z_t.squared() - reach.squared() - bounds.overlap;
     let half_slope = z_t * vz_t
         - inward * (motion.speed_squared * t + motion.dot)
-            / Real::max(distance, ball_radius * 1e-3);
+            / Real::max(distance, reach * 1e-3);
     let fall_squared = zero.select(vz_t.is_positive(), vz_t.squared());
-    let half_bound = (bounds.curvature_bound + params.ball.gravity * ball_radius
+    let half_bound = (bounds.curvature_bound + params.ball.gravity * reach
         - motion.speed_squared
         - fall_squared)
         .positive_part();
@@ -211,12 +211,12 @@ fn search_step<T: Real>(
     // of less than 1e-9 m.
     let least = zero.select(closing, params.splat(PARTING_STEP_S));
     let safe = t + Real::max(numerator / denominator, least);
-    let touches = closing & value.le(ball_radius.squared() * TOUCH_TOLERANCE);
+    let touches = closing & value.le(reach.squared() * TOUCH_TOLERANCE);
 
     // Jumps over parts where no touch is possible.
-    let below = z_t.lt(-ball_radius) & vz_t.is_positive();
-    let inside = distance.lt(params.ring.radius - ball_radius);
-    let above = ball_radius.lt(z_t);
+    let below = z_t.lt(-reach) & vz_t.is_positive();
+    let inside = distance.lt(params.ring.radius - reach);
+    let above = reach.lt(z_t);
     let jump = Real::max(
         Real::max(
             bounds.falls_to_top.select(above, zero),

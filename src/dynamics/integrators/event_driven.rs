@@ -2,13 +2,15 @@
 //! that end at contact events (the slip reaches zero, rolling fails, the ball parts, the other solid is touched).
 
 use crate::dynamics::contact::contact_step::{Contact, MacroStep};
-use crate::dynamics::contact::double_contact_step::{self, DoubleContactStep};
 use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::contact::other_solid_touch::{TakenStep, has_arrived, passed};
+use crate::dynamics::contact::other_solid_touch::{
+    GapAtEnd, approach_in_space, has_arrived, passed,
+};
+use crate::dynamics::contact::space_contact_step::{self, SpaceContact, SpaceContactStep};
 use crate::dynamics::end_rules::{
     ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
 };
-use crate::dynamics::flight::FlightEvents;
+use crate::dynamics::flight::{FlightEvents, FlightPath, FlightSegment};
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
@@ -27,10 +29,10 @@ pub(crate) const MAX_SEGMENTS: u32 = 100_000;
 pub(crate) enum ContactState {
     /// In flight, or about to be.
     Free,
-    /// On one solid.
+    /// On the face of the board or on the ring's circle alone: in the frame of the contact.
     Single(SolidId),
-    /// On board and ring.
-    BoardAndRing,
+    /// On the bracket, on an edge of the board, or on both solids: in the frame of space.
+    InSpace,
 }
 
 /// A shot in progress.
@@ -42,9 +44,11 @@ pub(crate) struct ShotProgress {
     pub(crate) motion: ContactMotion,
     pub(crate) frame: Option<SolidId>,
     pub(crate) contact: ContactState,
+    /// The solids that a ball in contact in the frame of space touches, by [`SolidId::index`].
+    pub(crate) touching: [bool; SolidId::COUNT],
     /// Friction at the board and at the ring.
     pub(crate) friction: [FrictionState; SolidId::COUNT],
-    /// Length of the next step in contact with one solid, in units of the longest.
+    /// Length of the next step in contact, in units of the longest.
     pub(crate) step_share: f64,
     /// Time in the present contact with one solid; not yet counted in `time_s`.
     pub(crate) contact_time_s: f64,
@@ -69,6 +73,7 @@ impl ShotProgress {
             motion: ContactMotion::from_array([0.0; CONTACT_VALUES]),
             frame: None,
             contact: ContactState::Free,
+            touching: [false; SolidId::COUNT],
             friction: [friction; SolidId::COUNT],
             step_share: 1.0,
             contact_time_s: 0.0,
@@ -99,27 +104,45 @@ impl ShotProgress {
         self.rolling_time_s = 0.0;
     }
 
+    /// The ball leaves the part of `solid` that the frame of the contact describes.
+    pub(crate) fn leave_frame(&mut self, params: &ModelParams, solid: SolidId) {
+        self.end_single_contact(ContactState::InSpace);
+        self.update_state(params);
+        self.touching = SolidId::ALL.map(|id| id == solid);
+        self.step_share = 1.0;
+    }
+
     /// The ball on `arrived` in addition to the solid that it is on.
     pub(crate) fn arrive(&mut self, params: &ModelParams, arrived: SolidId) {
-        self.end_single_contact(ContactState::BoardAndRing);
+        self.end_single_contact(ContactState::InSpace);
         self.update_state(params);
+        self.touching = [true; SolidId::COUNT];
+        self.step_share = 1.0;
         self.contacts.push(arrived);
         self.friction[arrived.index()] = FrictionState::new(params);
     }
 
-    /// The ball on board and ring leaves some of them: it goes on with what remains.
-    pub(crate) fn leave(&mut self, params: &ModelParams, [off_board, off_ring]: [bool; 2]) {
-        match (off_board, off_ring) {
-            (true, true) => self.contact = ContactState::Free,
-            (true, false) => {
-                self.motion = params.ring.to_contact(&params.ball, &self.state);
-                self.begin_single_contact(SolidId::Ring);
-            }
-            (false, true) => {
-                self.motion = params.board.to_contact(&params.ball, &self.state);
+    /// The solids that the ball in space touches are now `touching`: it flies, or goes on in the frame of the contact
+    /// where there is one.
+    pub(crate) fn go_on_touching(
+        &mut self,
+        params: &ModelParams,
+        touching: [bool; SolidId::COUNT],
+    ) {
+        self.touching = touching;
+        self.contact = ContactState::InSpace;
+        let (board, ring) = (&params.board, &params.ring);
+        match touching {
+            [false, false] => self.contact = ContactState::Free,
+            [true, false] if board.is_in_frame(&self.state) => {
+                self.motion = board.to_contact(&params.ball, &self.state);
                 self.begin_single_contact(SolidId::Board);
             }
-            (false, false) => {}
+            [false, true] if ring.is_in_frame(&self.state) => {
+                self.motion = ring.to_contact(&params.ball, &self.state);
+                self.begin_single_contact(SolidId::Ring);
+            }
+            _ => {}
         }
     }
 
@@ -172,8 +195,7 @@ pub(crate) fn run<O: Observer>(
             observer.touch(0.0, solid, &start);
         }
     }
-    shot.contact = ContactState::BoardAndRing;
-    shot.leave(params, touched.map(|touched| !touched));
+    shot.go_on_touching(params, touched);
     let mut run = Run {
         params,
         limits,
@@ -194,7 +216,7 @@ pub(crate) fn solids_touched_at_release(
     start: &BallState,
 ) -> [bool; SolidId::COUNT] {
     let p = start.position_m;
-    if p.z.abs() > params.ball.radius && p.x > params.board.touch_x {
+    if p.z.abs() > params.ring.reach && p.x > params.board.touch_x {
         return [false; SolidId::COUNT];
     }
     [
@@ -205,7 +227,7 @@ pub(crate) fn solids_touched_at_release(
 
 fn is_touched<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState) -> bool {
     let (kinematics, _) = solid.contact(&params.ball, state);
-    kinematics.compression > TOUCH_GAP_M && solid.faces(state)
+    kinematics.compression > TOUCH_GAP_M && solid.acts(state)
 }
 
 /// One step of one shot. A function of its own: it is compiled once for each solid and number type, not for each
@@ -220,16 +242,16 @@ fn single_step<T: ScalarReal, S: Solid<T>>(
     contact.step(motion, friction, share)
 }
 
-/// The same on two solids.
+/// The same in the frame of space.
 #[inline(never)]
-fn double_step<A: Solid<f64>, B: Solid<f64>>(
+fn space_step<A: Solid<f64>, B: Solid<f64>>(
     params: &ModelParams,
     solids: (&A, &B),
     state: &mut BallState,
     friction: &mut [FrictionState; SolidId::COUNT],
-    longest_s: f64,
-) -> DoubleContactStep<f64> {
-    double_contact_step::step(params, solids, state, friction, longest_s)
+    contact: &SpaceContact<f64>,
+) -> SpaceContactStep<f64> {
+    space_contact_step::step(params, solids, state, friction, contact)
 }
 
 /// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next segment.
@@ -262,7 +284,7 @@ impl<O: Observer> Run<'_, O> {
                 self.single_contact(&narrow, solid)
             }
             ContactState::Single(solid) => self.single_contact(params, solid),
-            ContactState::BoardAndRing => self.double_contact((&params.board, &params.ring)),
+            ContactState::InSpace => self.contact_in_space((&params.board, &params.ring)),
         }
     }
 
@@ -280,6 +302,9 @@ impl<O: Observer> Run<'_, O> {
     /// One arc of free flight, to its end or to the next touch.
     fn fly(&mut self) -> Option<Verdict> {
         let params = self.params;
+        if !params.has_paper_flight() {
+            return self.fly_in_segments();
+        }
         let mut flight = FlightEvents::new(params, &self.shot.state);
         let behind = flight.resolve_beside_board(params, &self.shot.state);
         let dt = Real::min(flight.first_end(), behind);
@@ -295,10 +320,6 @@ impl<O: Observer> Run<'_, O> {
         for solid in [SolidId::Ring, SolidId::Board] {
             if flight.touch_of(solid) <= dt {
                 self.touch(solid);
-                let shot = &mut self.shot;
-                shot.friction[solid.index()] = FrictionState::new(params);
-                shot.contact = ContactState::BoardAndRing;
-                shot.leave(params, SolidId::ALL.map(|id| id != solid));
                 return None;
             }
         }
@@ -312,17 +333,64 @@ impl<O: Observer> Run<'_, O> {
 
     fn advance_flight(&mut self, dt: f64) {
         let shot = &mut self.shot;
-        self.observer
-            .flight(self.params, shot.time_s, dt, &shot.state);
+        let path = FlightPath::new(&self.params.ball, &shot.state);
+        self.observer.flight(self.params, shot.time_s, dt, &path);
         shot.crossing.after_flight(self.params, &shot.state, dt);
         shot.state = shot.state.after_flight(&self.params.ball, dt);
         shot.time_s += dt;
     }
 
-    fn touch(&mut self, solid: SolidId) {
-        self.shot.contacts.push(solid);
+    /// The same as a sequence of segments.
+    fn fly_in_segments(&mut self) -> Option<Verdict> {
+        let params = self.params;
+        loop {
+            let segment = FlightSegment::new(params, &self.shot.state);
+            let left_s = self.limits.time_limit_s - self.shot.time_s;
+            if segment.dt > left_s {
+                self.advance_segment(&segment, left_s);
+                return Some(self.shot.verdict(Ending::TimeLimit, false));
+            }
+            self.advance_segment(&segment, segment.dt);
+            if segment.unresolved {
+                return Some(self.shot.verdict(Ending::Unresolved, false));
+            }
+            for solid in SolidId::ALL {
+                if segment.touches[solid.index()] {
+                    self.touch(solid);
+                    return None;
+                }
+            }
+            if segment.behind_board {
+                return Some(self.shot.verdict(Ending::BehindBoard, false));
+            }
+            if segment.fell {
+                let ending = flight_ending(rose_to_ring(params, &self.shot.state));
+                let made = self.shot.crossing.is_made(params, &self.shot.state);
+                return Some(self.shot.verdict(ending, made));
+            }
+        }
+    }
+
+    fn advance_segment(&mut self, segment: &FlightSegment, dt: f64) {
+        let (params, shot) = (self.params, &mut self.shot);
         self.observer
-            .touch(self.shot.time_s, solid, &self.shot.state);
+            .flight(params, shot.time_s, dt, &segment.path);
+        let start = (shot.state.position_m.z, shot.state.velocity_m_s.z);
+        shot.crossing.after_path(params, &segment.path, start, dt);
+        shot.state = segment.path.state_after(dt);
+        shot.time_s += dt;
+    }
+
+    /// A ball in flight touches a solid.
+    fn touch(&mut self, solid: SolidId) {
+        let shot = &mut self.shot;
+        shot.contacts.push(solid);
+        shot.friction[solid.index()] = FrictionState::new(self.params);
+        shot.go_on_touching(self.params, SolidId::ALL.map(|id| id == solid));
+        shot.step_share = 1.0;
+        let time_s = shot.time_s;
+        let state = shot.state;
+        self.observer.touch(time_s, solid, &state);
     }
 
     fn part(&mut self, solid: SolidId) {
@@ -355,15 +423,14 @@ impl<O: Observer> Run<'_, O> {
             }
             let step = single_step(&contact, &motion, &friction, share);
             let after = solid.to_space(&params.ball, &step.motion);
-            let taken = TakenStep {
-                solid,
-                from: &motion,
-                to: &step.motion,
-                after: &after,
-                dt: step.dt,
-            };
-            let again;
-            (again, share) = passed(params, other, &taken);
+            let path = (motion.speed_bound() + step.motion.speed_bound()) * step.dt;
+            let end = GapAtEnd::new(params, other, &after, path);
+            let mut again = false;
+            share = params.one();
+            if end.is_near {
+                let before = solid.to_space(&params.ball, &motion);
+                (again, share) = passed(params, other, &before, &end, step.dt);
+            }
             if again {
                 share = contact.share_of_longest(share * step.dt);
                 continue;
@@ -399,9 +466,13 @@ impl<O: Observer> Run<'_, O> {
                     .touch(self.shot.time_s, Other::ID, &self.shot.state);
                 return None;
             }
-            if !solid.faces(&after) {
+            if !solid.acts(&after) {
                 self.part(S::ID);
                 self.shot.end_single_contact(ContactState::Free);
+                return None;
+            }
+            if !solid.is_in_frame(&after) {
+                self.shot.leave_frame(self.params, S::ID);
                 return None;
             }
         }
@@ -425,27 +496,39 @@ impl<O: Observer> Run<'_, O> {
             .step(start, dt, (&before, &self.shot.state), impulses);
     }
 
-    /// Contact with two solids until the ball parts from one of them, is lodged, or the shot ends.
-    fn double_contact<A: Solid<f64>, B: Solid<f64>>(
+    /// Contact in the frame of space until the ball flies, goes on in the frame of a contact, is lodged, or the shot
+    /// ends.
+    fn contact_in_space<A: Solid<f64>, B: Solid<f64>>(
         &mut self,
         solids: (&A, &B),
     ) -> Option<Verdict> {
         let params = self.params;
         loop {
             let before = self.shot.state;
+            let (mut after, mut friction) = (before, self.shot.friction);
+            let contact = SpaceContact {
+                touching: self.shot.touching,
+                step_s: self.limits.longest_step_s,
+                share: self.shot.step_share,
+            };
+            self.shot.steps += 1;
+            if self.shot.steps >= self.limits.max_steps {
+                return Some(self.shot.verdict(Ending::Unresolved, false));
+            }
+            let step = space_step(params, solids, &mut after, &mut friction, &contact);
+            let touching = contact.touching;
+            let approach = approach_in_space(params, solids, touching, (&before, &after), step.dt);
+            self.shot.step_share = approach.share;
+            if approach.again {
+                self.shot.step_share *= step.dt / contact.step_s;
+                continue;
+            }
             let shot = &mut self.shot;
-            let longest_s = self.limits.longest_step_s;
-            let step = double_step(
-                params,
-                solids,
-                &mut shot.state,
-                &mut shot.friction,
-                longest_s,
-            );
+            (shot.state, shot.friction) = (after, friction);
             let ending = self.after_step(step.dt, &before, step.impulses);
             let shot = &mut self.shot;
             shot.rolling_time_s =
-                double_contact_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
+                space_contact_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
             if let Some(ending) = ending {
                 let made = shot.crossing.is_made(params, &shot.state);
                 return Some(shot.verdict(ending, made));
@@ -453,34 +536,34 @@ impl<O: Observer> Run<'_, O> {
             if is_lodged(shot.rolling_time_s, self.limits.lodged_after_s) {
                 return Some(shot.verdict(Ending::Lodged, false));
             }
-            shot.steps += 1;
-            if shot.steps >= self.limits.max_steps {
-                return Some(shot.verdict(Ending::Unresolved, false));
-            }
-            let separated = [
-                step.parts[0] || !solids.0.faces(&shot.state),
-                step.parts[1] || !solids.1.faces(&shot.state),
-            ];
-            for (separated, solid) in separated.into_iter().zip([A::ID, B::ID]) {
-                if separated {
+            let acts = [solids.0.acts(&after), solids.1.acts(&after)];
+            let mut now = touching;
+            for solid in SolidId::ALL {
+                let i = solid.index();
+                if touching[i] && (step.parts[i] || !acts[i]) {
+                    now[i] = false;
                     self.part(solid);
                 }
+                if approach.arrived[i] {
+                    now[i] = true;
+                    self.shot.contacts.push(solid);
+                    self.shot.friction[i] = FrictionState::new(params);
+                    let time_s = self.shot.time_s;
+                    self.observer.touch(time_s, solid, &after);
+                }
             }
-            if separated.contains(&true) {
-                self.shot.leave(params, separated);
+            self.shot.go_on_touching(params, now);
+            if self.shot.contact != ContactState::InSpace {
                 return None;
             }
         }
     }
 
-    /// Impulse per unit of mass of the only contact of a step: the change of velocity without gravity.
+    /// Impulse per unit of mass of the only contact of a step: the change of velocity without that by gravity and air.
     fn impulse_since(&self, before: &BallState, dt: f64) -> Vec3<f64> {
         let (v, u) = (self.shot.state.velocity_m_s, before.velocity_m_s);
-        Vec3::new(
-            v.x - u.x,
-            v.y - u.y,
-            v.z - u.z + self.params.ball.gravity * dt,
-        )
+        let free = |v| self.params.ball.free_acceleration(v, before.spin_rad_s);
+        v - u - (free(u) + free(v)) * (0.5 * dt)
     }
 
     fn after_step(&mut self, dt: f64, before: &BallState, impulses: Impulses) -> Option<Ending> {

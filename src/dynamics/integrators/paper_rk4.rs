@@ -8,13 +8,14 @@
 //! the ring's friction, friction only while N > 0, and no contact from behind the board.
 
 use crate::dynamics::end_rules::{ShotEndFlags, ShotLimits, fell_below_ring, flight_ending};
+use crate::dynamics::flight::FlightPath;
 use crate::dynamics::flight::height_crossing::falling_time;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::vector::{RealVector, Vec3};
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{ContactFrame, ContactVector, Solid};
+use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId, StateDerivative};
 
 /// The steps of the paper's method.
@@ -30,14 +31,14 @@ struct ActiveContacts([bool; SolidId::COUNT]);
 
 impl ActiveContacts {
     fn new(params: &ModelParams, state: &BallState) -> Self {
-        let board = state.position_m.x < params.board.touch_x && params.board.faces(state);
-        let [x, y, z] = state.position_m.into();
-        let radius = params.ball.radius;
-        let ring = z.abs() < radius && {
-            let inward = params.ring.radius - (x * x + y * y).sqrt();
-            inward * inward + z * z < radius * radius
-        };
-        Self([board, ring])
+        fn presses<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState) -> bool {
+            let (gap, _) = solid.gap(&params.ball, state);
+            gap < 0.0 && solid.acts(state)
+        }
+        Self([
+            presses(params, &params.board, state),
+            presses(params, &params.ring, state),
+        ])
     }
 
     fn any(self) -> bool {
@@ -55,7 +56,7 @@ fn sliding_response<S: Solid<f64>>(
     solid: &S,
     state: &BallState,
 ) -> (Vec3<f64>, Vec3<f64>) {
-    let (kinematics, frame) = solid.contact(&params.ball, state);
+    let (kinematics, [n, tangent_1, tangent_2]) = solid.contact(&params.ball, state);
     let normal = kinematics.normal_force(solid.material());
     let slip = kinematics.slip();
     let speed = slip.norm();
@@ -64,19 +65,17 @@ fn sliding_response<S: Solid<f64>>(
     let (friction_1, friction_2) = (-friction_per_slip * slip.x, -friction_per_slip * slip.y);
     let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
     (
-        frame.to_space(ContactVector::new(normal, friction_1, friction_2)),
-        frame.to_space(ContactVector::new(
-            0.0,
-            lever_over_inertia * friction_2,
-            -lever_over_inertia * friction_1,
-        )),
+        n * normal + tangent_1 * friction_1 + tangent_2 * friction_2,
+        tangent_1 * (lever_over_inertia * friction_2) - tangent_2 * (lever_over_inertia * friction_1),
     )
 }
 
 /// The right-hand side of Eq. 17, and the solids that press the ball there.
 fn derivative(params: &ModelParams, state: &BallState) -> (StateDerivative, ActiveContacts) {
     let active = ActiveContacts::new(params, state);
-    let mut linear = Vec3::new(0.0, 0.0, -params.ball.gravity);
+    let mut linear = params
+        .ball
+        .free_acceleration(state.velocity_m_s, state.spin_rad_s);
     let mut angular = Vec3::zeros();
     for solid in SolidId::ALL {
         if !active.by(solid) {
@@ -168,14 +167,15 @@ impl<O: Observer> Run<'_, O> {
         let params = self.params;
         let before = self.state;
         let fall = self.falling_time(&before);
+        let path = FlightPath::new(&params.ball, &before);
         let falls = fell_below_ring(params, &next) && !self.active.any();
         if falls && fall <= dt {
-            self.observer.flight(params, self.time_s, fall, &before);
+            self.observer.flight(params, self.time_s, fall, &path);
         } else if self.active.any() {
             self.observer
                 .step(self.time_s, dt, (&before, &next), NO_IMPULSES);
         } else {
-            self.observer.flight(params, self.time_s, dt, &before);
+            self.observer.flight(params, self.time_s, dt, &path);
         }
         let was_below = before.position_m.z < 0.0;
         self.crossing.after_step(params, was_below, &next, true);
@@ -194,7 +194,7 @@ impl<O: Observer> Run<'_, O> {
         }
         // Where the last step crossed z = -R, by the parabola of that step.
         if !active.any() && fall <= dt {
-            self.state = before.after_flight(&params.ball, fall);
+            self.state = path.state_after(fall);
             self.time_s += fall - dt;
         }
         Some(flight_ending(self.rises_above_ring(&before)))
@@ -203,14 +203,14 @@ impl<O: Observer> Run<'_, O> {
     /// Time at which a parabola from a state falls through z = -R, s.
     fn falling_time(&self, state: &BallState) -> f64 {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-        falling_time(self.params, z, vz, -self.params.ball.radius)
+        falling_time(self.params, z, vz, -self.params.ring.reach)
     }
 
     /// Whether a parabola from a state is or rises above z = -R.
     fn rises_above_ring(&self, state: &BallState) -> bool {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
-        let radius = self.params.ball.radius;
-        z > -radius || vz * vz + 2.0 * self.params.ball.gravity * (z + radius) > 0.0
+        let reach = self.params.ring.reach;
+        z > -reach || vz * vz + 2.0 * self.params.ball.gravity * (z + reach) > 0.0
     }
 
     fn report_changes(&mut self, active: ActiveContacts, state: &BallState) {

@@ -1,9 +1,10 @@
-//! The front face of the board: a rectangle in the plane `x = -a`.
+//! The board: a rectangle in the plane `x = -a`, or a plate with rounded edges whose front face lies there.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
-use super::solid::{ContactFrame, Solid, SolidId};
+use super::rectangle::Rectangle;
+use super::solid::{Solid, SolidId};
 use crate::math::real::Real;
 use crate::math::vector::{Vec2, Vec3};
 use crate::model::ball_params::BallParams;
@@ -16,9 +17,14 @@ pub(crate) struct Board<T = f64> {
     pub(crate) touch_x: T,
     /// x of the face, m.
     pub(crate) face_x: T,
+    /// The flat part of the face.
     pub(crate) half_width: T,
     pub(crate) bottom_z: T,
     pub(crate) top_z: T,
+    /// The core of the plate.
+    pub(crate) core: Rectangle<T>,
+    /// The board acts at its edges too; the paper's does not.
+    pub(crate) has_edges: bool,
     pub(crate) material: Material<T>,
 }
 
@@ -31,24 +37,33 @@ impl Board {
             half_width: splat(self.half_width),
             bottom_z: splat(self.bottom_z),
             top_z: splat(self.top_z),
+            core: self.core.map(splat),
+            has_edges: self.has_edges,
             material: self.material.map(splat),
         }
     }
 }
 
-/// The board's frame is that of space.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BoardFrame;
+/// The unit vectors of space.
+#[inline(always)]
+fn unit_vectors<T: Real>(ball: &BallParams<T>) -> [Vec3<T>; 3] {
+    let (zero, one) = (ball.zero(), ball.one());
+    [
+        Vec3::new(one, zero, zero),
+        Vec3::new(zero, one, zero),
+        Vec3::new(zero, zero, one),
+    ]
+}
 
-impl<T: Real> ContactFrame<T> for BoardFrame {
+impl<T: Real> Board<T> {
+    /// Whether the board acts at its edges too, in every lane.
     #[inline(always)]
-    fn to_space(self, vector: ContactVector<T>) -> Vec3<T> {
-        Vec3::new(vector.normal, vector.tangent.x, vector.tangent.y)
+    pub(crate) fn has_edges_mask(&self) -> T::Mask {
+        self.face_x.splat_mask(self.has_edges)
     }
 }
 
 impl<T: Real> Solid<T> for Board<T> {
-    type Frame = BoardFrame;
     const ID: SolidId = SolidId::Board;
     const FLAT: bool = true;
 
@@ -62,19 +77,24 @@ impl<T: Real> Solid<T> for Board<T> {
         &self,
         ball: &BallParams<T>,
         state: &BallState<T>,
-    ) -> (ContactKinematics<T>, BoardFrame) {
+    ) -> (ContactKinematics<T>, [Vec3<T>; 3]) {
+        let axes = unit_vectors(ball);
+        if self.has_edges {
+            return self.core.contact(ball, state, [axes[1], axes[2]]);
+        }
         let (x, v, w) = (state.position_m.x, state.velocity_m_s, state.spin_rad_s);
         let zero = ball.zero();
+        let a = ball.free_acceleration(v, w);
         let kinematics = ContactKinematics {
             compression: self.touch_x - x,
             lever: x - self.face_x,
             velocity: ContactVector::new(v.x, v.y, v.z),
             spin: ContactVector::new(w.x, w.y, w.z),
-            gravity: ContactVector::new(zero, zero, -ball.gravity),
+            gravity: ContactVector::new(a.x, a.y, a.z),
             curvature_1: zero,
             curvature_2: zero,
         };
-        (kinematics, BoardFrame)
+        (kinematics, axes)
     }
 
     #[inline(always)]
@@ -114,7 +134,8 @@ impl<T: Real> Solid<T> for Board<T> {
         let one = ball.one();
         ContactDistances {
             lever: ball.radius - compression,
-            inverse_lever: one,
+            core: one,
+            inverse_core: one,
             axis: one,
             inverse_axis: one,
         }
@@ -134,8 +155,17 @@ impl<T: Real> Solid<T> for Board<T> {
     }
 
     #[inline(always)]
-    fn gravity(&self, ball: &BallParams<T>, _motion: &ContactMotion<T>) -> ContactVector<T> {
-        ContactVector::new(ball.zero(), ball.zero(), -ball.gravity)
+    fn free_acceleration(
+        &self,
+        ball: &BallParams<T>,
+        motion: &ContactMotion<T>,
+    ) -> ContactVector<T> {
+        let gravity = ContactVector::new(ball.zero(), ball.zero(), -ball.gravity);
+        if ball.has_air {
+            gravity + motion.air_acceleration(ball)
+        } else {
+            gravity
+        }
     }
 
     #[inline(always)]
@@ -151,15 +181,28 @@ impl<T: Real> Solid<T> for Board<T> {
 
     #[inline(always)]
     fn gap(&self, _ball: &BallParams<T>, state: &BallState<T>) -> (T, T) {
-        (state.position_m.x - self.touch_x, state.velocity_m_s.x)
+        if self.has_edges {
+            self.core.gap(state)
+        } else {
+            (state.position_m.x - self.touch_x, state.velocity_m_s.x)
+        }
     }
 
     #[inline(always)]
     fn rebase(&self, _motion: &mut ContactMotion<T>) {}
 
-    /// Whether the centre is in front of the rectangle.
     #[inline(always)]
-    fn faces(&self, state: &BallState<T>) -> T::Mask {
+    fn acts(&self, state: &BallState<T>) -> T::Mask {
+        if self.has_edges {
+            self.face_x.splat_mask(true)
+        } else {
+            self.is_in_frame(state)
+        }
+    }
+
+    /// Whether the centre is in front of the flat part.
+    #[inline(always)]
+    fn is_in_frame(&self, state: &BallState<T>) -> T::Mask {
         let p = state.position_m;
         self.face_x.lt(p.x)
             & p.y.abs().lt(self.half_width)

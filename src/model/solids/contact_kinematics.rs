@@ -35,6 +35,18 @@ impl<T: Real> ContactVector<T> {
     }
 }
 
+impl<T: Real> std::ops::Add for ContactVector<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            normal: self.normal + other.normal,
+            tangent: self.tangent + other.tangent,
+        }
+    }
+}
+
 /// Position and motion of the ball relative to the nearest point of a solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactKinematics<T = f64> {
@@ -46,7 +58,7 @@ pub(crate) struct ContactKinematics<T = f64> {
     pub(crate) velocity: ContactVector<T>,
     /// Angular velocity, rad/s.
     pub(crate) spin: ContactVector<T>,
-    /// Gravity, m/s^2.
+    /// The acceleration by gravity and air, m/s^2.
     pub(crate) gravity: ContactVector<T>,
     /// Curvature kappa_1 of the path of the normal along 1, 1/m.
     pub(crate) curvature_1: T,
@@ -55,6 +67,20 @@ pub(crate) struct ContactKinematics<T = f64> {
 }
 
 impl<T: Real> ContactKinematics<T> {
+    /// `self` where `condition` holds, `other` elsewhere.
+    #[inline(always)]
+    pub(super) fn select(self, condition: T::Mask, other: Self) -> Self {
+        Self {
+            compression: self.compression.select(condition, other.compression),
+            lever: self.lever.select(condition, other.lever),
+            velocity: self.velocity.select(condition, other.velocity),
+            spin: self.spin.select(condition, other.spin),
+            gravity: self.gravity.select(condition, other.gravity),
+            curvature_1: self.curvature_1.select(condition, other.curvature_1),
+            curvature_2: self.curvature_2.select(condition, other.curvature_2),
+        }
+    }
+
     /// Velocity of the contact point along the surface (Eqs. 4 and 14).
     #[inline(always)]
     pub(crate) fn slip(&self) -> Vec2<T> {

@@ -2,7 +2,8 @@
 
 use super::contact_kinematics::ContactVector;
 use crate::math::real::Real;
-use crate::math::vector::Vec2;
+use crate::math::vector::{Vec2, Vec3};
+use crate::model::ball_params::BallParams;
 
 /// Position and motion of the ball in the frame `(n, 1, 2)` of a contact.
 #[derive(Clone, Copy, Debug)]
@@ -100,6 +101,15 @@ impl<T: Real> ContactMotion<T> {
         self.place[1].is_negative()
     }
 
+    /// The acceleration by drag and lift, in the frame.
+    #[inline(always)]
+    pub(super) fn air_acceleration(&self, ball: &BallParams<T>) -> ContactVector<T> {
+        let in_frame =
+            |v: &ContactVector<T>| Vec3::new(v.normal, v.tangent.x, v.tangent.y);
+        let a = ball.air_acceleration(in_frame(&self.velocity), in_frame(&self.spin));
+        ContactVector::new(a.x, a.y, a.z)
+    }
+
     /// Velocity of the contact point along the surface (Eqs. 4 and 14), for the lever `lever`.
     #[inline(always)]
     pub(crate) fn slip(&self, lever: T) -> Vec2<T> {
@@ -113,8 +123,9 @@ impl<T: Real> ContactMotion<T> {
 pub(crate) struct ContactDistances<T> {
     /// Distance R - u from the centre to the contact point, m.
     pub(crate) lever: T,
-    /// 1/lever; on a flat solid not used.
-    pub(crate) inverse_lever: T,
+    /// Distance from the core, m, and its inverse; on a flat solid not used.
+    pub(crate) core: T,
+    pub(crate) inverse_core: T,
     /// Distance from the axis of the solid; on a flat solid not used.
     pub(crate) axis: T,
     pub(crate) inverse_axis: T,

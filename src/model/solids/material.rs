@@ -26,3 +26,17 @@ impl Material<f64> {
         }
     }
 }
+
+impl<T: Real> Material<T> {
+    /// The same where the ball touches the solid; elsewhere no force.
+    #[inline(always)]
+    pub(crate) fn where_touching(&self, touching: T::Mask) -> Self {
+        let zero = self.stiffness.zero();
+        Self {
+            stiffness: self.stiffness.select(touching, zero),
+            damping: self.damping.select(touching, zero),
+            relaxation_time: self.relaxation_time,
+            friction_coefficient: self.friction_coefficient.select(touching, zero),
+        }
+    }
+}

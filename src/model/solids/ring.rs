@@ -1,11 +1,12 @@
-//! The ring: a circle of radius R_H about the origin, without thickness.
+//! The hoop: a rod around a circle of radius R_H about the origin, and the bracket between it and the board.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
-use super::solid::{ContactFrame, Solid, SolidId};
+use super::rectangle::Rectangle;
+use super::solid::{Solid, SolidId};
 use crate::math::real::{Mask, Real};
-use crate::math::vector::{Vec2, Vec3};
+use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::ball_params::BallParams;
 use crate::model::ball_state::BallState;
 
@@ -14,6 +15,13 @@ use crate::model::ball_state::BallState;
 pub(crate) struct Ring<T = f64> {
     /// Radius R_H of the circle, m.
     pub(crate) radius: T,
+    /// Radius of the rod of ring and bracket, m.
+    pub(crate) tube_radius: T,
+    /// Distance of the centre of a touching ball from the core, m.
+    pub(crate) reach: T,
+    /// The core of the bracket.
+    pub(crate) bracket: Rectangle<T>,
+    pub(crate) has_bracket: bool,
     pub(crate) material: Material<T>,
 }
 
@@ -25,6 +33,10 @@ impl Ring {
     pub(crate) fn map<T: Real>(&self, splat: &impl Fn(f64) -> T) -> Ring<T> {
         Ring {
             radius: splat(self.radius),
+            tube_radius: splat(self.tube_radius),
+            reach: splat(self.reach),
+            bracket: self.bracket.map(splat),
+            has_bracket: self.has_bracket,
             material: self.material.map(splat),
         }
     }
@@ -50,9 +62,8 @@ impl<T: Real> RingFrame<T> {
             v.y * self.cos_theta - v.x * self.sin_theta,
         )
     }
-}
 
-impl<T: Real> ContactFrame<T> for RingFrame<T> {
+    /// x, y, z components of a vector given along (u_n, u_phi, u_theta).
     #[inline(always)]
     fn to_space(self, vector: ContactVector<T>) -> Vec3<T> {
         let (along_phi, along_theta) = (vector.tangent.x, vector.tangent.y);
@@ -98,29 +109,80 @@ fn theta<T: Real>(motion: &ContactMotion<T>) -> [T; 2] {
 }
 
 impl<T: Real> Ring<T> {
-    /// The frame of a ball whose centre is at `position`, its distance from the ring, and the inverses of its
-    /// distances from the hoop's axis and from the ring.
+    /// The frame of a ball whose centre is at `position`, its distance from the circle, and the inverses of its
+    /// distances from the hoop's axis and from the circle.
     #[inline(always)]
     fn frame_at(&self, ball: &BallParams<T>, position: Vec3<T>) -> (RingFrame<T>, T, [T; 2]) {
         let [x, y, z] = position.into();
         let axis = (x.squared() + y.squared()).sqrt();
         let inward = self.radius - axis;
-        let lever = (inward.squared() + z.squared()).sqrt();
-        // 1/axis and 1/lever with a single division.
-        let per_both = ball.one() / (axis * lever);
-        let (per_axis, per_lever) = (per_both * lever, per_both * axis);
+        let core = (inward.squared() + z.squared()).sqrt();
+        // 1/axis and 1/core with a single division.
+        let per_both = ball.one() / (axis * core);
+        let (per_axis, per_core) = (per_both * core, per_both * axis);
         let frame = RingFrame {
             cos_theta: x * per_axis,
             sin_theta: y * per_axis,
-            cos_phi: inward * per_lever,
-            sin_phi: z * per_lever,
+            cos_phi: inward * per_core,
+            sin_phi: z * per_core,
         };
-        (frame, lever, [per_axis, per_lever])
+        (frame, core, [per_axis, per_core])
+    }
+
+    /// Position and motion of the ball relative to the circle.
+    #[inline(always)]
+    fn contact_with_circle(
+        &self,
+        ball: &BallParams<T>,
+        state: &BallState<T>,
+    ) -> (ContactKinematics<T>, [Vec3<T>; 3]) {
+        let (zero, one) = (ball.zero(), ball.one());
+        let (frame, core, [per_axis, per_core]) = self.frame_at(ball, state.position_m);
+        let gravity = ContactVector::new(
+            -ball.gravity * frame.sin_phi,
+            -ball.gravity * frame.cos_phi,
+            zero,
+        );
+        let kinematics = ContactKinematics {
+            compression: self.reach - core,
+            lever: core - self.tube_radius,
+            velocity: frame.to_frame(state.velocity_m_s),
+            spin: frame.to_frame(state.spin_rad_s),
+            gravity: if ball.has_air {
+                let air = ball.air_acceleration(state.velocity_m_s, state.spin_rad_s);
+                gravity + frame.to_frame(air)
+            } else {
+                gravity
+            },
+            curvature_1: per_core,
+            curvature_2: -frame.cos_phi * per_axis,
+        };
+        let axes = [
+            frame.to_space(ContactVector::new(one, zero, zero)),
+            frame.to_space(ContactVector::new(zero, one, zero)),
+            frame.to_space(ContactVector::new(zero, zero, one)),
+        ];
+        (kinematics, axes)
+    }
+
+    /// The gap between ball and circle, and its rate.
+    #[inline(always)]
+    fn gap_to_circle(&self, ball: &BallParams<T>, state: &BallState<T>) -> (T, T) {
+        let (frame, core, _) = self.frame_at(ball, state.position_m);
+        let velocity = frame.to_frame(state.velocity_m_s);
+        (core - self.reach, velocity.normal)
+    }
+
+    /// Whether the circle is nearer than the bracket.
+    #[inline(always)]
+    fn circle_is_nearer(&self, position: Vec3<T>) -> T::Mask {
+        let axis = (position.x.squared() + position.y.squared()).sqrt();
+        let circle = (self.radius - axis).squared() + position.z.squared();
+        circle.le(self.bracket.offset(position).norm_squared())
     }
 }
 
 impl<T: Real> Solid<T> for Ring<T> {
-    type Frame = RingFrame<T>;
     const ID: SolidId = SolidId::Ring;
     const FLAT: bool = false;
 
@@ -134,29 +196,32 @@ impl<T: Real> Solid<T> for Ring<T> {
         &self,
         ball: &BallParams<T>,
         state: &BallState<T>,
-    ) -> (ContactKinematics<T>, RingFrame<T>) {
-        let (frame, lever, [per_axis, per_lever]) = self.frame_at(ball, state.position_m);
-        let kinematics = ContactKinematics {
-            compression: ball.radius - lever,
-            lever,
-            velocity: frame.to_frame(state.velocity_m_s),
-            spin: frame.to_frame(state.spin_rad_s),
-            gravity: ContactVector::new(
-                -ball.gravity * frame.sin_phi,
-                -ball.gravity * frame.cos_phi,
-                ball.zero(),
-            ),
-            curvature_1: per_lever,
-            curvature_2: -frame.cos_phi * per_axis,
-        };
-        (kinematics, frame)
+    ) -> (ContactKinematics<T>, [Vec3<T>; 3]) {
+        let (circle, axes) = self.contact_with_circle(ball, state);
+        if !self.has_bracket {
+            return (circle, axes);
+        }
+        let on_circle = self.circle_is_nearer(state.position_m);
+        if on_circle.all() {
+            return (circle, axes);
+        }
+        let (zero, one) = (ball.zero(), ball.one());
+        let in_plane = [Vec3::new(one, zero, zero), Vec3::new(zero, one, zero)];
+        let (bracket, bracket_axes) = self.bracket.contact(ball, state, in_plane);
+        let [n, tangent_1, tangent_2] = axes;
+        let axes = [
+            n.select(on_circle, bracket_axes[0]),
+            tangent_1.select(on_circle, bracket_axes[1]),
+            tangent_2.select(on_circle, bracket_axes[2]),
+        ];
+        (circle.select(on_circle, bracket), axes)
     }
 
     #[inline(always)]
     fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T> {
-        let (frame, lever, _) = self.frame_at(ball, state.position_m);
+        let (frame, core, _) = self.frame_at(ball, state.position_m);
         ContactMotion {
-            compression: ball.radius - lever,
+            compression: self.reach - core,
             velocity: frame.to_frame(state.velocity_m_s),
             spin: frame.to_frame(state.spin_rad_s),
             place: [frame.cos_phi, frame.sin_phi, ball.zero()],
@@ -165,7 +230,7 @@ impl<T: Real> Solid<T> for Ring<T> {
     }
 
     #[inline(always)]
-    fn to_space(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
+    fn to_space(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
         let [cos_phi, sin_phi, _] = motion.place;
         let scale = unit_scale(cos_phi, sin_phi);
         let (cos_phi, sin_phi) = (cos_phi * scale, sin_phi * scale);
@@ -176,13 +241,13 @@ impl<T: Real> Solid<T> for Ring<T> {
             cos_phi,
             sin_phi,
         };
-        let lever = ball.radius - motion.compression;
-        let axis = self.radius - lever * cos_phi;
+        let core = self.reach - motion.compression;
+        let axis = self.radius - core * cos_phi;
         BallState {
             position_m: Vec3::new(
                 axis * frame.cos_theta,
                 axis * frame.sin_theta,
-                lever * sin_phi,
+                core * sin_phi,
             ),
             velocity_m_s: frame.to_space(motion.velocity),
             spin_rad_s: frame.to_space(motion.spin),
@@ -196,14 +261,15 @@ impl<T: Real> Solid<T> for Ring<T> {
         compression: T,
         place: &[T; 3],
     ) -> ContactDistances<T> {
-        let lever = ball.radius - compression;
-        let axis = self.radius - lever * place[0];
-        let per_both = ball.one() / (lever * axis);
+        let core = self.reach - compression;
+        let axis = self.radius - core * place[0];
+        let per_both = ball.one() / (core * axis);
         ContactDistances {
-            lever,
-            inverse_lever: per_both * axis,
+            lever: core - self.tube_radius,
+            core,
+            inverse_core: per_both * axis,
             axis,
-            inverse_axis: per_both * lever,
+            inverse_axis: per_both * core,
         }
     }
 
@@ -217,19 +283,28 @@ impl<T: Real> Solid<T> for Ring<T> {
         let v = motion.velocity.tangent;
         let about_axis = v.y * distances.inverse_axis;
         FrameTurn {
-            turn: Vec2::new(v.x * distances.inverse_lever, -(cos_phi * about_axis)),
+            turn: Vec2::new(v.x * distances.inverse_core, -(cos_phi * about_axis)),
             torsion: sin_phi * about_axis,
         }
     }
 
     #[inline(always)]
-    fn gravity(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> ContactVector<T> {
+    fn free_acceleration(
+        &self,
+        ball: &BallParams<T>,
+        motion: &ContactMotion<T>,
+    ) -> ContactVector<T> {
         let [cos_phi, sin_phi, _] = motion.place;
-        ContactVector::new(
+        let gravity = ContactVector::new(
             -(ball.gravity * sin_phi),
             -(ball.gravity * cos_phi),
             ball.zero(),
-        )
+        );
+        if ball.has_air {
+            gravity + motion.air_acceleration(ball)
+        } else {
+            gravity
+        }
     }
 
     #[inline(always)]
@@ -249,9 +324,16 @@ impl<T: Real> Solid<T> for Ring<T> {
 
     #[inline(always)]
     fn gap(&self, ball: &BallParams<T>, state: &BallState<T>) -> (T, T) {
-        let (frame, lever, _) = self.frame_at(ball, state.position_m);
-        let velocity = frame.to_frame(state.velocity_m_s);
-        (lever - ball.radius, velocity.normal)
+        let (gap, rate) = self.gap_to_circle(ball, state);
+        if !self.has_bracket {
+            return (gap, rate);
+        }
+        let (to_bracket, bracket_rate) = self.bracket.gap(state);
+        let on_circle = gap.le(to_bracket);
+        (
+            gap.select(on_circle, to_bracket),
+            rate.select(on_circle, bracket_rate),
+        )
     }
 
     #[inline(always)]
@@ -275,9 +357,17 @@ impl<T: Real> Solid<T> for Ring<T> {
         ];
     }
 
-    /// The ring is closed: every ball has a nearest point on it.
     #[inline(always)]
-    fn faces(&self, _state: &BallState<T>) -> T::Mask {
+    fn acts(&self, _state: &BallState<T>) -> T::Mask {
         self.radius.splat_mask(true)
+    }
+
+    #[inline(always)]
+    fn is_in_frame(&self, state: &BallState<T>) -> T::Mask {
+        if self.has_bracket {
+            self.circle_is_nearer(state.position_m)
+        } else {
+            self.radius.splat_mask(true)
+        }
     }
 }

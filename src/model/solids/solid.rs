@@ -15,7 +15,7 @@ use serde::Serialize;
 pub enum SolidId {
     /// The backboard.
     Board,
-    /// The ring.
+    /// The ring, with the bracket that holds it.
     Ring,
 }
 
@@ -40,16 +40,8 @@ impl SolidId {
     }
 }
 
-/// Directions of a contact frame in space.
-pub(crate) trait ContactFrame<T: Real>: Copy {
-    /// x, y, z components of a vector given along (n, 1, 2).
-    fn to_space(self, vector: ContactVector<T>) -> Vec3<T>;
-}
-
 /// A rigid body that the ball can touch.
 pub(crate) trait Solid<T: Real>: Copy {
-    /// Directions of the contact frame in space.
-    type Frame: ContactFrame<T>;
     /// Its name.
     const ID: SolidId;
     /// Whether the frame of the contact never turns.
@@ -59,12 +51,12 @@ pub(crate) trait Solid<T: Real>: Copy {
     fn material(&self) -> &Material<T>;
 
     /// Position and motion of the ball relative to the nearest point of the solid, in the frame of the
-    /// contact.
+    /// contact, and the directions (n, 1, 2) of that frame in space.
     fn contact(
         &self,
         ball: &BallParams<T>,
         state: &BallState<T>,
-    ) -> (ContactKinematics<T>, Self::Frame);
+    ) -> (ContactKinematics<T>, [Vec3<T>; 3]);
 
     /// The ball in the frame of the contact.
     fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T>;
@@ -87,8 +79,12 @@ pub(crate) trait Solid<T: Real>: Copy {
         distances: &ContactDistances<T>,
     ) -> FrameTurn<T>;
 
-    /// Gravity in the frame.
-    fn gravity(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> ContactVector<T>;
+    /// The acceleration by gravity and air, in the frame.
+    fn free_acceleration(
+        &self,
+        ball: &BallParams<T>,
+        motion: &ContactMotion<T>,
+    ) -> ContactVector<T>;
 
     /// Rates of [`ContactMotion::place`].
     fn place_rates(
@@ -104,9 +100,12 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// Keeps the values of a long contact within the range of their formulas.
     fn rebase(&self, motion: &mut ContactMotion<T>);
 
-    /// Whether the nearest point lies on the solid: a ball whose centre is beside the board's rectangle
-    /// does not touch it.
-    fn faces(&self, state: &BallState<T>) -> T::Mask;
+    /// Whether the solid acts on a ball there: the paper's board does so only in front of its rectangle.
+    fn acts(&self, state: &BallState<T>) -> T::Mask;
+
+    /// Whether the nearest point lies on that part of the solid which the frame of [`ContactMotion`] describes: the
+    /// face of the board, or the ring's circle.
+    fn is_in_frame(&self, state: &BallState<T>) -> T::Mask;
 }
 
 /// Gap at which a ball counts as touching at its release, and heights as equal, m.

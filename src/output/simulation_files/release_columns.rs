@@ -193,7 +193,7 @@ impl ReleaseColumns {
         Ok(Release {
             distance_m,
             court_angle_rad: court,
-            height_above_hoop_m: height - physics.hoop_height_m,
+            height_above_hoop_m: height - physics.hoop_plane_height_m(),
             speed_m_s: speed,
             pitch_rad,
             polar_rad,

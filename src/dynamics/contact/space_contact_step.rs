@@ -1,13 +1,13 @@
-//! Contact with two solids at once, in long steps.
+//! Contact in the frame of space, in long steps: with two solids at once, or with any part of one.
 //!
 //! Both normal forces obey linear equations as long as their directions and what does not depend on them are
 //! constant ([`super::coupled_oscillators`]). The motion with these forces is the base of a step. What they leave
-//! out (the turning of the ring's frame, the direction of the slip, the friction of rolling) is the remainder: an
-//! acceleration, evaluated in the middle and at the end of the step, that acts on the base as two kicks by
-//! Simpson's rule. The base answers to the first of them through the same linear equations.
+//! out (the turning of the frames, the direction of the slip, the friction of rolling, the change of drag) is the
+//! remainder: an acceleration, evaluated in the middle and at the end of the step, that acts on the base as two kicks
+//! by Simpson's rule. The base answers to the first of them through the same linear equations.
 //!
 //! A step ends at the first event of either contact: its slip or its roll ends, its force reaches zero, the ball
-//! parts.
+//! parts. A solid that the ball does not touch has no stiffness, no damping and no friction.
 
 use super::contact_pair::{ContactPair, FIRST, Response, SECOND, for_both};
 use super::coupled_oscillators::{CoupledOscillators, CoupledStart, SlipSeries};
@@ -25,7 +25,7 @@ const SLIP_REMAINDER: (f64, f64) = (0.2, 1e-3);
 const SHORTEST_STEP: f64 = 2e-4;
 
 /// The result of one step.
-pub(crate) struct DoubleContactStep<T: Real> {
+pub(crate) struct SpaceContactStep<T: Real> {
     /// Length of the step, s.
     pub(crate) dt: T,
     /// Whether the ball leaves each solid at the end of the step.
@@ -50,7 +50,9 @@ struct FrictionMode<T: Real> {
 }
 
 /// The forces of a step as if their directions did not change.
-struct BaseForces<T> {
+struct BaseForces<T: Real> {
+    /// The acceleration by gravity and air.
+    free: Vec3<T>,
     oscillators: CoupledOscillators<T>,
     /// What a unit of each normal force does, together with the friction that slides.
     per_force: [Response<T>; 2],
@@ -70,45 +72,69 @@ struct StepEnd<T: Real> {
     ends_slip: [T::Mask; 2],
 }
 
-/// Advances a ball in contact with two solids by one step of at most `step_s`.
+/// What a ball in contact is on, for how long a step.
+#[derive(Clone, Copy)]
+pub(crate) struct SpaceContact<T: Real> {
+    /// Whether the ball touches each solid.
+    pub(crate) touching: [T::Mask; 2],
+    /// The longest step, s, and the share of it that this one takes at most.
+    pub(crate) step_s: T,
+    pub(crate) share: T,
+}
+
+/// Advances a ball in contact by one step.
 #[inline(always)]
 pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,
     solids: (&A, &B),
     state: &mut BallState<T>,
     friction: &mut [FrictionState<T>; 2],
-    step_s: T,
-) -> DoubleContactStep<T> {
-    let mut pair = ContactPair::new(params, solids, state);
+    contact: &SpaceContact<T>,
+) -> SpaceContactStep<T> {
+    let SpaceContact {
+        touching, step_s, ..
+    } = *contact;
+    let mut pair = ContactPair::new(params, solids, state, touching);
     // Slips that have ended are removed by friction's own impulses.
     let at_zero_slip = for_both!(i => {
         let slip = pair.kinematics[i].slip();
-        friction[i].rolling | slip.norm_squared().le(friction[i].slip_tolerance.squared())
+        let is_small = slip.norm_squared().le(friction[i].slip_tolerance.squared());
+        touching[i] & (friction[i].rolling | is_small)
     });
     let mut impulses = [Vec3::splat(params.zero()); 2];
     if (at_zero_slip[FIRST] | at_zero_slip[SECOND]).any() {
         impulses = remove_slips(params, state, &mut pair, at_zero_slip);
     }
     let mode = FrictionMode::new(params, &pair, friction, at_zero_slip, step_s);
-    let base = BaseForces::new(params, &pair, &mode, step_s);
-    let end = first_event(params, &pair, &mode, &base);
+    let free = params
+        .ball
+        .free_acceleration(state.velocity_m_s, state.spin_rad_s);
+    let base = BaseForces::new(params, &pair, &mode, free, step_s);
+    let end = first_event(params, &pair, &mode, &base, contact);
     let (dt, half) = (end.tau * step_s, end.tau * 0.5);
 
     // The remainder in the middle and, with twice that of the middle (Kutta's third-order rule), at the end.
-    let middle = base.advance(params, state, half);
-    let at_middle = remainder(params, solids, &middle, &mode, &base, half);
-    let rest = sum(at_middle[FIRST], at_middle[SECOND]);
-    let mut next = base.advance(params, state, end.tau);
+    let middle = base.advance(state, half);
+    let at_middle = remainder(params, (solids, touching), &middle, &mode, &base, half);
+    let mut rest = sum(at_middle[FIRST], at_middle[SECOND]);
+    if params.ball.has_air {
+        rest.0 = rest.0 + base.change_of_free_acceleration(params, &middle);
+    }
+    let mut next = base.advance(state, end.tau);
     let mut last = next;
     last.position_m = last.position_m.add_scaled(rest.0, dt * dt * (1.0 / 3.0));
     kick(&mut last, rest, dt * 2.0);
-    let at_end = remainder(params, solids, &last, &mode, &base, end.tau);
+    let at_end = remainder(params, (solids, touching), &last, &mode, &base, end.tau);
 
     // The base, the kick in the middle with the forces that it causes, and the kick at the end.
     let (weight_middle, weight_end) = (dt * (4.0 / 6.0), dt * (1.0 / 6.0));
     next.position_m = next.position_m.add_scaled(rest.0, weight_middle * dt * 0.5);
     kick(&mut next, rest, weight_middle);
     let caused = base.after_kick(params, &pair, rest.0, weight_middle);
+    if params.ball.has_air {
+        let change = base.change_of_free_acceleration(params, &last);
+        next.velocity_m_s = next.velocity_m_s.add_scaled(change, weight_end);
+    }
     for i in [FIRST, SECOND] {
         let (impulse, path) = caused.impulse_and_path(i, half);
         let (linear, angular) = base.per_force[i];
@@ -141,7 +167,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
             slip_tolerance: left.select(end.ends_slip[i], params.splat(SLIP_TOLERANCE_M_S)),
         };
     }
-    DoubleContactStep {
+    SpaceContactStep {
         dt,
         parts: end.parts,
         impulses,
@@ -220,6 +246,7 @@ impl<T: Real> BaseForces<T> {
         params: &ModelParams<T>,
         pair: &ContactPair<T>,
         mode: &FrictionMode<T>,
+        free: Vec3<T>,
         step_s: T,
     ) -> Self {
         let zero = params.zero();
@@ -247,6 +274,7 @@ impl<T: Real> BaseForces<T> {
             }),
         };
         Self {
+            free,
             oscillators: CoupledOscillators::new(step_s, &start),
             per_force,
             sliding,
@@ -256,16 +284,15 @@ impl<T: Real> BaseForces<T> {
 
     /// The state at `tau` with these forces.
     #[inline(always)]
-    fn advance(&self, params: &ModelParams<T>, from: &BallState<T>, tau: T) -> BallState<T> {
+    fn advance(&self, from: &BallState<T>, tau: T) -> BallState<T> {
         let dt = tau * self.oscillators.step_s();
         let half_square = dt * dt * 0.5;
-        let gravity = Vec3::new(params.zero(), params.zero(), -params.ball.gravity);
         let mut state = BallState {
             position_m: from
                 .position_m
                 .add_scaled(from.velocity_m_s, dt)
-                .add_scaled(gravity, half_square),
-            velocity_m_s: from.velocity_m_s.add_scaled(gravity, dt),
+                .add_scaled(self.free, half_square),
+            velocity_m_s: from.velocity_m_s.add_scaled(self.free, dt),
             spin_rad_s: from.spin_rad_s,
         };
         for i in [FIRST, SECOND] {
@@ -285,6 +312,19 @@ impl<T: Real> BaseForces<T> {
                 .add_scaled(rolling.1, dt);
         }
         state
+    }
+
+    /// How much the acceleration by gravity and air has changed since the start of the step.
+    #[inline(always)]
+    fn change_of_free_acceleration(
+        &self,
+        params: &ModelParams<T>,
+        state: &BallState<T>,
+    ) -> Vec3<T> {
+        params
+            .ball
+            .free_acceleration(state.velocity_m_s, state.spin_rad_s)
+            - self.free
     }
 
     /// The normal forces that follow from a kick of `linear` times `dt`.
@@ -315,11 +355,12 @@ fn first_event<T: Real>(
     pair: &ContactPair<T>,
     mode: &FrictionMode<T>,
     base: &BaseForces<T>,
+    contact: &SpaceContact<T>,
 ) -> StepEnd<T> {
     let one = params.one();
     let oscillators = &base.oscillators;
     let parting = for_both!(i => oscillators.compression_series(i));
-    let parts = for_both!(i => parting[i].first_root(one, params.splat_mask(true)));
+    let parts = for_both!(i => parting[i].first_root(one, contact.touching[i]));
     let until = Real::min(parts[FIRST].1, parts[SECOND].1);
     // An outgoing ball reaches zero force this much before zero compression.
     let relaxation = for_both!(i => pair.materials[i].relaxation_time / oscillators.step_s());
@@ -368,13 +409,14 @@ fn first_event<T: Real>(
             );
         refined = earliest.refined_root(tau).select(any, tau);
     }
+    let cut = contact.share.lt(refined);
     StepEnd {
-        tau: Real::max(refined, one * SHORTEST_STEP),
-        parts: [first_parts, second_parts],
+        tau: Real::max(contact.share.select(cut, refined), one * SHORTEST_STEP),
+        parts: [first_parts & !cut, second_parts & !cut],
         zero_force,
         ends_slip: [
-            first_changes & !mode.rolling[FIRST],
-            second_changes & !mode.rolling[SECOND],
+            first_changes & !mode.rolling[FIRST] & !cut,
+            second_changes & !mode.rolling[SECOND] & !cut,
         ],
     }
 }
@@ -408,13 +450,13 @@ fn kick<T: Real>(state: &mut BallState<T>, (linear, angular): Response<T>, dt: T
 #[inline(always)]
 fn remainder<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,
-    solids: (&A, &B),
+    (solids, touching): ((&A, &B), [T::Mask; 2]),
     state: &BallState<T>,
     mode: &FrictionMode<T>,
     base: &BaseForces<T>,
     tau: T,
 ) -> [Response<T>; 2] {
-    let pair = ContactPair::new(params, solids, state);
+    let pair = ContactPair::new(params, solids, state, touching);
     let sliding = for_both!(i => {
         let (slip, initial) = (pair.kinematics[i].slip(), mode.directions[i]);
         let threshold = mode.slip_speeds[i] * DIRECTION_SLIP_FRACTION;

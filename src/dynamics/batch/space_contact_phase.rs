@@ -1,0 +1,202 @@
+//! The contacts of a batch in the frame of space: on a bracket, on an edge, on board and ring at once.
+
+use super::batch_state::Batch;
+use super::lane_block::{LaneBlock, bit, lanes_in};
+use super::workspace::Phase;
+use crate::dynamics::contact::friction::FrictionState;
+use crate::dynamics::contact::other_solid_touch::approach_in_space;
+use crate::dynamics::contact::space_contact_step::{self, SpaceContact};
+use crate::dynamics::end_rules::is_lodged;
+use crate::dynamics::outcome::Ending;
+use crate::math::real::{LaneBits, SimdReal};
+use crate::model::SolidId;
+use crate::model::constants_per_ball_mass::ModelParams;
+use crate::model::solids::Solid;
+use fearless_simd::Simd;
+
+/// Steps the shots in contact in the frame of space until they fly, go on in the frame of a contact, or end.
+///
+/// The phases stand in separate modules, so that the compiler translates them in parallel.
+#[inline(never)]
+pub(super) fn in_space<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+where
+    S: Simd,
+    T: SimdReal<Simd = S, Element = f64>,
+{
+    batch.simd.vectorize(
+        #[inline(always)]
+        || batch.contacts_in_space::<T>(),
+    );
+}
+
+/// What happened in the lanes of a step.
+struct StepResult {
+    /// The ball no longer touches, or has arrived at, each solid.
+    parts: [LaneBits; SolidId::COUNT],
+    arrived: [LaneBits; SolidId::COUNT],
+    /// On one solid, in the part that a frame describes.
+    enters_frame: LaneBits,
+    /// The flags of the rules that end a shot.
+    ends: [LaneBits; 3],
+    made: LaneBits,
+    lodged: LaneBits,
+}
+
+impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+    #[inline(always)]
+    fn contacts_in_space<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
+        let params = &self.lane_params::<T>();
+        let phase = Phase::InSpace;
+        let mut block = LaneBlock::new();
+        loop {
+            self.refill::<T>(&mut block, phase);
+            if block.occupied() == 0 {
+                return;
+            }
+            if self.should_suspend::<T>(&block, phase) {
+                self.suspend_contacts_in_space(&mut block);
+                return;
+            }
+            let given_up = block.count_step(self.limits.max_steps);
+            let result = self.step_in_space(params, &mut block, given_up);
+            self.finish_contacts_in_space(&mut block, &result, given_up);
+        }
+    }
+
+    /// Steps every lane; those of `given_up` stay where they are.
+    #[inline(always)]
+    fn step_in_space<T: SimdReal<Simd = S, Element = f64>>(
+        &self,
+        params: &ModelParams<T>,
+        block: &mut LaneBlock,
+        given_up: LaneBits,
+    ) -> StepResult {
+        let simd = self.simd;
+        let solids = (&params.board, &params.ring);
+        let mut shots = block.load::<T>(simd);
+        let before = shots.state;
+        let friction = [
+            block.load_friction(simd, SolidId::Board),
+            block.load_friction(simd, SolidId::Ring),
+        ];
+        let touching = block.load_touching::<T>(simd);
+        let contact = SpaceContact {
+            touching,
+            step_s: params.splat(self.limits.longest_step_s),
+            share: block.load_step_shares(simd),
+        };
+        let mut next_friction = friction;
+        let step = space_contact_step::step(
+            params,
+            solids,
+            &mut shots.state,
+            &mut next_friction,
+            &contact,
+        );
+        let states = (&before, &shots.state);
+        let approach = approach_in_space(params, solids, touching, states, step.dt);
+        let given_up = T::mask_from_bits(simd, given_up);
+        let stays = approach.again | given_up;
+        let share = approach.share * (step.dt / contact.step_s);
+        block.store_step_shares(share.select(approach.again, params.one()));
+        shots.state = before.select(stays, shots.state);
+        for i in [0, 1] {
+            next_friction[i] = FrictionState::select(friction[i], stays, next_friction[i]);
+        }
+        let before_s = block.load_rolling_times(simd);
+        let rolling_times = space_contact_step::rolling_time(&next_friction, before_s, step.dt);
+        let rolling_times = before_s.select(stays, rolling_times);
+        let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & !stays;
+        let end = shots.after_step(
+            params,
+            &before,
+            (step.dt, !stays),
+            self.limits.time_limit_s,
+        );
+        block.store(&shots);
+        block.store_rolling_times(rolling_times);
+        for solid in SolidId::ALL {
+            block.store_friction(solid, &next_friction[solid.index()]);
+        }
+        let acts = [solids.0.acts(&shots.state), solids.1.acts(&shots.state)];
+        let parts = [
+            touching[0] & (step.parts[0] | !acts[0]) & !stays,
+            touching[1] & (step.parts[1] | !acts[1]) & !stays,
+        ];
+        let on = [
+            (touching[0] & !parts[0]) | approach.arrived[0],
+            (touching[1] & !parts[1]) | approach.arrived[1],
+        ];
+        let enters_frame = (on[0] & !on[1] & solids.0.is_in_frame(&shots.state))
+            | (on[1] & !on[0] & solids.1.is_in_frame(&shots.state));
+        let counts = T::mask_to_bits(!stays);
+        StepResult {
+            parts: [T::mask_to_bits(parts[0]), T::mask_to_bits(parts[1])],
+            arrived: [
+                T::mask_to_bits(approach.arrived[0]) & counts,
+                T::mask_to_bits(approach.arrived[1]) & counts,
+            ],
+            enters_frame: T::mask_to_bits(enters_frame) & counts,
+            ends: end.map(
+                #[inline(always)]
+                |rule| T::mask_to_bits(rule) & counts,
+            ),
+            made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
+            lodged: T::mask_to_bits(lodged),
+        }
+    }
+
+    /// Takes the shots whose contacts have changed out of their lanes.
+    #[inline(always)]
+    fn finish_contacts_in_space(
+        &mut self,
+        block: &mut LaneBlock,
+        result: &StepResult,
+        given_up: LaneBits,
+    ) {
+        let [a, b, c] = result.ends;
+        let ended = a | b | c;
+        let [off_board, off_ring] = result.parts;
+        let [to_board, to_ring] = result.arrived;
+        let changed = off_board | off_ring | to_board | to_ring | result.enters_frame;
+        let done = changed | ended | result.lodged | given_up;
+        for lane in lanes_in(done & block.occupied()) {
+            let slot = block.slot(lane);
+            let shot = &mut self.workspace.slots[slot as usize];
+            block.remove(lane, shot);
+            if bit(given_up, lane) {
+                self.workspace.finish(slot, Ending::Unresolved, false);
+            } else if bit(ended, lane) {
+                let rules = result.ends.map(|rule| bit(rule, lane));
+                self.finish_shot_in_contact(slot, rules, bit(result.made, lane));
+            } else if bit(result.lodged, lane) {
+                self.workspace.finish(slot, Ending::Lodged, false);
+            } else {
+                block.remove_contacts(lane, shot);
+                let mut touching = shot.touching;
+                for solid in SolidId::ALL {
+                    let i = solid.index();
+                    touching[i] &= !bit(result.parts[i], lane);
+                    if bit(result.arrived[i], lane) {
+                        touching[i] = true;
+                        shot.contacts.push(solid);
+                        shot.friction[i] = FrictionState::new(self.params);
+                    }
+                }
+                shot.go_on_touching(self.params, touching);
+                self.workspace.enqueue(slot);
+            }
+        }
+    }
+
+    /// Takes all shots of a block out of their lanes and queues them again.
+    fn suspend_contacts_in_space(&mut self, block: &mut LaneBlock) {
+        for lane in lanes_in(block.occupied()) {
+            let slot = block.slot(lane);
+            let shot = &mut self.workspace.slots[slot as usize];
+            block.remove(lane, shot);
+            block.remove_contacts(lane, shot);
+            self.workspace.enqueue(slot);
+        }
+    }
+}

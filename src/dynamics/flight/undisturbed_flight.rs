@@ -1,0 +1,108 @@
+//! Where a flight that touches nothing passes a height or a distance.
+
+use super::flight_path::FlightPath;
+use super::height_crossing::falling_time;
+use crate::model::BallState;
+use crate::model::constants_per_ball_mass::ModelParams;
+
+/// Parts of a flight that are followed at most.
+const MAX_PARTS: u32 = 10_000;
+
+/// The state in which an undisturbed ball falls through `z = height`, m, and the time until then, s; `None` if it is
+/// below and never rises to it.
+pub(crate) fn falls_through(
+    params: &ModelParams,
+    start: &BallState,
+    height: f64,
+) -> Option<(BallState, f64)> {
+    let ball = &params.ball;
+    if !ball.has_air {
+        let (z, vz) = (start.position_m.z, start.velocity_m_s.z);
+        let never = vz * vz + 2.0 * ball.gravity * (z - height) < 0.0;
+        let t = falling_time(params, z, vz, height);
+        return (!never && t >= 0.0).then(|| (start.after_flight(ball, t), t));
+    }
+    let (mut state, mut elapsed) = (*start, 0.0);
+    for _ in 0..MAX_PARTS {
+        let path = FlightPath::new(ball, &state);
+        let (z, vz) = path.height_and_rate(path.longest_s);
+        if z <= height && vz < 0.0 {
+            if state.position_m.z < height {
+                let falls = state.velocity_m_s.z <= 0.0;
+                if falls || path.height_and_rate(path.highest_s(ball)).0 < height {
+                    return None;
+                }
+            }
+            let t = path.falls_through(height, path.longest_s);
+            return Some((path.state_after(t), elapsed + t));
+        }
+        state = path.state_after(path.longest_s);
+        elapsed += path.longest_s;
+    }
+    None
+}
+
+/// The highest point of an undisturbed flight, m.
+pub(crate) fn highest_point_m(params: &ModelParams, path: &FlightPath, dt: f64) -> f64 {
+    let (start, vz) = path.height_and_rate(0.0);
+    let (end, _) = path.height_and_rate(dt);
+    let top = if vz > 0.0 {
+        let t = path.highest_s(&params.ball);
+        if t < dt { path.height_and_rate(t).0 } else { end }
+    } else {
+        start
+    };
+    top.max(start).max(end)
+}
+
+/// Depth at which a path is given up, m.
+const LOWEST_M: f64 = -1000.0;
+
+/// The height at which an undisturbed ball passes the horizontal distance `length_m` from its start, m; negative and
+/// infinite if it does not get there.
+pub(crate) fn height_at_length_m(params: &ModelParams, start: &BallState, length_m: f64) -> f64 {
+    let ball = &params.ball;
+    let v = start.velocity_m_s;
+    let speed = (v.x * v.x + v.y * v.y).sqrt();
+    if speed <= 1e-9 {
+        return f64::NEG_INFINITY;
+    }
+    let (along_x, along_y) = (v.x / speed, v.y / speed);
+    let from = start.position_m;
+    let passed = |state: &BallState| {
+        let p = state.position_m;
+        (p.x - from.x) * along_x + (p.y - from.y) * along_y - length_m
+    };
+    if !ball.has_air {
+        return start.after_flight(ball, length_m / speed).position_m.z;
+    }
+    let mut state = *start;
+    for _ in 0..MAX_PARTS {
+        let path = FlightPath::new(ball, &state);
+        let end = path.state_after(path.longest_s);
+        if passed(&end) >= 0.0 {
+            // Nearly straight in time: a few secant steps.
+            let (mut low, mut high) = (0.0, path.longest_s);
+            let (mut at_low, mut at_high) = (passed(&state), passed(&end));
+            for _ in 0..6 {
+                let t = low - at_low * (high - low) / (at_high - at_low).max(f64::MIN_POSITIVE);
+                let at_t = passed(&path.state_after(t));
+                if at_t < 0.0 {
+                    (low, at_low) = (t, at_t);
+                } else {
+                    (high, at_high) = (t, at_t);
+                }
+                if at_t.abs() < 1e-10 {
+                    break;
+                }
+            }
+            let nearest = if at_high < -at_low { high } else { low };
+            return path.state_after(nearest).position_m.z;
+        }
+        if end.position_m.z < LOWEST_M {
+            break;
+        }
+        state = end;
+    }
+    f64::NEG_INFINITY
+}
