@@ -85,11 +85,7 @@ fn read_constants(
         ),
         ("hoop_height", Dimension::Length, &mut p.hoop_height_m),
         ("gravity", Dimension::Acceleration, &mut p.gravity_m_s2),
-        (
-            "air_density",
-            Dimension::Density,
-            &mut p.air.density_kg_m3,
-        ),
+        ("air_density", Dimension::Density, &mut p.air.density_kg_m3),
         (
             "drag_coefficient",
             Dimension::Number,

@@ -6,13 +6,10 @@
 //! in (6 of 1000 shots that would count as made without this condition are missed with it; `docs/model.md`
 //! gives the measured effect).
 
-use super::flight::FlightPath;
-use crate::math::real::{Mask, Real};
+use super::flight::FlightSegment;
+use crate::math::real::Real;
 use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
-
-/// Height to which the search for a crossing converges where there is one, m.
-const CROSSING_TOLERANCE_M: f64 = 1e-9;
 
 /// The crossings of the plane of the hoop so far.
 #[derive(Clone, Copy, Debug)]
@@ -47,29 +44,11 @@ impl<T: Real> HoopCrossing<T> {
         self.has_been_above = self.has_been_above | rises;
     }
 
-    /// Updates the crossings after a part of a flight that starts at the height `z` with the rate `vz`.
+    /// Updates the crossings after a segment of a flight in the lanes of `flying`.
     #[inline(always)]
-    pub(crate) fn after_path(
-        &mut self,
-        params: &ModelParams<T>,
-        path: &FlightPath<T>,
-        (z, vz): (T, T),
-        dt: T,
-    ) {
-        let zero = params.zero();
-        let may_rise = z.is_negative() & vz.is_positive();
-        if !may_rise.any() {
-            return;
-        }
-        let t = path.rises_through(zero, zero);
-        let (position, velocity) = path.position_and_velocity(t);
-        let arrived = position.z.abs().lt(params.splat(CROSSING_TOLERANCE_M));
-        let rises =
-            may_rise & arrived & velocity.z.is_positive() & zero.lt(t) & t.lt(dt);
-        let distance_squared = position.x.squared() + position.y.squared();
-        let inside = distance_squared.lt(params.ring.radius.squared());
-        self.rose_through = self.rose_through | (rises & inside);
-        self.has_been_above = self.has_been_above | rises;
+    pub(crate) fn after_segment(&mut self, segment: &FlightSegment<T>, flying: T::Mask) {
+        self.rose_through = self.rose_through | (segment.rises_inside & flying);
+        self.has_been_above = self.has_been_above | (segment.rises & flying);
     }
 
     /// Updates the crossings after a step in contact to `after`, in the lanes of `stepped`; `was_below` tells where

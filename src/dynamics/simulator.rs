@@ -375,7 +375,7 @@ impl Simulator {
                 let touches = |solid: &SolidId| segment.touches[solid.index()];
                 return SolidId::ALL.into_iter().find(touches);
             }
-            state = segment.path.state_after(segment.dt);
+            state = segment.end;
         }
     }
 

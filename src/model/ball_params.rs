@@ -19,8 +19,9 @@ pub(crate) struct BallParams<T = f64> {
     pub(crate) drag: T,
     /// Acceleration by lift over the product of spin and speed.
     pub(crate) lift: T,
-    /// Drag or lift act.
+    /// Drag or lift act; lift acts.
     pub(crate) has_air: bool,
+    pub(crate) has_lift: bool,
     /// Time of an event that will not happen, s.
     pub(crate) never_s: T,
 }
@@ -37,6 +38,7 @@ impl BallParams {
             drag: splat(self.drag),
             lift: splat(self.lift),
             has_air: self.has_air,
+            has_lift: self.has_lift,
             never_s: splat(self.never_s),
         }
     }

@@ -32,6 +32,7 @@ impl ModelParams {
                 drag,
                 lift,
                 has_air: drag != 0.0 || lift != 0.0,
+                has_lift: lift != 0.0,
                 never_s: 1e9,
             },
             board: board(physics),

@@ -147,6 +147,15 @@ impl Physics {
         }
     }
 
+    /// The same physics with both contacts changed.
+    #[must_use]
+    pub fn with_contacts(mut self, change: impl Fn(&mut ContactLaw)) -> Self {
+        for solid in SolidId::ALL {
+            change(self.contact_mut(solid));
+        }
+        self
+    }
+
     /// Coefficient of restitution of a head-on bounce off a solid, `exp(-pi alpha/omega)` (Appendix 1).
     #[must_use]
     pub fn restitution_on(&self, solid: SolidId) -> f64 {

@@ -55,7 +55,8 @@ impl Bracket {
         let start_height_m = profile.height_above_hoop_m();
         let gravity_m_s2 = physics.gravity_less_buoyancy_m_s2();
         let drag = physics.drag_per_m() * location.distance_m;
-        let least = least_speed_m_s(location.distance_m, -start_height_m, gravity_m_s2) * (1.0 + drag);
+        let least =
+            least_speed_m_s(location.distance_m, -start_height_m, gravity_m_s2) * (1.0 + drag);
         let contact_m = physics.ball_radius_m + physics.ring_tube_radius_m();
         let mut bracket = Self {
             polar_rad: (0.0, 0.0),
@@ -146,8 +147,8 @@ impl Bracket {
         let far = self.location.distance_m + self.reach_m;
         let end = self.path_to_board(polar_rad).unwrap_or(far).max(near);
         // A slower shot is below the ring's reach all the way from `near` to `end`.
-        let lengths = (0..=PATH_POINTS)
-            .map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS));
+        let lengths =
+            (0..=PATH_POINTS).map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS));
         let least = self.least_speed_through(lengths, -self.contact_m, pitch_rad);
         // A faster shot passes above the far side of the ring, and above the board both where the ball
         // would touch it (on the way up) and at its face (on the way down).
@@ -172,7 +173,9 @@ impl Bracket {
     ) -> f64 {
         let in_vacuum = lengths.map(|s| (self.parabola_speed_through(s, z, pitch_rad), s));
         let Some((_, spins)) = &self.air else {
-            return in_vacuum.map(|(speed, _)| speed).fold(f64::INFINITY, f64::min);
+            return in_vacuum
+                .map(|(speed, _)| speed)
+                .fold(f64::INFINITY, f64::min);
         };
         let mut in_vacuum: Vec<_> = in_vacuum.collect();
         in_vacuum.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -9,7 +9,7 @@ mod mutation;
 use bankshot::best_shot::ShotKind;
 use bankshot::config::{parse_locations, parse_physics, parse_profile};
 use bankshot::dynamics::{Release, Simulator};
-use bankshot::model::Physics;
+use bankshot::model::{BoardEdge, PRESETS, Physics};
 use bankshot::output::simulation_files::csv_records::{CsvRecords, MAX_RECORD_BYTES};
 use bankshot::output::simulation_files::outcome_columns::outcome_cells;
 use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
@@ -254,8 +254,10 @@ fn time_us(simulator: &Simulator, release: &Release) -> u64 {
 
 /// The paper's physics with some constants at random within their ranges or at their ends.
 fn random_physics(script: &mut Script<'_>) -> Physics {
-    let mut physics = Physics::paper();
-    let constants: [(&mut f64, f64, f64); 13] = [
+    let preset = &PRESETS[usize::from(script.byte()) % PRESETS.len()];
+    let mut physics = preset.physics();
+    let edge_radius_m = 0.03 * script.fraction();
+    let constants: [(&mut f64, f64, f64); 21] = [
         (&mut physics.ball_radius_m, 0.01, 10.0),
         (&mut physics.ball_mass_kg, 0.001, 100.0),
         (&mut physics.inertia_ratio, 0.1, 1.0),
@@ -264,9 +266,17 @@ fn random_physics(script: &mut Script<'_>) -> Physics {
         (&mut physics.board_width_m, 0.01, 10.0),
         (&mut physics.board_height_m, 0.01, 10.0),
         (&mut physics.gravity_m_s2, 0.01, 1000.0),
-        (&mut physics.stiffness_n_m, 0.1, 1e9),
-        (&mut physics.damping_kg_s, 1e-6, 1e6),
-        (&mut physics.friction, 1e-6, 10.0),
+        (&mut physics.board_contact.stiffness_n_m, 0.1, 1e9),
+        (&mut physics.board_contact.damping_kg_s, 1e-6, 1e6),
+        (&mut physics.board_contact.friction, 1e-6, 10.0),
+        (&mut physics.hoop_contact.stiffness_n_m, 0.1, 1e9),
+        (&mut physics.hoop_contact.damping_kg_s, 1e-6, 1e6),
+        (&mut physics.hoop_contact.friction, 1e-6, 10.0),
+        (&mut physics.ring_tube_diameter_m, 1e-6, 0.5),
+        (&mut physics.bracket_width_m, 1e-6, 1.0),
+        (&mut physics.air.density_kg_m3, 1e-3, 100.0),
+        (&mut physics.air.drag_coefficient, 1e-3, 10.0),
+        (&mut physics.air.lift_slope, 1e-3, 10.0),
         (&mut physics.time_limit_s, 0.01, 60.0),
         (&mut physics.lodged_after_s, 1e-6, 60.0),
     ];
@@ -279,8 +289,19 @@ fn random_physics(script: &mut Script<'_>) -> Physics {
             _ => {}
         }
     }
-    if script.byte() % 8 == 1 {
-        physics.damping_kg_s = 0.0;
+    match script.byte() % 16 {
+        1 => physics = physics.with_contacts(|contact| contact.damping_kg_s = 0.0),
+        2 => physics.bracket_width_m = 0.0,
+        3 => physics.ring_tube_diameter_m = 0.0,
+        4 => physics.air.density_kg_m3 = 0.0,
+        5 => physics.board_edge = BoardEdge::None,
+        6 => physics.board_edge = BoardEdge::Rounded { radius_m: 0.0 },
+        7 => {
+            physics.board_edge = BoardEdge::Rounded {
+                radius_m: edge_radius_m,
+            };
+        }
+        _ => {}
     }
     physics
 }

@@ -28,7 +28,7 @@ fn energy(physics: &Physics, state: &BallState) -> f64 {
     0.5 * physics.ball_mass_kg * state.velocity_m_s.norm_squared()
         + 0.5 * inertia * state.spin_rad_s.norm_squared()
         + physics.ball_mass_kg * physics.gravity_m_s2 * z
-        + 0.5 * physics.stiffness_n_m * spring
+        + 0.5 * physics.board_contact.stiffness_n_m * spring
 }
 
 #[test]
@@ -138,8 +138,10 @@ fn prop_a_scaled_world_gives_the_same_shots() {
     ] {
         *length *= 4.0;
     }
-    large.stiffness_n_m /= 4.0;
-    large.damping_kg_s /= 2.0;
+    large = large.with_contacts(|contact| {
+        contact.stiffness_n_m /= 4.0;
+        contact.damping_kg_s /= 2.0;
+    });
     large.time_limit_s *= 2.0;
     large.lodged_after_s *= 2.0;
     let shots = free_throw_uniform(2000, 26);
@@ -320,10 +322,12 @@ fn bouncing(mass_kg: f64, contact_time_s: f64, restitution: f64) -> Option<Physi
     let frequency = std::f64::consts::PI / contact_time_s;
     let mut physics = Physics {
         ball_mass_kg: mass_kg,
-        stiffness_n_m: mass_kg * frequency * frequency * (1.0 + decrement * decrement),
         gravity_m_s2: 1e-9,
         ..Physics::paper()
-    };
+    }
+    .with_contacts(|contact| {
+        contact.stiffness_n_m = mass_kg * frequency * frequency * (1.0 + decrement * decrement);
+    });
     physics.set_restitution(restitution).ok()?;
     physics.errors().is_empty().then_some(physics)
 }
@@ -344,7 +348,7 @@ proptest! {
             return Ok(());
         };
         let speed = power(speed);
-        let deepest = speed * (physics.ball_mass_kg / physics.stiffness_n_m).sqrt();
+        let deepest = speed * (physics.ball_mass_kg / physics.board_contact.stiffness_n_m).sqrt();
         if deepest > 0.5 * physics.ball_radius_m {
             return Ok(());
         }
@@ -366,14 +370,10 @@ proptest! {
 /// seeds. Their numbers of made shots differ by less than the root of the disagreements times four.
 #[test]
 fn prop_single_precision_gives_the_shots_of_double_precision() {
-    let soft = Physics {
-        stiffness_n_m: 3000.0,
-        ..Physics::paper()
+    let stiff = |stiffness_n_m| {
+        Physics::paper().with_contacts(|contact| contact.stiffness_n_m = stiffness_n_m)
     };
-    let hard = Physics {
-        stiffness_n_m: 2_000_000.0,
-        ..Physics::paper()
-    };
+    let (soft, hard) = (stiff(3000.0), stiff(2_000_000.0));
     let light = Physics {
         ball_mass_kg: 0.136,
         ..Physics::paper()

@@ -196,8 +196,7 @@ fn bias_cases() -> Vec<(&'static str, Profile, Vec<Nominal>)> {
             .unwrap()
     };
     let stiff = |factor: f64| {
-        let mut physics = Physics::paper();
-        physics.stiffness_n_m *= factor;
+        let mut physics = Physics::paper().with_contacts(|contact| contact.stiffness_n_m *= factor);
         physics
             .set_restitution(Physics::paper().restitution())
             .unwrap();
@@ -262,10 +261,7 @@ fn bias_cases() -> Vec<(&'static str, Profile, Vec<Nominal>)> {
         ("hard", with_physics(stiff(30.0)), few.to_vec()),
         (
             "slippery",
-            with_physics(Physics {
-                friction: 0.2,
-                ..Physics::paper()
-            }),
+            with_physics(Physics::paper().with_contacts(|contact| contact.friction = 0.2)),
             few.to_vec(),
         ),
     ]

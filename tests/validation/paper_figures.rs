@@ -115,7 +115,7 @@ fn val_appendix_1_damping_and_restitution() {
     // Authority: the values printed in Appendix 1.
     let lb_s_ft = POUND_FORCE_N / FOOT_M;
     let physics = Physics::with_restitution(0.8457).unwrap();
-    assert!((physics.damping_kg_s / lb_s_ft - 0.96194).abs() < 5e-6);
+    assert!((physics.hoop_contact.damping_kg_s / lb_s_ft - 0.96194).abs() < 5e-6);
     assert!((Physics::paper().restitution() - 0.76557).abs() < 5e-6);
 }
 
@@ -186,7 +186,7 @@ fn swirl_turns(disturbance_m_s: f64, spin_z_rad_s: impl Fn(f64, f64) -> f64) -> 
     let physics = Physics::paper();
     let (sin, cos) = libm::sincos(87.5 * DEGREE_RAD);
     let weight = physics.ball_mass_kg * physics.gravity_m_s2;
-    let lever = physics.ball_radius_m - weight / (physics.stiffness_n_m * cos);
+    let lever = physics.ball_radius_m - weight / (physics.hoop_contact.stiffness_n_m * cos);
     let circle = physics.ring_radius_m - lever * sin;
     let speed = -(physics.gravity_m_s2 * (sin / cos) * circle).sqrt();
     let spin = spin_z_rad_s(speed, lever * sin);

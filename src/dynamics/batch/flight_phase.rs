@@ -1,13 +1,13 @@
-//! The free flights of a batch: closed form, a block at a time.
+//! The free flights of a batch that are parabolas, a block at a time.
 
 use super::batch_state::Batch;
 use super::lane_block::{LaneBlock, LaneShots, bit, lanes_in, set_bit};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
-use crate::dynamics::flight::{FlightEvents, FlightSegment};
+use crate::dynamics::flight::FlightEvents;
 use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS, solids_touched_at_release};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
-use crate::math::real::{LaneBits, MAX_F64_LANES, Mask, SimdReal};
+use crate::math::real::{LaneBits, MAX_F64_LANES, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId};
@@ -39,7 +39,7 @@ pub(super) fn fly_from_release<S, T, const WIDE: bool>(
 {
     batch.simd.vectorize(
         #[inline(always)]
-        || batch.fly_first_arcs::<T>(starts),
+        || batch.fly_first_arcs::<T, true>(starts),
     );
 }
 
@@ -64,7 +64,10 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
 
     /// The same for shots at their release. Those that touch nothing never take a slot.
     #[inline(always)]
-    fn fly_first_arcs<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
+    pub(super) fn fly_first_arcs<T, const PARABOLAS: bool>(&mut self, starts: &[BallState])
+    where
+        T: SimdReal<Simd = S, Element = f64>,
+    {
         let params = &self.lane_params::<T>();
         let mut block = LaneBlock::new();
         loop {
@@ -74,7 +77,11 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             }
             let starts = &starts[shots.clone()];
             block.fill_at_release(starts);
-            let end = self.fly_lanes(params, &mut block);
+            let end = if PARABOLAS {
+                self.fly_lanes(params, &mut block)
+            } else {
+                self.fly_lanes_in_segments(params, &mut block)
+            };
             let in_flight = |start| !solids_touched_at_release(self.params, start).contains(&true);
             let mut flying = 0;
             for (lane, start) in starts.iter().enumerate() {
@@ -115,9 +122,6 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     ) -> FlightEnd {
         let mut shots = block.load::<T>(self.simd);
         block.leave_ring(self.simd, params, &mut shots.state);
-        if !params.has_paper_flight() {
-            return self.fly_segments(params, block, &mut shots);
-        }
         let start = shots.state;
         let flight = FlightEvents::new(params, &start);
         let dt = flight.first_end();
@@ -136,57 +140,15 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
             behind_board: 0,
         };
-        store_flight(params, block, &shots, &end);
-        end
-    }
-
-    /// The same as a sequence of segments.
-    #[inline(always)]
-    fn fly_segments<T: SimdReal<Simd = S, Element = f64>>(
-        &self,
-        params: &ModelParams<T>,
-        block: &mut LaneBlock,
-        shots: &mut LaneShots<T>,
-    ) -> FlightEnd {
-        let none = params.splat_mask(false);
-        let (mut touches, mut behind_board, mut needs_scalar) = ([none; 2], none, none);
-        let mut flying = params.splat_mask(true);
-        let time_limit = params.splat(self.limits.time_limit_s);
-        while flying.any() {
-            let segment = FlightSegment::new(params, &shots.state);
-            let dt = segment.dt.select(flying, params.zero());
-            let start = (shots.state.position_m.z, shots.state.velocity_m_s.z);
-            shots.crossing.after_path(params, &segment.path, start, dt);
-            shots.state = segment.path.state_after(dt).select(flying, shots.state);
-            shots.time_s = shots.time_s + dt;
-            let late = time_limit.lt(shots.time_s);
-            for i in [0, 1] {
-                touches[i] = touches[i] | (segment.touches[i] & flying);
-            }
-            behind_board = behind_board | (segment.behind_board & flying);
-            needs_scalar = needs_scalar | ((segment.unresolved | late) & flying);
-            flying = flying & !segment.ends() & !late;
-        }
-        let [on_board, on_ring] = touches;
-        let end = FlightEnd {
-            needs_scalar: T::mask_to_bits(needs_scalar),
-            made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
-            touches: [T::mask_to_bits(on_board), T::mask_to_bits(on_ring)],
-            in_frame: [
-                T::mask_to_bits(params.board.is_in_frame(&shots.state)),
-                T::mask_to_bits(params.ring.is_in_frame(&shots.state)),
-            ],
-            rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
-            behind_board: T::mask_to_bits(behind_board),
-        };
-        store_flight(params, block, shots, &end);
+        block.store(&shots);
+        store_ring_motions(params, block, &shots, &end);
         end
     }
 
     /// Takes the shots of a block out of their lanes after a flight, grouped by outcome: a branch in each
     /// lane would be mispredicted too often.
     #[inline(always)]
-    fn finish_flights(
+    pub(super) fn finish_flights(
         &mut self,
         block: &mut LaneBlock,
         slots: &[u32],
@@ -234,15 +196,15 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
 }
 
 /// How the flights of a block ended, lane by lane.
-struct FlightEnd {
+pub(super) struct FlightEnd {
     /// Left to the scalar code, which repeats the flight from its start.
-    needs_scalar: LaneBits,
-    made: LaneBits,
+    pub(super) needs_scalar: LaneBits,
+    pub(super) made: LaneBits,
     /// The ball touches each solid, and the part of it that a frame of contact describes.
-    touches: [LaneBits; SolidId::COUNT],
-    in_frame: [LaneBits; SolidId::COUNT],
-    rose: LaneBits,
-    behind_board: LaneBits,
+    pub(super) touches: [LaneBits; SolidId::COUNT],
+    pub(super) in_frame: [LaneBits; SolidId::COUNT],
+    pub(super) rose: LaneBits,
+    pub(super) behind_board: LaneBits,
 }
 
 impl FlightEnd {
@@ -262,15 +224,14 @@ impl FlightEnd {
     }
 }
 
-/// Stores the shots at the ends of their flights; those on the ring also in its frame.
+/// Stores the shots that have reached the ring in its frame.
 #[inline(always)]
-fn store_flight<T: SimdReal<Element = f64>>(
+pub(super) fn store_ring_motions<T: SimdReal<Element = f64>>(
     params: &ModelParams<T>,
     block: &mut LaneBlock,
     shots: &LaneShots<T>,
     end: &FlightEnd,
 ) {
-    block.store(shots);
     if end.ring_motions() & !end.needs_scalar != 0 {
         let motion = params.ring.to_contact(&params.ball, &shots.state);
         block.store_ring_motion(&motion);

@@ -162,6 +162,12 @@ impl LaneBlock {
         self.times_s[lane]
     }
 
+    /// The slots of the shots.
+    #[inline(always)]
+    pub(super) fn slots(&self) -> [u32; MAX_F64_LANES] {
+        self.slots
+    }
+
     /// The slot of the shot in a lane.
     #[inline(always)]
     pub(super) fn slot(&self, lane: usize) -> u32 {
@@ -358,6 +364,16 @@ impl LaneBlock {
         self.flags.has_been_above = T::mask_to_bits(shots.crossing.has_been_above);
         self.flags.rose_through = T::mask_to_bits(shots.crossing.rose_through);
         shots.time_s.store(&mut self.times_s);
+    }
+
+    /// Stores shots in flight; none of them comes from the ring any more.
+    #[inline(always)]
+    pub(super) fn store_without_frames<T: SimdReal<Element = f64>>(
+        &mut self,
+        shots: &LaneShots<T>,
+    ) {
+        self.store(shots);
+        self.flags.from_ring = 0;
     }
 
     #[inline(always)]

@@ -8,6 +8,7 @@ mod instruction_set;
 mod lane_block;
 mod ring_contact_phase;
 mod scheduler;
+mod segment_flight_phase;
 mod single_contact_phase;
 mod space_contact_phase;
 mod workspace;

@@ -13,6 +13,7 @@ use super::batch_state::{Batch, Narrow, NarrowSingle, Wide, WideSingle};
 use super::board_contact_phase::board_contact;
 use super::flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
+use super::segment_flight_phase::{fly_from_release_in_segments, fly_in_segments};
 use super::space_contact_phase::in_space;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
@@ -62,10 +63,15 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             workspace,
         };
         loop {
-            if WIDE {
-                fly_from_release::<S, Wide<S>, WIDE>(&mut batch, starts);
-            } else {
-                fly_from_release::<S, Narrow<S>, WIDE>(&mut batch, starts);
+            match (WIDE, params.has_paper_flight()) {
+                (true, true) => fly_from_release::<S, Wide<S>, WIDE>(&mut batch, starts),
+                (false, true) => fly_from_release::<S, Narrow<S>, WIDE>(&mut batch, starts),
+                (true, false) => {
+                    fly_from_release_in_segments::<S, Wide<S>, WIDE>(&mut batch, starts);
+                }
+                (false, false) => {
+                    fly_from_release_in_segments::<S, Narrow<S>, WIDE>(&mut batch, starts);
+                }
             }
             if batch.workspace.is_idle() {
                 return;
@@ -79,6 +85,13 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
     /// Simulates the shots that wait for a phase.
     fn run_phase(&mut self, phase: Phase) {
         match phase {
+            Phase::Flight if !self.params.has_paper_flight() => {
+                if WIDE {
+                    fly_in_segments::<S, Wide<S>, WIDE>(self);
+                } else {
+                    fly_in_segments::<S, Narrow<S>, WIDE>(self);
+                }
+            }
             Phase::Flight if WIDE => fly::<S, Wide<S>, WIDE>(self),
             Phase::Flight => fly::<S, Narrow<S>, WIDE>(self),
             Phase::Single(solid) if !self.limits.single_precision => {

@@ -107,12 +107,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         let rolling_times = space_contact_step::rolling_time(&next_friction, before_s, step.dt);
         let rolling_times = before_s.select(stays, rolling_times);
         let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & !stays;
-        let end = shots.after_step(
-            params,
-            &before,
-            (step.dt, !stays),
-            self.limits.time_limit_s,
-        );
+        let end = shots.after_step(params, &before, (step.dt, !stays), self.limits.time_limit_s);
         block.store(&shots);
         block.store_rolling_times(rolling_times);
         for solid in SolidId::ALL {

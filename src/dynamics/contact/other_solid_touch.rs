@@ -7,9 +7,9 @@
 //! [`GRAZE_M`] inside the step is taken again too, as far as the closest point: no touch is lost.
 
 use crate::math::real::{Mask, Real};
-use crate::model::{BallState, SolidId};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
+use crate::model::{BallState, SolidId};
 
 /// Gap at which an approached solid counts as touched, m. A compression of this size changes the speed of a
 /// bounce by less than 1e-6 m/s.

@@ -2,8 +2,10 @@
 
 use super::board_touch::{board_times, entry_from_beside};
 use super::height_crossing::falling_time;
-use super::ring_search::ring_time;
+use super::height_path::Parabola;
+use super::ring_search::{HorizontalMotion, ring_time};
 use crate::math::real::Real;
+use crate::math::vector::Vec2;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
@@ -30,7 +32,7 @@ impl<T: Real> FlightEvents<T> {
         let below_ring = falling_time(params, z, vz, -params.ring.reach).positive_part();
         let (board, beside_board) = board_times(params, state, below_ring);
         let search_end = Real::min(Real::min(below_ring, board), beside_board);
-        let (ring, unresolved) = ring_time(params, state, search_end);
+        let (ring, unresolved) = first_ring_touch(params, state, search_end);
         Self {
             below_ring,
             touch: [board, ring],
@@ -54,6 +56,23 @@ impl<T: Real> FlightEvents<T> {
         }
         first
     }
+}
+
+/// [`ring_time`] of a parabola.
+#[inline(always)]
+fn first_ring_touch<T: Real>(
+    params: &ModelParams<T>,
+    state: &BallState<T>,
+    search_end: T,
+) -> (T, T::Mask) {
+    let (p, v) = (state.position_m, state.velocity_m_s);
+    let motion = HorizontalMotion::new(params, p, Vec2::new(v.x, v.y));
+    let heights = Parabola {
+        params,
+        z: p.z,
+        vz: v.z,
+    };
+    ring_time(params, &motion, &heights, search_end)
 }
 
 impl FlightEvents<f64> {
@@ -80,7 +99,8 @@ impl FlightEvents<f64> {
         let (enters, behind) = entry_from_beside(params, state, self.beside_board);
         self.touch[SolidId::Board.index()] = enters;
         let search_end = self.below_ring.min(enters).min(behind);
-        (self.touch[SolidId::Ring.index()], self.unresolved) = ring_time(params, state, search_end);
+        (self.touch[SolidId::Ring.index()], self.unresolved) =
+            first_ring_touch(params, state, search_end);
         behind
     }
 }

@@ -17,9 +17,9 @@ use crate::model::ball_params::BallParams;
 /// Terms of the velocity.
 const TERMS: usize = 9;
 /// The time for which a path holds, as a share of |v|/|a|: the position then errs by less than 1e-7 m.
-const SHARE: f64 = 0.45;
+pub(super) const SHARE: f64 = 0.45;
 /// The shortest path, s. Where |v|/|a| is less than that, drag is so weak that |v| may be taken as constant.
-const SHORTEST_S: f64 = 0.02;
+pub(super) const SHORTEST_S: f64 = 0.02;
 
 /// A part of a flight.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +30,8 @@ pub(crate) struct FlightPath<T: Real = f64> {
     has_air: bool,
     /// For how long it holds, s.
     pub(crate) longest_s: T,
-    /// Bounds on it: of the speed, of the acceleration, and of that by the air alone.
-    pub(crate) speed_bound: T,
+    /// Bounds on it: of the speed (inverse), of the acceleration, and of that by the air alone.
+    pub(crate) inverse_speed_bound: T,
     pub(crate) acceleration_bound: T,
     pub(crate) air_acceleration_bound: T,
 }
@@ -58,7 +58,7 @@ impl<T: Real> FlightPath<T> {
             spin_rad_s: w,
             has_air: ball.has_air,
             longest_s,
-            speed_bound,
+            inverse_speed_bound: one / Real::max(speed_bound, ball.splat(1e-9)),
             acceleration_bound: air_acceleration_bound + ball.gravity,
             air_acceleration_bound,
         };
@@ -251,7 +251,10 @@ mod tests {
                 let error = (position - p).norm();
                 assert!(error < allowed_m, "{start:?}: {error}");
                 assert!((velocity - v).norm() < 10.0 * allowed_m / path.longest_s);
-                assert!(v.norm() < path.speed_bound && a(v).norm() < path.acceleration_bound);
+                assert!(
+                    v.norm() * path.inverse_speed_bound < 1.0
+                        && a(v).norm() < path.acceleration_bound
+                );
             }
         }
     }

@@ -4,11 +4,16 @@
 //! ([`FlightEvents`]). Otherwise it is a sequence of polynomials ([`FlightSegment`]).
 
 mod board_touch;
+mod drag_arc;
+mod drag_segment;
 mod flight_events;
 mod flight_path;
 mod flight_segment;
 pub(crate) mod height_crossing;
+mod height_path;
+mod lift_segment;
 mod ring_search;
+mod safe_step;
 mod undisturbed_flight;
 
 pub(crate) use flight_events::FlightEvents;

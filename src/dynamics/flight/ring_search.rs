@@ -1,7 +1,7 @@
 //! The first touch of the ring by a ball in free flight, found with certainty.
 //!
 //! It is the first root of `F(t) = (R_H - D)^2 + z^2 - R^2`, where `D` is the distance from the hoop's
-//! axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. Elsewhere
+//! axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. (With a rod, R stands for the reach.) Elsewhere
 //!
 //! ```text
 //! F'' = 2 (v_h^2 + v_z^2 - g z - R_H L^2/D^3),    L = x v_y - y v_x (constant in flight)
@@ -10,9 +10,9 @@
 //! is bounded from below by some `-M`. Then the step `2 F/(sqrt(F'^2 + 2 M F) - F')` never passes a root:
 //! grazes are found, however short. Where M = 0 (most shots) it is Newton's step.
 
-use super::height_crossing::{falling_time, rising_time};
+use super::height_path::HeightPath;
 use crate::math::real::{Mask, Real};
-use crate::model::BallState;
+use crate::math::vector::{Vec2, Vec3};
 use crate::model::constants_per_ball_mass::ModelParams;
 
 /// F at which an approaching ball touches the ring, as a fraction of R^2.
@@ -26,7 +26,7 @@ const PARTING_STEP_S: f64 = 1e-6;
 const MAX_ITERATIONS: u32 = 10_000;
 
 /// The horizontal motion of an arc: `D^2 = |p|^2 + 2 (p.v) t + |v|^2 t^2`.
-struct HorizontalMotion<T: Real> {
+pub(super) struct HorizontalMotion<T: Real> {
     speed_squared: T,
     /// p.v.
     dot: T,
@@ -43,8 +43,7 @@ struct HorizontalMotion<T: Real> {
 
 impl<T: Real> HorizontalMotion<T> {
     #[inline(always)]
-    fn new(params: &ModelParams<T>, state: &BallState<T>) -> Self {
-        let (p, v) = (state.position_m, state.velocity_m_s);
+    pub(super) fn new(params: &ModelParams<T>, p: Vec3<T>, v: Vec2<T>) -> Self {
         let (zero, one) = (params.zero(), params.one());
         let speed_squared = v.x.squared() + v.y.squared();
         let is_vertical = speed_squared.le(params.splat(1e-12));
@@ -92,6 +91,8 @@ struct SearchBounds<T> {
     inner_leave: T,
     /// The part of -F''/2 that comes from the curvature of the ring.
     curvature_bound: T,
+    /// The part from -z z''.
+    height_bound: T,
     /// F at the start where it is negative (the small overlap that a separation leaves), zero elsewhere. It
     /// counts as zero: otherwise a ball that parts slowly would take tiny steps until it is free.
     overlap: T,
@@ -102,9 +103,10 @@ impl<T: Real> SearchBounds<T> {
     fn new(
         params: &ModelParams<T>,
         motion: &HorizontalMotion<T>,
-        (z, vz): (T, T),
+        heights: &impl HeightPath<T>,
         falls_to_top: T,
     ) -> Self {
+        let (z, _) = heights.height_and_rate(params.zero());
         let (ring_radius, reach) = (params.ring.radius, params.ring.reach);
         let inner = ring_radius - reach;
         let half_time = motion
@@ -116,9 +118,10 @@ impl<T: Real> SearchBounds<T> {
         let value = inward.squared() + z.squared() - reach.squared();
         Self {
             overlap: Real::min(value, value.zero()),
+            height_bound: heights.acceleration_bound() * reach,
             falls_to_top,
-            rises_to_bottom: rising_time(params, z, vz, -reach),
-            rises_to_top: rising_time(params, z, vz, reach),
+            rises_to_bottom: heights.rises_through(-reach),
+            rises_to_top: heights.rises_through(reach),
             inner_enter: (motion.closest_time - half_time)
                 .select(!motion.is_vertical, -params.ball.never_s),
             inner_leave: (motion.closest_time + half_time)
@@ -129,17 +132,16 @@ impl<T: Real> SearchBounds<T> {
     }
 }
 
-/// Time of the first touch of the ring before `search_end` (else never), and whether the search reached its
-/// iteration limit.
+/// Time of the first touch of the ring's circle before `search_end` (else never), and whether the search reached its
+/// iteration limit. The time may be any variable in which the horizontal motion is even.
 #[inline(always)]
 pub(super) fn ring_time<T: Real>(
     params: &ModelParams<T>,
-    state: &BallState<T>,
+    motion: &HorizontalMotion<T>,
+    heights: &impl HeightPath<T>,
     search_end: T,
 ) -> (T, T::Mask) {
-    let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
     let (zero, reach) = (params.zero(), params.ring.reach);
-    let motion = HorizontalMotion::new(params, state);
     let outer = params.ring.radius + reach;
     let outer_time_squared = motion.half_time_within_squared(outer);
     let half_time = outer_time_squared.positive_part().sqrt();
@@ -149,21 +151,21 @@ pub(super) fn ring_time<T: Real>(
     let out_of_reach = !motion.is_vertical & outer_time_squared.is_negative()
         | motion.is_vertical & outer.squared().lt(motion.distance_squared);
     let stop = Real::min(search_end, leave_time);
-    let falls_to_top = falling_time(params, z, vz, reach);
+    let falls_to_top = heights.falls_through(reach);
     let mut t = enter_time.select(!motion.is_vertical, zero).positive_part();
     // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
     // and still rising then (a release from beneath) starts when it has come near.
-    let z_then = z + vz * t - params.ball.half_gravity * t * t;
+    let (z_then, _) = heights.height_and_rate(t);
     t = Real::max(falls_to_top, t).select(reach.lt(z_then), t);
 
     let mut searching = t.lt(stop) & !out_of_reach;
     let mut found = params.ball.never_s;
     let mut iterations = 0;
     if searching.any() {
-        let bounds = SearchBounds::new(params, &motion, (z, vz), falls_to_top);
+        let bounds = SearchBounds::new(params, motion, heights, falls_to_top);
         while searching.any() && iterations < MAX_ITERATIONS {
             iterations += 1;
-            let (touches, next) = search_step(params, &motion, &bounds, (z, vz), t);
+            let (touches, next) = search_step(params, motion, &bounds, heights, t);
             let touches = touches & searching;
             found = t.select(touches, found);
             t = next.select(searching, t);
@@ -179,23 +181,20 @@ fn search_step<T: Real>(
     params: &ModelParams<T>,
     motion: &HorizontalMotion<T>,
     bounds: &SearchBounds<T>,
-    (z, vz): (T, T),
+    heights: &impl HeightPath<T>,
     t: T,
 ) -> (T::Mask, T) {
     let (zero, reach) = (params.zero(), params.ring.reach);
-    let z_t = z + vz * t - params.ball.half_gravity * t * t;
-    let vz_t = vz - params.ball.gravity * t;
+    let (z_t, vz_t) = heights.height_and_rate(t);
     let distance = motion.distance(t);
     let inward = params.ring.radius - distance;
     let value = inward.squared() + z_t.squared() - reach.squared() - bounds.overlap;
     let half_slope = z_t * vz_t
-        - inward * (motion.speed_squared * t + motion.dot)
-            / Real::max(distance, reach * 1e-3);
+        - inward * (motion.speed_squared * t + motion.dot) / Real::max(distance, reach * 1e-3);
     let fall_squared = zero.select(vz_t.is_positive(), vz_t.squared());
-    let half_bound = (bounds.curvature_bound + params.ball.gravity * reach
-        - motion.speed_squared
-        - fall_squared)
-        .positive_part();
+    let half_bound =
+        (bounds.curvature_bound + bounds.height_bound - motion.speed_squared - fall_squared)
+            .positive_part();
 
     // With h = F'/2 and b = M/2: F + 2 h s - b s^2 >= 0 up to its first root s, F/(root - h) for a closing
     // ball and (root + h)/b otherwise.

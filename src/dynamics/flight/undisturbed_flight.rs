@@ -48,7 +48,11 @@ pub(crate) fn highest_point_m(params: &ModelParams, path: &FlightPath, dt: f64) 
     let (end, _) = path.height_and_rate(dt);
     let top = if vz > 0.0 {
         let t = path.highest_s(&params.ball);
-        if t < dt { path.height_and_rate(t).0 } else { end }
+        if t < dt {
+            path.height_and_rate(t).0
+        } else {
+            end
+        }
     } else {
         start
     };

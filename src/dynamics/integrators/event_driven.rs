@@ -373,11 +373,10 @@ impl<O: Observer> Run<'_, O> {
 
     fn advance_segment(&mut self, segment: &FlightSegment, dt: f64) {
         let (params, shot) = (self.params, &mut self.shot);
-        self.observer
-            .flight(params, shot.time_s, dt, &segment.path);
-        let start = (shot.state.position_m.z, shot.state.velocity_m_s.z);
-        shot.crossing.after_path(params, &segment.path, start, dt);
-        shot.state = segment.path.state_after(dt);
+        let path = FlightPath::new(&params.ball, &shot.state);
+        self.observer.flight(params, shot.time_s, dt, &path);
+        shot.crossing.after_segment(segment, true);
+        shot.state = segment.end;
         shot.time_s += dt;
     }
 

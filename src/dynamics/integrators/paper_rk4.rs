@@ -66,7 +66,8 @@ fn sliding_response<S: Solid<f64>>(
     let lever_over_inertia = kinematics.lever * params.ball.mass_over_inertia;
     (
         n * normal + tangent_1 * friction_1 + tangent_2 * friction_2,
-        tangent_1 * (lever_over_inertia * friction_2) - tangent_2 * (lever_over_inertia * friction_1),
+        tangent_1 * (lever_over_inertia * friction_2)
+            - tangent_2 * (lever_over_inertia * friction_1),
     )
 }
 

@@ -104,8 +104,7 @@ impl<T: Real> ContactMotion<T> {
     /// The acceleration by drag and lift, in the frame.
     #[inline(always)]
     pub(super) fn air_acceleration(&self, ball: &BallParams<T>) -> ContactVector<T> {
-        let in_frame =
-            |v: &ContactVector<T>| Vec3::new(v.normal, v.tangent.x, v.tangent.y);
+        let in_frame = |v: &ContactVector<T>| Vec3::new(v.normal, v.tangent.x, v.tangent.y);
         let a = ball.air_acceleration(in_frame(&self.velocity), in_frame(&self.spin));
         ContactVector::new(a.x, a.y, a.z)
     }

@@ -42,7 +42,10 @@ impl<T: Real> Rectangle<T> {
     /// From the nearest point of the core to `position`.
     #[inline(always)]
     pub(crate) fn offset(&self, position: Vec3<T>) -> Vec3<T> {
-        let beyond = |x: T, low: T, high: T| x - Real::min(Real::max(x, low), high);
+        #[inline(always)]
+        fn beyond<T: Real>(x: T, low: T, high: T) -> T {
+            x - Real::min(Real::max(x, low), high)
+        }
         Vec3::new(
             beyond(position.x, self.low.x, self.high.x),
             beyond(position.y, self.low.y, self.high.y),
@@ -75,8 +78,8 @@ impl<T: Real> Rectangle<T> {
         let inverse = one / distance;
         let n = offset * inverse;
         let [u, v] = in_plane;
-        let is_flat = |direction: Vec3<T>| offset.dot(direction).abs().le(zero);
-        let (flat_u, flat_v) = (is_flat(u), is_flat(v));
+        let flat_u = offset.dot(u).abs().le(zero);
+        let flat_v = offset.dot(v).abs().le(zero);
         // Direction 2 runs along an edge. At a corner any direction will do.
         let across = cross(u, n);
         let size = across.norm();
@@ -84,19 +87,26 @@ impl<T: Real> Rectangle<T> {
         let tangent_2 = v.select(flat_v, u.select(flat_u, at_corner));
         let tangent_1 = cross(tangent_2, n);
         let axes = [n, tangent_1, tangent_2];
-        let along =
-            |w: Vec3<T>| ContactVector::new(n.dot(w), tangent_1.dot(w), tangent_2.dot(w));
         let kinematics = ContactKinematics {
             compression: self.reach - distance,
             lever: distance - self.radius,
-            velocity: along(state.velocity_m_s),
-            spin: along(state.spin_rad_s),
-            gravity: along(ball.free_acceleration(state.velocity_m_s, state.spin_rad_s)),
+            velocity: along(&axes, state.velocity_m_s),
+            spin: along(&axes, state.spin_rad_s),
+            gravity: along(
+                &axes,
+                ball.free_acceleration(state.velocity_m_s, state.spin_rad_s),
+            ),
             curvature_1: zero.select(flat_u & flat_v, inverse),
             curvature_2: zero.select(flat_u | flat_v, inverse),
         };
         (kinematics, axes)
     }
+}
+
+/// The components of a vector along the axes.
+#[inline(always)]
+fn along<T: Real>([n, tangent_1, tangent_2]: &[Vec3<T>; 3], v: Vec3<T>) -> ContactVector<T> {
+    ContactVector::new(n.dot(v), tangent_1.dot(v), tangent_2.dot(v))
 }
 
 #[inline(always)]

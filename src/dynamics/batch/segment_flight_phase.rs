@@ -1,0 +1,158 @@
+//! The free flights of a batch in segments: with drag, or at solids with edges and bracket. (Flights with lift are left
+//! to the scalar code.)
+
+use super::batch_state::Batch;
+use super::flight_phase::{FlightEnd, store_ring_motions};
+use super::lane_block::{LaneBlock, LaneShots};
+use crate::dynamics::end_rules::rose_to_ring;
+use crate::dynamics::flight::FlightSegment;
+use crate::math::real::{Mask, SimdReal};
+use crate::model::constants_per_ball_mass::ModelParams;
+use crate::model::solids::Solid;
+use crate::model::{BallState, SolidId};
+use fearless_simd::Simd;
+
+/// Flies every shot that waits for flight, to its end or its next touch.
+///
+/// The phases stand in separate modules, so that the compiler translates them in parallel.
+#[inline(never)]
+pub(super) fn fly_in_segments<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+where
+    S: Simd,
+    T: SimdReal<Simd = S, Element = f64>,
+{
+    batch.simd.vectorize(
+        #[inline(always)]
+        || batch.fly_in_segments::<T>(),
+    );
+}
+
+/// Flies the first arcs of shots that have not started yet, as long as there are free slots.
+#[inline(never)]
+pub(super) fn fly_from_release_in_segments<S, T, const WIDE: bool>(
+    batch: &mut Batch<S, WIDE>,
+    starts: &[BallState],
+) where
+    S: Simd,
+    T: SimdReal<Simd = S, Element = f64>,
+{
+    batch.simd.vectorize(
+        #[inline(always)]
+        || batch.fly_first_arcs::<T, false>(starts),
+    );
+}
+
+impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+    /// Flies the shots that wait, a segment at a time. Lanes whose flight has ended are refilled.
+    #[inline(always)]
+    fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
+        let params = &self.lane_params::<T>();
+        let mut queue = self.workspace.take_flights();
+        let block = &mut LaneBlock::new();
+        if params.ball.has_lift {
+            for slot in queue.drain(..) {
+                self.run_scalar(slot);
+            }
+        }
+        loop {
+            let free = T::ALL & !block.occupied();
+            let shots_in_progress = &mut self.workspace.slots;
+            block.fill(free, self.params, shots_in_progress, || queue.pop());
+            if block.occupied() == 0 {
+                break;
+            }
+            let mut shots = block.load::<T>(self.simd);
+            block.leave_ring(self.simd, params, &mut shots.state);
+            let mut flight = SegmentedFlight::new(params);
+            self.fly_one_segment(params, &mut shots, &mut flight);
+            block.store_without_frames(&shots);
+            let end = flight.end(params, &shots);
+            store_ring_motions(params, block, &shots, &end);
+            let ended = !T::mask_to_bits(flight.flying) & block.occupied();
+            let slots = block.slots();
+            self.finish_flights(block, &slots, ended, &end);
+        }
+        self.workspace.return_queue(queue);
+    }
+
+    /// Flies the lanes of a block at their release to the ends of their flights.
+    #[inline(always)]
+    pub(super) fn fly_lanes_in_segments<T: SimdReal<Simd = S, Element = f64>>(
+        &self,
+        params: &ModelParams<T>,
+        block: &mut LaneBlock,
+    ) -> FlightEnd {
+        let shots = &mut block.load::<T>(self.simd);
+        let mut flight = SegmentedFlight::new(params);
+        if params.ball.has_lift {
+            flight.needs_scalar = flight.flying;
+        } else {
+            while flight.flying.any() {
+                self.fly_one_segment(params, shots, &mut flight);
+            }
+        }
+        let end = flight.end(params, shots);
+        block.store(shots);
+        store_ring_motions(params, block, shots, &end);
+        end
+    }
+
+    #[inline(always)]
+    fn fly_one_segment<T: SimdReal<Simd = S, Element = f64>>(
+        &self,
+        params: &ModelParams<T>,
+        shots: &mut LaneShots<T>,
+        flight: &mut SegmentedFlight<T>,
+    ) {
+        let flying = flight.flying;
+        let segment = FlightSegment::without_lift(params, &shots.state);
+        let dt = segment.dt.select(flying, params.zero());
+        shots.crossing.after_segment(&segment, flying);
+        shots.state = segment.end.select(flying, shots.state);
+        shots.time_s = shots.time_s + dt;
+        let late = params.splat(self.limits.time_limit_s).lt(shots.time_s);
+        for i in [0, 1] {
+            flight.touches[i] = flight.touches[i] | (segment.touches[i] & flying);
+        }
+        flight.behind_board = flight.behind_board | (segment.behind_board & flying);
+        flight.needs_scalar = flight.needs_scalar | ((segment.unresolved | late) & flying);
+        flight.flying = flying & !segment.ends() & !late;
+    }
+}
+
+/// Flights in segments: where they still go on, and how they have ended elsewhere.
+struct SegmentedFlight<T: SimdReal> {
+    flying: T::Mask,
+    touches: [T::Mask; SolidId::COUNT],
+    behind_board: T::Mask,
+    needs_scalar: T::Mask,
+}
+
+impl<T: SimdReal> SegmentedFlight<T> {
+    #[inline(always)]
+    fn new(params: &ModelParams<T>) -> Self {
+        let none = params.splat_mask(false);
+        Self {
+            flying: params.splat_mask(true),
+            touches: [none; SolidId::COUNT],
+            behind_board: none,
+            needs_scalar: none,
+        }
+    }
+
+    #[inline(always)]
+    fn end(&self, params: &ModelParams<T>, shots: &LaneShots<T>) -> FlightEnd {
+        let [on_board, on_ring] = self.touches;
+        FlightEnd {
+            needs_scalar: T::mask_to_bits(self.needs_scalar),
+            made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
+            touches: [T::mask_to_bits(on_board), T::mask_to_bits(on_ring)],
+            in_frame: [
+                T::mask_to_bits(params.board.is_in_frame(&shots.state)),
+                T::mask_to_bits(params.ring.is_in_frame(&shots.state)),
+            ],
+            rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
+            behind_board: T::mask_to_bits(self.behind_board),
+        }
+    }
+}

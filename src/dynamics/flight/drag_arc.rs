@@ -1,0 +1,245 @@
+//! A part of a flight under gravity and drag. Without lift it stays in a vertical plane, so its horizontal path is
+//! straight, and everything is a function of the distance along it.
+//!
+//! With `y = 1/v_h`, `q = v_z/v_h` and l the horizontal distance,
+//!
+//! ```text
+//! dy/dl = k y sqrt(1 + q^2)    dq/dl = -g y^2    dz/dl = q    dt/dl = y
+//! ```
+//!
+//! The arc holds the Taylor polynomials of these in `s = l/L`, with L its length. They converge as those of
+//! [`super::flight_path`]. The distance from the hoop's axis and from the plane of the board have closed forms in s, as
+//! they have in time without drag.
+
+use super::flight_path::{SHARE, SHORTEST_S};
+use super::height_path::HeightPath;
+use crate::math::real::{Mask, Real};
+use crate::math::vector::{Vec2, Vec3};
+use crate::model::BallState;
+use crate::model::ball_params::BallParams;
+
+/// Terms of y and q.
+const TERMS: usize = 9;
+/// Least horizontal speed, m/s: one of an arc that goes straight up and down.
+const LEAST_SPEED_M_S: f64 = 1e-6;
+/// Newton steps to a height. (The first guess errs by some milliseconds.)
+const NEWTON_STEPS: u32 = 4;
+/// Height within which a search for a rising crossing must end, m.
+const CROSSING_TOLERANCE_M: f64 = 1e-9;
+
+/// A part of a flight, from s = 0 to 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DragArc<T: Real> {
+    start: BallState<T>,
+    /// Horizontal unit vector along the path, and the horizontal path itself, m.
+    along: Vec2<T>,
+    pub(super) path: Vec2<T>,
+    inverse_length: T,
+    /// Coefficients of z (m), of 1/v_h (s/m) and of the time (s).
+    z: [T; TERMS + 1],
+    slowness: [T; TERMS],
+    length: T,
+    never: T,
+}
+
+impl<T: Real> DragArc<T> {
+    /// The arc that starts at `start`.
+    #[inline(always)]
+    pub(super) fn new(ball: &BallParams<T>, start: &BallState<T>) -> Self {
+        let (zero, one) = (ball.zero(), ball.one());
+        let v = start.velocity_m_s;
+        let v_h = (v.x.squared() + v.y.squared()).sqrt();
+        let least = ball.splat(LEAST_SPEED_M_S);
+        let is_vertical = v_h.lt(least);
+        let speed_h = Real::max(v_h, least);
+        let y_0 = one / speed_h;
+        let q_0 = v.z * y_0;
+        let r_0 = (q_0.squared() + 1.0).sqrt();
+        let speed = r_0 * speed_h;
+        // |a|^2 = g^2 + 2 g k |v| v_z + (k |v|^2)^2.
+        let drag = ball.drag * speed;
+        let acceleration = (ball.gravity.squared()
+            + drag * (ball.gravity * v.z * 2.0 + drag * speed.squared()))
+        .sqrt();
+        let singular_s = speed / acceleration;
+        let shortest = ball.splat(SHORTEST_S);
+        let varies = shortest.le(singular_s);
+        let length = Real::max(singular_s * SHARE, shortest) * speed_h;
+        let along = Vec2::new((v.x * y_0).select(!is_vertical, one), v.y * y_0);
+
+        let (k, g) = (ball.drag * length, -(ball.gravity * length));
+        let (mut y, mut q, mut r) = ([zero; TERMS], [zero; TERMS], [zero; TERMS]);
+        (y[0], q[0], r[0]) = (y_0, q_0, r_0);
+        let half_inverse = (one * 0.5) / r_0;
+        for n in 0..TERMS - 1 {
+            if n > 0 {
+                // The coefficient n of 1 + q^2, and from it that of its root.
+                let mut square = (q[0] * q[n]) * 2.0;
+                for i in 1..n {
+                    square += q[i] * q[n - i] - r[i] * r[n - i];
+                }
+                r[n] = (square * half_inverse).select(varies, zero);
+            }
+            let (mut product, mut square) = (zero, zero);
+            for i in 0..=n {
+                product += r[i] * y[n - i];
+                square += y[i] * y[n - i];
+            }
+            let part = 1.0 / (n + 1) as f64;
+            y[n + 1] = k * product * part;
+            q[n + 1] = g * square * part;
+        }
+        let mut z = [start.position_m.z; TERMS + 1];
+        for n in 0..TERMS {
+            z[n + 1] = q[n] * length * (1.0 / (n + 1) as f64);
+        }
+        Self {
+            start: *start,
+            along,
+            path: Vec2::new(along.x * length, along.y * length),
+            inverse_length: one / length,
+            z,
+            slowness: y,
+            length,
+            never: ball.never_s,
+        }
+    }
+
+    /// The position at `s`.
+    #[inline(always)]
+    pub(super) fn position(&self, s: T) -> Vec3<T> {
+        let p = self.start.position_m;
+        let (z, _) = self.height_and_rate(s);
+        Vec3::new(p.x + self.path.x * s, p.y + self.path.y * s, z)
+    }
+
+    /// Position and its rate at `s`, as a state whose time is s.
+    #[inline(always)]
+    pub(super) fn state_in_s(&self, s: T) -> BallState<T> {
+        let p = self.start.position_m;
+        let (z, rate) = self.height_and_rate(s);
+        BallState {
+            position_m: Vec3::new(p.x + self.path.x * s, p.y + self.path.y * s, z),
+            velocity_m_s: Vec3::new(self.path.x, self.path.y, rate),
+            spin_rad_s: self.start.spin_rad_s,
+        }
+    }
+
+    /// The time from the start to `s`, s.
+    #[inline(always)]
+    pub(super) fn time(&self, s: T) -> T {
+        let mut sum = self.slowness[TERMS - 1] * (1.0 / TERMS as f64);
+        for n in (0..TERMS - 1).rev() {
+            sum = sum * s + self.slowness[n] * (1.0 / (n + 1) as f64);
+        }
+        sum * s * self.length
+    }
+
+    /// The state at `s`.
+    #[inline(always)]
+    pub(super) fn state(&self, s: T) -> BallState<T> {
+        let mut state = self.state_in_s(s);
+        let mut slowness = self.slowness[TERMS - 1];
+        for n in (0..TERMS - 1).rev() {
+            slowness = slowness * s + self.slowness[n];
+        }
+        let v_h = s.one() / slowness;
+        state.velocity_m_s = Vec3::new(
+            self.along.x * v_h,
+            self.along.y * v_h,
+            state.velocity_m_s.z * self.inverse_length * v_h,
+        );
+        state
+    }
+
+    /// The height where it is greatest, for an arc that rises at first and falls at its end, and where that is.
+    #[inline(always)]
+    pub(super) fn top(&self) -> (T, T) {
+        let one = self.never.one();
+        let (_, last) = self.height_and_rate(one);
+        let first = self.z[1];
+        let mut s = first / Real::max(first - last, self.never.splat(1e-30));
+        for _ in 0..NEWTON_STEPS {
+            // z'' = -g L^2 y^2.
+            let (_, rate) = self.height_and_rate(s);
+            s = s + rate / Real::max(self.fall_rate(s), self.never.splat(1e-30));
+            s = Real::max(Real::min(s, one), one.zero());
+        }
+        (self.height_and_rate(s).0, s)
+    }
+
+    /// -z'' at `s`.
+    #[inline(always)]
+    fn fall_rate(&self, s: T) -> T {
+        let mut rate = self.z[TERMS] * (TERMS * (TERMS - 1)) as f64;
+        for n in (2..TERMS).rev() {
+            rate = rate * s + self.z[n] * (n * (n - 1)) as f64;
+        }
+        -rate
+    }
+}
+
+impl<T: Real> HeightPath<T> for DragArc<T> {
+    #[inline(always)]
+    fn height_and_rate(&self, s: T) -> (T, T) {
+        let mut value = self.z[TERMS];
+        let mut rate = s.zero();
+        for n in (0..TERMS).rev() {
+            rate = value + rate * s;
+            value = self.z[n] + value * s;
+        }
+        (value, rate)
+    }
+
+    /// Never, if not on this arc.
+    #[inline(always)]
+    fn falls_through(&self, height: T) -> T {
+        let (zero, one) = (height.zero(), height.one());
+        let (end_z, end_rate) = self.height_and_rate(one);
+        let falls = end_z.lt(height) & end_rate.is_negative();
+        if !falls.any() {
+            return self.never;
+        }
+        // From the end backwards with the mean curvature; z is concave, so Newton's steps come from later s.
+        let mean = (self.z[1] - end_rate).positive_part();
+        let below = (height - end_z).positive_part();
+        let root = (end_rate.squared() - mean * below * 2.0)
+            .positive_part()
+            .sqrt();
+        let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
+        for _ in 0..NEWTON_STEPS {
+            let (z, rate) = self.height_and_rate(s);
+            let usable = rate.is_negative();
+            let next = s - (z - height) / rate.select(usable, one);
+            s = next.select(usable, s);
+        }
+        Real::max(s, zero).select(falls, self.never)
+    }
+
+    #[inline(always)]
+    fn rises_through(&self, height: T) -> T {
+        let (zero, one) = (height.zero(), height.one());
+        let (z_0, rate_0) = (self.z[0], self.z[1]);
+        let may_rise = z_0.lt(height) & rate_0.is_positive();
+        if !may_rise.any() {
+            return -one;
+        }
+        let mut s = zero;
+        for _ in 0..NEWTON_STEPS + 2 {
+            let (z, rate) = self.height_and_rate(s);
+            let usable = rate.is_positive();
+            let next = s - (z - height) / rate.select(usable, one);
+            s = next.select(usable, s);
+        }
+        let (z, rate) = self.height_and_rate(s);
+        let arrives = (z - height).abs().lt(height.splat(CROSSING_TOLERANCE_M));
+        s.select(may_rise & arrives & rate.is_positive(), -one)
+    }
+
+    /// The horizontal speed only falls, so -z'' is greatest at the end.
+    #[inline(always)]
+    fn acceleration_bound(&self) -> T {
+        let one = self.never.one();
+        Real::max(self.fall_rate(one), self.fall_rate(one.zero()))
+    }
+}

@@ -1,0 +1,218 @@
+//! A segment of a flight without lift, and its first touch.
+//!
+//! The horizontal path is straight. So the planes of the board and the circles about the hoop's axis are reached at
+//! places s of a closed form, and the ring is searched as for a parabola ([`super::ring_search`]). Edges and
+//! bracket are searched only by balls that come near them: their cores are convex, so the gap G has `G'' >= -A`, with A a
+//! bound on `-z''`, and cannot close within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
+
+use super::drag_arc::DragArc;
+use super::flight_segment::FlightSegment;
+use super::height_path::HeightPath;
+use super::ring_search::{HorizontalMotion, ring_time};
+use super::safe_step::gap_step;
+use crate::math::real::{Mask, Real};
+use crate::model::BallState;
+use crate::model::constants_per_ball_mass::ModelParams;
+use crate::model::solids::Rectangle;
+
+/// Limit on the steps along the gap to an edge.
+const MAX_ITERATIONS: u32 = 10_000;
+/// A ball that is farther than this behind the plane in which it touches the face may touch an edge, m.
+const BEHIND_PLANE_M: f64 = 1e-6;
+
+/// Where the plane of the board is reached, in s (never elsewhere).
+struct BoardPlace<T: Real> {
+    /// The flat part of the face is touched.
+    face: T,
+    /// From here on the ball may touch an edge.
+    edges: T,
+    /// The centre passes the plane of the core.
+    behind: T,
+}
+
+/// The segment that starts at `state`.
+#[inline(always)]
+pub(super) fn drag_segment<T: Real>(
+    params: &ModelParams<T>,
+    state: &BallState<T>,
+) -> FlightSegment<T> {
+    let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
+    let arc = DragArc::new(&params.ball, state);
+    let fell = fall_place(params, &arc, state);
+    let board = board_place(params, &arc, state);
+    let last = Real::min(one, Real::min(fell, board.behind));
+    let motion = HorizontalMotion::new(params, state.position_m, arc.path);
+    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, Real::min(last, board.face));
+    let mut end = Real::min(Real::min(last, board.face), ring);
+    let (mut edge, mut bracket) = (never, never);
+    let mut unresolved = ring_unresolved;
+    let near_edge = board.edges.lt(end) & !passes_beside(params, &arc, board.edges, end);
+    if near_edge.any() {
+        let span = (board.edges, end);
+        let lost;
+        (edge, lost) = convex_touch(&params.board.core, &arc, span, near_edge);
+        unresolved = unresolved | lost;
+        end = Real::min(end, edge);
+    }
+    if params.ring.has_bracket {
+        let from = from_hoop_height(params, &arc, state);
+        let near = from.lt(end) & comes_to_bracket(params, &arc, from, end);
+        if near.any() {
+            let lost;
+            (bracket, lost) = convex_touch(&params.ring.bracket, &arc, (from, end), near);
+            unresolved = unresolved | lost;
+            end = Real::min(end, bracket);
+        }
+    }
+    let state_at_end = arc.state(end);
+    let on_ring = (ring.le(end) | bracket.le(end)) & !unresolved;
+    let on_edge = edge.le(end) & !on_ring & !unresolved;
+    let on_face = board.face.le(end) & !on_ring & !on_edge & !unresolved;
+    let acts = params.board.has_edges_mask();
+    let untouched = !(on_ring | on_edge | on_face | unresolved);
+    let behind = untouched & board.behind.le(end);
+    // Rising through the plane of the hoop.
+    let mut rises = params.splat_mask(false);
+    let mut rises_inside = rises;
+    let may_rise = state.position_m.z.is_negative() & state.velocity_m_s.z.is_positive();
+    if may_rise.any() {
+        let place = arc.rises_through(zero);
+        rises = may_rise & zero.lt(place) & place.lt(end);
+        let p = arc.position(place);
+        let distance_squared = p.x.squared() + p.y.squared();
+        rises_inside = rises & distance_squared.lt(params.ring.radius.squared());
+    }
+    FlightSegment {
+        dt: arc.time(end),
+        end: state_at_end,
+        touches: [on_face | (on_edge & acts), on_ring],
+        fell: untouched & !behind & fell.le(end),
+        behind_board: behind | (on_edge & !acts),
+        unresolved,
+        rises,
+        rises_inside,
+    }
+}
+
+/// Where the centre falls through z = -reach, or is at its highest point below it.
+#[inline(always)]
+fn fall_place<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T {
+    let (zero, never) = (params.zero(), params.ball.never_s);
+    let bottom = -params.ring.reach;
+    let place = arc.falls_through(bottom);
+    let starts_below = start.position_m.z.lt(bottom) & place.lt(never);
+    if !starts_below.any() {
+        return place;
+    }
+    let rises = start.velocity_m_s.z.is_positive();
+    let (top, top_place) = arc.top();
+    let never_rose = starts_below & (!rises | top.lt(bottom));
+    top_place.select(rises, zero).select(never_rose, place)
+}
+
+#[inline(always)]
+fn board_place<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragArc<T>,
+    start: &BallState<T>,
+) -> BoardPlace<T> {
+    let board = &params.board;
+    let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
+    let (x, u) = (start.position_m.x, arc.path.x);
+    let approaching = u.is_negative();
+    let inverse = one / u.select(approaching, -one);
+    let plane = Real::max((board.touch_x - x) * inverse, zero);
+    let behind = Real::max((board.core.low.x - x) * inverse, zero);
+    let is_past = x.lt(board.touch_x - params.splat(BEHIND_PLANE_M));
+    let reaches = approaching & plane.le(one) & !is_past;
+    let mut on_face = params.splat_mask(false);
+    if reaches.any() {
+        let p = arc.position(plane);
+        on_face =
+            reaches & p.y.abs().lt(board.half_width) & board.bottom_z.lt(p.z) & p.z.lt(board.top_z);
+    }
+    let is_behind = x.lt(board.core.low.x);
+    BoardPlace {
+        face: plane.select(on_face, never),
+        edges: zero.select(is_past, plane.select(reaches & !on_face, never)),
+        behind: zero.select(
+            is_behind,
+            behind.select(approaching & behind.le(one), never),
+        ),
+    }
+}
+
+/// Whether the part of an arc stays above, below or on one side of everything that the board can touch.
+#[inline(always)]
+fn passes_beside<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to: T) -> T::Mask {
+    let core = &params.board.core;
+    let (first, last) = (
+        arc.position(Real::min(from, params.one())),
+        arc.position(to),
+    );
+    let side = core.high.y + core.reach;
+    let above = (core.high.z + core.reach).lt(Real::min(first.z, last.z));
+    let left = side.lt(Real::min(first.y, last.y));
+    let right = Real::max(first.y, last.y).lt(-side);
+    above | left | right
+}
+
+/// Where the ball is no longer above the reach of ring and bracket.
+#[inline(always)]
+fn from_hoop_height<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T {
+    let reach = params.ring.reach;
+    let above = reach.lt(start.position_m.z);
+    if above.any() {
+        arc.falls_through(reach).select(above, params.zero())
+    } else {
+        params.zero()
+    }
+}
+
+/// Whether a part of an arc comes where the bracket is nearer than the ring's circle: outside the circle, which is so at
+/// one of its ends if anywhere, and near the bracket.
+#[inline(always)]
+fn comes_to_bracket<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to: T) -> T::Mask {
+    let bracket = &params.ring.bracket;
+    let (first, last) = (
+        arc.position(Real::min(from, params.one())),
+        arc.position(to),
+    );
+    let radius_squared = params.ring.radius.squared();
+    let outside = radius_squared.lt(first.x.squared() + first.y.squared())
+        | radius_squared.lt(last.x.squared() + last.y.squared());
+    let reach = bracket.reach;
+    let side = bracket.high.y + reach;
+    let near_x = Real::min(first.x, last.x).lt(bracket.high.x + reach);
+    let near_y = Real::min(first.y, last.y).lt(side) & (-side).lt(Real::max(first.y, last.y));
+    outside & near_x & near_y
+}
+
+/// Where the ball first touches a plate with a convex core between two places of an arc (never elsewhere), and where
+/// the search reached its limit.
+#[inline(always)]
+fn convex_touch<T: Real>(
+    core: &Rectangle<T>,
+    arc: &DragArc<T>,
+    (from, to): (T, T),
+    lanes: T::Mask,
+) -> (T, T::Mask) {
+    let mut found = from.splat(NEVER);
+    let mut s = from;
+    let mut searching = lanes;
+    let bound = arc.acceleration_bound();
+    let mut iterations = 0;
+    while searching.any() && iterations < MAX_ITERATIONS {
+        iterations += 1;
+        let (gap, rate) = core.gap(&arc.state_in_s(s));
+        let (touches, step) = gap_step(gap, rate, bound);
+        let touches = touches & searching;
+        found = s.select(touches, found);
+        s = (s + step).select(searching & !touches, s);
+        searching = searching & !touches & s.lt(to);
+    }
+    (found, searching)
+}
+
+/// A place that is not on the arc.
+const NEVER: f64 = 1e9;

@@ -1,0 +1,52 @@
+//! The height of a ball in flight as a function of time, or of another variable that grows with time.
+
+use crate::math::real::Real;
+use crate::model::constants_per_ball_mass::ModelParams;
+
+use super::height_crossing::{falling_time, rising_time};
+
+/// A height z(t) that is concave in t.
+pub(super) trait HeightPath<T: Real> {
+    /// z and its rate at `t`.
+    fn height_and_rate(&self, t: T) -> (T, T);
+    /// When it falls through `height`.
+    fn falls_through(&self, height: T) -> T;
+    /// When it rises through `height`; for one that has risen before, or does not, any time up to its highest point.
+    fn rises_through(&self, height: T) -> T;
+    /// A bound on -z''.
+    fn acceleration_bound(&self) -> T;
+}
+
+/// Free fall.
+pub(super) struct Parabola<'a, T> {
+    pub(super) params: &'a ModelParams<T>,
+    pub(super) z: T,
+    pub(super) vz: T,
+}
+
+impl<T: Real> HeightPath<T> for Parabola<'_, T> {
+    #[inline(always)]
+    fn height_and_rate(&self, t: T) -> (T, T) {
+        let ball = &self.params.ball;
+        (
+            self.z + self.vz * t - ball.half_gravity * t * t,
+            self.vz - ball.gravity * t,
+        )
+    }
+
+    /// For a ball that never rises to it, the time of its highest point.
+    #[inline(always)]
+    fn falls_through(&self, height: T) -> T {
+        falling_time(self.params, self.z, self.vz, height)
+    }
+
+    #[inline(always)]
+    fn rises_through(&self, height: T) -> T {
+        rising_time(self.params, self.z, self.vz, height)
+    }
+
+    #[inline(always)]
+    fn acceleration_bound(&self) -> T {
+        self.params.ball.gravity
+    }
+}
