@@ -17,6 +17,9 @@ pub(crate) struct BallParams<T = f64> {
     pub(crate) inverse_gravity: T,
     /// Deceleration by drag over the square of the speed, 1/m.
     pub(crate) drag: T,
+    /// `k^(1/4)/g^(1/2)` with k the drag: its fourth power times that of a speed is the deviation of a path by drag while
+    /// gravity changes the velocity by that speed, m.
+    pub(crate) drag_strength: T,
     /// Acceleration by lift over the product of spin and speed.
     pub(crate) lift: T,
     /// Drag or lift act; lift acts.
@@ -36,6 +39,7 @@ impl BallParams {
             half_gravity: splat(self.half_gravity),
             inverse_gravity: splat(self.inverse_gravity),
             drag: splat(self.drag),
+            drag_strength: splat(self.drag_strength),
             lift: splat(self.lift),
             has_air: self.has_air,
             has_lift: self.has_lift,

@@ -30,6 +30,7 @@ impl ModelParams {
                 half_gravity: 0.5 * gravity,
                 inverse_gravity: 1.0 / gravity,
                 drag,
+                drag_strength: (drag.sqrt() / gravity).sqrt(),
                 lift,
                 has_air: drag != 0.0 || lift != 0.0,
                 has_lift: lift != 0.0,

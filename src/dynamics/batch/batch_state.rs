@@ -13,15 +13,22 @@ use fearless_simd::Simd;
 
 /// A batch that is being simulated.
 ///
-/// `WIDE` steps sixteen lanes instead of eight. This pays off with AVX-512, where one register holds eight
-/// lanes: two independent registers hide the latency of operations. With narrower registers eight lanes are
-/// several registers already.
-pub(super) struct Batch<'a, S: Simd, const WIDE: bool> {
+/// `WIDTH` is [`WIDE`], [`NARROW`] or [`BASELINE`].
+pub(super) struct Batch<'a, S: Simd, const WIDTH: u8> {
     pub(super) simd: S,
     pub(super) params: &'a ModelParams,
     pub(super) limits: &'a ShotLimits,
     pub(super) workspace: &'a mut BatchWorkspace,
 }
+
+/// Sixteen lanes instead of eight. This pays off with AVX-512, where one register holds eight lanes: two independent
+/// registers hide the latency of operations.
+pub(super) const WIDE: u8 = 2;
+/// Eight lanes; with AVX2 they are several registers already.
+pub(super) const NARROW: u8 = 1;
+/// Eight lanes on registers of two. The two phases with most values (flights in segments, contacts in the frame of
+/// space) run the scalar code: in lanes they would take a third of all compile time.
+pub(super) const BASELINE: u8 = 0;
 
 /// Eight lanes.
 pub(super) type Narrow<S> = F64x8<S>;
@@ -32,7 +39,7 @@ pub(super) type NarrowSingle<S> = F32x16<S>;
 /// Thirty-two lanes in single precision.
 pub(super) type WideSingle<S> = Unrolled<F32x16<S>>;
 
-impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     /// The parameters in every lane, as near as the lanes can hold them.
     #[inline(always)]
     pub(super) fn lane_params<T: SimdReal<Simd = S>>(&self) -> ModelParams<T> {
@@ -54,6 +61,14 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
         match event_driven::run_segment(self.params, self.limits, shot) {
             Some(verdict) => self.workspace.record(slot, verdict),
             None => self.workspace.enqueue(slot),
+        }
+    }
+
+    /// Simulates one segment of each shot that waits for `phase` with the scalar code.
+    pub(super) fn run_one_by_one(&mut self, phase: Phase) {
+        let waiting = std::mem::take(self.workspace.queue_mut(phase));
+        for slot in waiting {
+            self.run_scalar(slot);
         }
     }
 

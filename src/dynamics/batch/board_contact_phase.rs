@@ -8,7 +8,7 @@ use fearless_simd::Simd;
 ///
 /// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
-pub(super) fn board_contact<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+pub(super) fn board_contact<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where
     S: Simd,
     T: SimdReal<Simd = S>,

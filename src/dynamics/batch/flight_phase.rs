@@ -17,7 +17,7 @@ use fearless_simd::Simd;
 ///
 /// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
-pub(super) fn fly<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+pub(super) fn fly<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where
     S: Simd,
     T: SimdReal<Simd = S, Element = f64>,
@@ -30,8 +30,8 @@ where
 
 /// Flies the first arcs of shots that have not started yet, as long as there are free slots.
 #[inline(never)]
-pub(super) fn fly_from_release<S, T, const WIDE: bool>(
-    batch: &mut Batch<S, WIDE>,
+pub(super) fn fly_from_release<S, T, const WIDTH: u8>(
+    batch: &mut Batch<S, WIDTH>,
     starts: &[BallState],
 ) where
     S: Simd,
@@ -39,11 +39,11 @@ pub(super) fn fly_from_release<S, T, const WIDE: bool>(
 {
     batch.simd.vectorize(
         #[inline(always)]
-        || batch.fly_first_arcs::<T, true>(starts),
+        || batch.fly_first_arcs::<T>(starts),
     );
 }
 
-impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     fn fly_all<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
@@ -64,10 +64,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
 
     /// The same for shots at their release. Those that touch nothing never take a slot.
     #[inline(always)]
-    pub(super) fn fly_first_arcs<T, const PARABOLAS: bool>(&mut self, starts: &[BallState])
-    where
-        T: SimdReal<Simd = S, Element = f64>,
-    {
+    fn fly_first_arcs<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();
         let mut block = LaneBlock::new();
         loop {
@@ -77,11 +74,7 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             }
             let starts = &starts[shots.clone()];
             block.fill_at_release(starts);
-            let end = if PARABOLAS {
-                self.fly_lanes(params, &mut block)
-            } else {
-                self.fly_lanes_in_segments(params, &mut block)
-            };
+            let end = self.fly_lanes(params, &mut block);
             let in_flight = |start| !solids_touched_at_release(self.params, start).contains(&true);
             let mut flying = 0;
             for (lane, start) in starts.iter().enumerate() {

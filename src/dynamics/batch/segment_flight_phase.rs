@@ -6,17 +6,17 @@ use super::flight_phase::{FlightEnd, store_ring_motions};
 use super::lane_block::{LaneBlock, LaneShots};
 use crate::dynamics::end_rules::rose_to_ring;
 use crate::dynamics::flight::FlightSegment;
-use crate::math::real::{Mask, SimdReal};
+use crate::math::real::SimdReal;
+use crate::model::SolidId;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
-use crate::model::{BallState, SolidId};
 use fearless_simd::Simd;
 
 /// Flies every shot that waits for flight, to its end or its next touch.
 ///
 /// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
-pub(super) fn fly_in_segments<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+pub(super) fn fly_in_segments<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where
     S: Simd,
     T: SimdReal<Simd = S, Element = f64>,
@@ -27,22 +27,7 @@ where
     );
 }
 
-/// Flies the first arcs of shots that have not started yet, as long as there are free slots.
-#[inline(never)]
-pub(super) fn fly_from_release_in_segments<S, T, const WIDE: bool>(
-    batch: &mut Batch<S, WIDE>,
-    starts: &[BallState],
-) where
-    S: Simd,
-    T: SimdReal<Simd = S, Element = f64>,
-{
-    batch.simd.vectorize(
-        #[inline(always)]
-        || batch.fly_first_arcs::<T, false>(starts),
-    );
-}
-
-impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     /// Flies the shots that wait, a segment at a time. Lanes whose flight has ended are refilled.
     #[inline(always)]
     fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
@@ -73,28 +58,6 @@ impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
             self.finish_flights(block, &slots, ended, &end);
         }
         self.workspace.return_queue(queue);
-    }
-
-    /// Flies the lanes of a block at their release to the ends of their flights.
-    #[inline(always)]
-    pub(super) fn fly_lanes_in_segments<T: SimdReal<Simd = S, Element = f64>>(
-        &self,
-        params: &ModelParams<T>,
-        block: &mut LaneBlock,
-    ) -> FlightEnd {
-        let shots = &mut block.load::<T>(self.simd);
-        let mut flight = SegmentedFlight::new(params);
-        if params.ball.has_lift {
-            flight.needs_scalar = flight.flying;
-        } else {
-            while flight.flying.any() {
-                self.fly_one_segment(params, shots, &mut flight);
-            }
-        }
-        let end = flight.end(params, shots);
-        block.store(shots);
-        store_ring_motions(params, block, shots, &end);
-        end
     }
 
     #[inline(always)]

@@ -31,7 +31,7 @@ struct StepResult {
     given_up: LaneBits,
 }
 
-impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     /// Steps the shots on one solid until they part, touch `other` or end.
     #[inline(always)]
     pub(super) fn single_contact<T, A, B>(&mut self, params: &ModelParams<T>, solid: &A, other: &B)

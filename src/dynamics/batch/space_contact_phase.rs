@@ -18,7 +18,7 @@ use fearless_simd::Simd;
 ///
 /// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
-pub(super) fn in_space<S, T, const WIDE: bool>(batch: &mut Batch<S, WIDE>)
+pub(super) fn in_space<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where
     S: Simd,
     T: SimdReal<Simd = S, Element = f64>,
@@ -42,7 +42,7 @@ struct StepResult {
     lodged: LaneBits,
 }
 
-impl<S: Simd, const WIDE: bool> Batch<'_, S, WIDE> {
+impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     fn contacts_in_space<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();

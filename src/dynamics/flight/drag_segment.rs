@@ -11,9 +11,9 @@ use super::height_path::HeightPath;
 use super::ring_search::{HorizontalMotion, ring_time};
 use super::safe_step::gap_step;
 use crate::math::real::{Mask, Real};
-use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Rectangle;
+use crate::model::{BallState, SolidId};
 
 /// Limit on the steps along the gap to an edge.
 const MAX_ITERATIONS: u32 = 10_000;
@@ -36,8 +36,11 @@ pub(super) fn drag_segment<T: Real>(
     params: &ModelParams<T>,
     state: &BallState<T>,
 ) -> FlightSegment<T> {
-    let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
+    let (one, never) = (params.one(), params.ball.never_s);
     let arc = DragArc::new(&params.ball, state);
+    if is_far(params, &arc, state).all() {
+        return far_segment(params, &arc, state);
+    }
     let fell = fall_place(params, &arc, state);
     let board = board_place(params, &arc, state);
     let last = Real::min(one, Real::min(fell, board.behind));
@@ -71,17 +74,7 @@ pub(super) fn drag_segment<T: Real>(
     let acts = params.board.has_edges_mask();
     let untouched = !(on_ring | on_edge | on_face | unresolved);
     let behind = untouched & board.behind.le(end);
-    // Rising through the plane of the hoop.
-    let mut rises = params.splat_mask(false);
-    let mut rises_inside = rises;
-    let may_rise = state.position_m.z.is_negative() & state.velocity_m_s.z.is_positive();
-    if may_rise.any() {
-        let place = arc.rises_through(zero);
-        rises = may_rise & zero.lt(place) & place.lt(end);
-        let p = arc.position(place);
-        let distance_squared = p.x.squared() + p.y.squared();
-        rises_inside = rises & distance_squared.lt(params.ring.radius.squared());
-    }
+    let (rises, rises_inside) = rising_crossing(params, &arc, state, end);
     FlightSegment {
         dt: arc.time(end),
         end: state_at_end,
@@ -92,6 +85,64 @@ pub(super) fn drag_segment<T: Real>(
         rises,
         rises_inside,
     }
+}
+
+/// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens on it.
+#[inline(always)]
+fn is_far<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T::Mask {
+    let p = start.position_m;
+    let (end_x, end_y) = (p.x + arc.path.x, p.y + arc.path.y);
+    let front = params.ring.radius + params.ring.reach;
+    let side = Real::max(params.board.core.high.y + params.board.core.reach, front);
+    let reaches_down = arc.height_and_rate(params.one()).0.lt(-params.ring.reach);
+    let beside = side.lt(Real::min(p.y, end_y)) | Real::max(p.y, end_y).lt(-side);
+    let in_front = front.lt(Real::min(p.x, end_x));
+    let behind = Real::min(p.x, end_x).lt(params.board.core.low.x);
+    (in_front | (beside & !behind)) & !reaches_down & !p.z.lt(-params.ring.reach)
+}
+
+/// A whole arc on which nothing is touched.
+#[inline(always)]
+fn far_segment<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragArc<T>,
+    start: &BallState<T>,
+) -> FlightSegment<T> {
+    let (one, none) = (params.one(), params.splat_mask(false));
+    let (rises, rises_inside) = rising_crossing(params, arc, start, one);
+    FlightSegment {
+        dt: arc.time(one),
+        end: arc.state(one),
+        touches: [none; SolidId::COUNT],
+        fell: none,
+        behind_board: none,
+        unresolved: none,
+        rises,
+        rises_inside,
+    }
+}
+
+/// Whether the centre rises through the plane of the hoop before `end`, and does so inside the ring.
+#[inline(always)]
+fn rising_crossing<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragArc<T>,
+    start: &BallState<T>,
+    end: T,
+) -> (T::Mask, T::Mask) {
+    let zero = params.zero();
+    let may_rise = start.position_m.z.is_negative() & start.velocity_m_s.z.is_positive();
+    if !may_rise.any() {
+        return (may_rise, may_rise);
+    }
+    let place = arc.rises_through(zero);
+    let rises = may_rise & zero.lt(place) & place.lt(end);
+    let p = arc.position(place);
+    let distance_squared = p.x.squared() + p.y.squared();
+    (
+        rises,
+        rises & distance_squared.lt(params.ring.radius.squared()),
+    )
 }
 
 /// Where the centre falls through z = -reach, or is at its highest point below it.

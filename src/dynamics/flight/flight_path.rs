@@ -17,7 +17,7 @@ use crate::model::ball_params::BallParams;
 /// Terms of the velocity.
 const TERMS: usize = 9;
 /// The time for which a path holds, as a share of |v|/|a|: the position then errs by less than 1e-7 m.
-pub(super) const SHARE: f64 = 0.45;
+const SHARE: f64 = 0.45;
 /// The shortest path, s. Where |v|/|a| is less than that, drag is so weak that |v| may be taken as constant.
 pub(super) const SHORTEST_S: f64 = 0.02;
 
