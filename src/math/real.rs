@@ -62,6 +62,14 @@ pub trait Real:
     /// `self` where `condition` holds, `other` elsewhere.
     fn select(self, condition: Self::Mask, other: Self) -> Self;
 
+    /// The result of `f`, which is compiled for the instruction set of `self` in a function of its own. (A function that is
+    /// not inlined is not compiled for the vector instructions of its caller; and one that is inlined in many places
+    /// takes long to compile.)
+    #[inline(always)]
+    fn outlined<Value>(self, f: impl FnOnce() -> Value) -> Value {
+        f()
+    }
+
     /// Zero in every lane.
     #[inline(always)]
     fn zero(self) -> Self {

@@ -91,6 +91,10 @@ macro_rules! simd_number {
                 $mask($mask_register::splat(self.0.simd, value))
             }
             #[inline(always)]
+            fn outlined<Value>(self, f: impl FnOnce() -> Value) -> Value {
+                self.0.simd.vectorize(f)
+            }
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 Self(self.0.sqrt())
             }

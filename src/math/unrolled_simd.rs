@@ -37,6 +37,10 @@ impl<T: Real> Real for Unrolled<T> {
         UnrolledMask(self.0.splat_mask(value), self.0.splat_mask(value))
     }
     #[inline(always)]
+    fn outlined<Value>(self, f: impl FnOnce() -> Value) -> Value {
+        self.0.outlined(f)
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.sqrt(), self.1.sqrt())
     }

@@ -115,7 +115,8 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
 
     // The remainder in the middle and, with twice that of the middle (Kutta's third-order rule), at the end.
     let middle = base.advance(state, half);
-    let at_middle = remainder(params, (solids, touching), &middle, &mode, &base, half);
+    let on = (solids, touching);
+    let at_middle = remainder(params, on, &middle, &mode, &base, half);
     let mut rest = sum(at_middle[FIRST], at_middle[SECOND]);
     if params.ball.has_air {
         rest.0 = rest.0 + base.change_of_free_acceleration(params, &middle);
@@ -124,7 +125,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     let mut last = next;
     last.position_m = last.position_m.add_scaled(rest.0, dt * dt * (1.0 / 3.0));
     kick(&mut last, rest, dt * 2.0);
-    let at_end = remainder(params, (solids, touching), &last, &mode, &base, end.tau);
+    let at_end = remainder(params, on, &last, &mode, &base, end.tau);
 
     // The base, the kick in the middle with the forces that it causes, and the kick at the end.
     let (weight_middle, weight_end) = (dt * (4.0 / 6.0), dt * (1.0 / 6.0));
@@ -449,6 +450,21 @@ fn kick<T: Real>(state: &mut BallState<T>, (linear, angular): Response<T>, dt: T
 /// What the forces of each contact at a stage are more than those of the base.
 #[inline(always)]
 fn remainder<T: Real, A: Solid<T>, B: Solid<T>>(
+    params: &ModelParams<T>,
+    on: ((&A, &B), [T::Mask; 2]),
+    state: &BallState<T>,
+    mode: &FrictionMode<T>,
+    base: &BaseForces<T>,
+    tau: T,
+) -> [Response<T>; 2] {
+    tau.outlined(
+        #[inline(always)]
+        || remainder_at(params, on, state, mode, base, tau),
+    )
+}
+
+#[inline(always)]
+fn remainder_at<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,
     (solids, touching): ((&A, &B), [T::Mask; 2]),
     state: &BallState<T>,

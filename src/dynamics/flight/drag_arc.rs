@@ -202,6 +202,31 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
     /// Never, if not on this arc.
     #[inline(always)]
     fn falls_through(&self, height: T) -> T {
+        height.outlined(
+            #[inline(always)]
+            || self.falling_place(height),
+        )
+    }
+
+    #[inline(always)]
+    fn rises_through(&self, height: T) -> T {
+        height.outlined(
+            #[inline(always)]
+            || self.rising_place(height),
+        )
+    }
+
+    /// The horizontal speed only falls, so -z'' is greatest at the end.
+    #[inline(always)]
+    fn acceleration_bound(&self) -> T {
+        let one = self.never.one();
+        Real::max(self.fall_rate(one), self.fall_rate(one.zero()))
+    }
+}
+
+impl<T: Real> DragArc<T> {
+    #[inline(always)]
+    fn falling_place(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
         let (end_z, end_rate) = self.height_and_rate(one);
         let falls = end_z.lt(height) & end_rate.is_negative();
@@ -225,7 +250,7 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
     }
 
     #[inline(always)]
-    fn rises_through(&self, height: T) -> T {
+    fn rising_place(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
         let (z_0, rate_0) = (self.z[0], self.z[1]);
         let may_rise = z_0.lt(height) & rate_0.is_positive();
@@ -242,13 +267,6 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
         let (z, rate) = self.height_and_rate(s);
         let arrives = (z - height).abs().lt(height.splat(CROSSING_TOLERANCE_M));
         s.select(may_rise & arrives & rate.is_positive(), -one)
-    }
-
-    /// The horizontal speed only falls, so -z'' is greatest at the end.
-    #[inline(always)]
-    fn acceleration_bound(&self) -> T {
-        let one = self.never.one();
-        Real::max(self.fall_rate(one), self.fall_rate(one.zero()))
     }
 }
 

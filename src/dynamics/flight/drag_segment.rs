@@ -248,6 +248,19 @@ fn convex_touch<T: Real>(
     (from, to): (T, T),
     lanes: T::Mask,
 ) -> (T, T::Mask) {
+    from.outlined(
+        #[inline(always)]
+        || search_convex(core, arc, (from, to), lanes),
+    )
+}
+
+#[inline(always)]
+fn search_convex<T: Real>(
+    core: &Rectangle<T>,
+    arc: &DragArc<T>,
+    (from, to): (T, T),
+    lanes: T::Mask,
+) -> (T, T::Mask) {
     let mut found = from.splat(NEVER);
     let mut s = from;
     let mut searching = lanes;
