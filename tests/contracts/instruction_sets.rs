@@ -5,7 +5,7 @@
 
 use crate::common::{free_throw_uniform, side_uniform, states, wild};
 use bankshot::dynamics::{BatchWorkspace, InstructionSet, Simulator, Verdict};
-use bankshot::model::{BallState, Physics};
+use bankshot::model::{BallState, BoardEdge, PRESETS, Physics, Preset};
 use rayon::prelude::*;
 
 /// Every instruction set of this machine except the scalar one.
@@ -62,11 +62,35 @@ fn contract_vector_sets_equal_single_shots_on_a_hundred_thousand_shots() {
         let physics = Physics::with_restitution(restitution).unwrap();
         check(&physics, &starts[..10_000]);
     }
-    let without_friction = Physics {
-        friction: 0.0,
-        ..Physics::paper()
-    };
+    let without_friction = Physics::paper().with_contacts(|contact| contact.friction = 0.0);
     check(&without_friction, &starts[..10_000]);
+}
+
+/// With air, rod, bracket, edges and materials of their own; with lift; without one of them each.
+#[test]
+fn contract_vector_sets_equal_single_shots_under_every_preset() {
+    let starts = states(&[free_throw_uniform(6_000, 51), side_uniform(6_000, 52)].concat());
+    let wild = states(&wild(6_000, 53));
+    for preset in &PRESETS {
+        check(&preset.physics(), &starts[..6_000]);
+    }
+    let ncaa = || Preset::named("ncaa").unwrap().physics();
+    check(&ncaa(), &starts);
+    check(&ncaa(), &wild);
+    let changes: [fn(&mut Physics); 6] = [
+        |physics| physics.air.lift_slope = 1.0,
+        |physics| physics.air.density_kg_m3 = 0.0,
+        |physics| physics.bracket_width_m = 0.3,
+        |physics| physics.board_edge = BoardEdge::None,
+        |physics| physics.board_edge = BoardEdge::Rounded { radius_m: 0.0 },
+        |physics| physics.ring_tube_diameter_m = 0.0,
+    ];
+    for change in changes {
+        let mut physics = ncaa();
+        change(&mut physics);
+        check(&physics, &starts[3_000..9_000]);
+        check(&physics, &wild[..3_000]);
+    }
 }
 
 #[test]
