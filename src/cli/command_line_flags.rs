@@ -2,7 +2,7 @@
 
 use super::nominal_shot_flags::NominalOptions;
 use super::value_parsers::{
-    UnitsArg, fault_injection, fraction, instruction_set, sample, shard, standard_error,
+    PhysicsArg, UnitsArg, fault_injection, fraction, instruction_set, sample, shard, standard_error,
 };
 use bankshot::dynamics::InstructionSet;
 use bankshot::sweep::job_list::Shard;
@@ -106,6 +106,8 @@ best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
 pub(crate) struct BestOptions {
     /// The shooter's profile.
     pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
     /// Folder in which the folder of the run is made [default: the profile's, else results].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -121,12 +123,16 @@ pub(crate) struct BestOptions {
 pub(crate) struct CheckOptions {
     /// The shooter's profile, or a sweep.
     pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct PlanOptions {
     /// The shooter's profile, or a sweep.
     pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
     /// Print one JSON object.
     #[arg(long)]
     pub(crate) json: bool,
@@ -176,6 +182,8 @@ Examples:
 pub(crate) struct ProbabilityOptions {
     /// The shooter's profile.
     pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
     /// The method of computing P.
@@ -318,9 +326,8 @@ pub(crate) struct SimulateOptions {
     /// Copy columns that are named like a quantity but are none of the release.
     #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
     pub(crate) carry: Vec<String>,
-    /// The preset `paper`, or a TOML file with a [physics] table.
-    #[arg(long, default_value = "paper", value_name = "PRESET|FILE")]
-    pub(crate) physics: String,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
     /// The integrator [default: exact, or the file's].
     #[arg(long)]
     pub(crate) integrator: Option<IntegratorName>,
@@ -337,6 +344,8 @@ Examples:
 pub(crate) struct TraceOptions {
     /// The shooter's profile (for location, height and physics).
     pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
     /// Write the trajectory as CSV; - for standard output (then nothing else is printed there).

@@ -1,7 +1,12 @@
 //! Reads configuration files.
 
 use super::failure::Failure;
-use bankshot::config::{MAX_FILE_BYTES, MAX_TOML_BYTES, parse_profile};
+use super::value_parsers::PhysicsArg;
+use bankshot::config::{
+    MAX_FILE_BYTES, MAX_TOML_BYTES, has_physics_table, parse_physics, parse_profile,
+};
+use bankshot::dynamics::Integrator;
+use bankshot::model::{PRESETS, Physics, Preset};
 use bankshot::shooter::Profile;
 use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
@@ -44,15 +49,58 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
 }
 
 /// Reads and checks a profile.
-pub(crate) fn load_profile(path: &Path) -> Result<Profile, Failure> {
-    let text = read_text(path)?;
+pub(crate) fn load_profile(path: &Path, physics: &PhysicsArg) -> Result<Profile, Failure> {
+    Ok(load_profile_with_text(path, physics)?.0)
+}
+
+/// The same with its text, to which the other physics is added.
+pub(crate) fn load_profile_with_text(
+    path: &Path,
+    physics: &PhysicsArg,
+) -> Result<(Profile, String), Failure> {
+    let mut text = read_text(path)?;
     if is_sweep(&text) {
         return Err(Failure::usage(format!(
             "{}: this is a sweep, not a profile: use `bankshot sweep`",
             path.display()
         )));
     }
-    Ok(parse_profile(&text, &path.display().to_string())?)
+    let origin = path.display().to_string();
+    let Some(name) = &physics.physics else {
+        return Ok((parse_profile(&text, &origin)?, text));
+    };
+    // The profile itself must be valid, with its own physics.
+    parse_profile(&text, &origin)?;
+    if has_physics_table(&text) {
+        return Err(Failure::usage(format!(
+            "--physics {name}: {origin} has a [physics] table already; give one of the two"
+        )));
+    }
+    let table = physics_text(name)?;
+    text.push_str(&format!("\n# --physics {name}\n{}\n", table.trim_end()));
+    let profile = parse_profile(&text, &format!("{origin} with --physics {name}"))?;
+    Ok((profile, text))
+}
+
+/// The physics of a preset or of a file, and the integrator.
+pub(crate) fn load_physics(name: &str) -> Result<(Physics, Integrator), Failure> {
+    Ok(parse_physics(&physics_text(name)?, name)?)
+}
+
+/// The text of a file with a `[physics]` table, or such a table for a preset.
+fn physics_text(name: &str) -> Result<String, Failure> {
+    if Preset::named(name).is_some() {
+        return Ok(format!("[physics]\npreset = \"{name}\"\n"));
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        let presets: Vec<_> = PRESETS.iter().map(|preset| preset.name).collect();
+        return Err(Failure::usage(format!(
+            "--physics {name}: is neither a preset ({}) nor a file",
+            presets.join(", ")
+        )));
+    }
+    read_text(path)
 }
 
 /// Reads and checks a sweep and the files that it names, which are in its folder.

@@ -1,6 +1,5 @@
 //! The folder of a run of `best`: its name and its files.
 
-use super::config_files::read_text;
 use super::failure::{Failure, code};
 use bankshot::best_shot::BestShots;
 use bankshot::output::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
@@ -66,10 +65,10 @@ pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes the files of a run, with a copy of the profile from `source`.
+/// Writes the files of a run, with the text of the profile.
 pub(crate) fn write_best_shots(
     folder: &Path,
-    source: &Path,
+    profile_text: String,
     profile: &Profile,
     best: &BestShots,
 ) -> Result<(), Failure> {
@@ -86,7 +85,7 @@ pub(crate) fn write_best_shots(
         json(&best_shots_json(profile, best, units)),
         curves_csv(best, units),
         sensitivity_csv(best, units),
-        read_text(source)?.into_bytes(),
+        profile_text.into_bytes(),
         json(&plan),
         json(&json_object::object(provenance)),
     ];

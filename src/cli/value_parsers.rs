@@ -4,7 +4,16 @@ use bankshot::dynamics::InstructionSet;
 use bankshot::sweep::job_list::Shard;
 use bankshot::sweep::run::FaultInjection;
 use bankshot::units::UnitSystem;
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
+
+/// Another physics than that of the file.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct PhysicsArg {
+    /// The physics: a preset (paper, ncaa, ncaa_women, nba, wnba, fiba, fiba_women, youth), or a TOML file with a
+    /// [physics] table.
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub(crate) physics: Option<String>,
+}
 
 /// The unit systems by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

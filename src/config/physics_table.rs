@@ -36,6 +36,13 @@ pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), 
     })
 }
 
+/// Whether a TOML text has a `[physics]` table. (One that is not TOML has none.)
+#[must_use]
+pub fn has_physics_table(text: &str) -> bool {
+    text.parse::<toml::Table>()
+        .is_ok_and(|table| table.contains_key("physics"))
+}
+
 /// Reads the table. The constants are not checked here.
 pub(super) fn read_physics(
     root: &mut TableReader<'_, '_>,
@@ -100,9 +107,74 @@ fn read_constants(
             *constant = value;
         }
     }
+    read_altitude(table, p, diagnostics);
     if let Some(radius_m) = table.quantity("board_edge_radius", Dimension::Length, diagnostics) {
         p.board_edge = BoardEdge::Rounded { radius_m };
     }
+}
+
+/// The density of dry air at an altitude of the standard atmosphere and at a temperature.
+fn read_altitude(
+    table: &mut TableReader<'_, '_>,
+    physics: &mut Physics,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
+    const ALTITUDES_M: std::ops::RangeInclusive<f64> = -500.0..=9000.0;
+    const USUAL_TEMPERATURE_K: f64 = 293.15;
+    let altitude_m = table.quantity("altitude", Dimension::Length, diagnostics);
+    let temperature = table.text("temperature", diagnostics);
+    if altitude_m.is_none() && temperature.is_none() {
+        return;
+    }
+    let given = if altitude_m.is_some() {
+        "altitude"
+    } else {
+        "temperature"
+    };
+    if table.has("air_density") {
+        let message = format!("give either {given} or air_density");
+        diagnostics.push(table.diagnostic(given, message));
+    }
+    let altitude_m = altitude_m.unwrap_or(0.0);
+    if !ALTITUDES_M.contains(&altitude_m) {
+        diagnostics.push(table.diagnostic("altitude", "must be from -500 m to 9000 m"));
+        return;
+    }
+    let kelvin = match temperature.as_deref() {
+        None => Some(USUAL_TEMPERATURE_K),
+        Some(text) => kelvin(text).filter(|kelvin| (200.0..=350.0).contains(kelvin)),
+    };
+    let Some(kelvin) = kelvin else {
+        let message = "must be from -70 C to 70 C, such as \"72 F\", \"22 C\" or \"295 K\"";
+        diagnostics.push(table.diagnostic("temperature", message));
+        return;
+    };
+    physics.air.density_kg_m3 = density_of_air_kg_m3(altitude_m, kelvin);
+}
+
+/// The temperature of a text such as `72 F`, in K.
+fn kelvin(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (number, unit) = text.split_at(text.len().checked_sub(1)?);
+    let value: f64 = number
+        .trim_end()
+        .trim_end_matches('\u{b0}')
+        .trim_end()
+        .parse()
+        .ok()?;
+    match unit {
+        "K" => Some(value),
+        "C" => Some(value + 273.15),
+        "F" => Some((value + 459.67) / 1.8),
+        _ => None,
+    }
+}
+
+/// The density of dry air with the pressure of the International Standard Atmosphere (ISO 2533) at an altitude.
+fn density_of_air_kg_m3(altitude_m: f64, kelvin: f64) -> f64 {
+    const GAS_CONSTANT: f64 = 287.053;
+    let pressure_pa = 101_325.0 * libm::pow(1.0 - 2.255_77e-5 * altitude_m, 5.255_88);
+    pressure_pa / (GAS_CONSTANT * kelvin)
 }
 
 /// The keys of one constant of the contacts: for both, for the board's, for the hoop's.
@@ -236,5 +308,21 @@ fn read_integrator(
             diagnostics.push(table.diagnostic("integrator", message));
             Integrator::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Authority: the tables of ISO 2533 at 0 and 1500 m, and Denver's density as published for its summer.
+    #[test]
+    fn val_density_of_air() {
+        assert!((density_of_air_kg_m3(0.0, 288.15) - 1.225).abs() < 1e-3);
+        assert!((density_of_air_kg_m3(1500.0, 278.4) - 1.0581).abs() < 1e-3);
+        assert!((density_of_air_kg_m3(1609.3, 295.0) - 0.985).abs() < 0.01);
+        assert_eq!(kelvin("22 C"), Some(295.15));
+        assert!((kelvin("72 \u{b0}F").unwrap() - 295.372).abs() < 1e-3);
+        assert_eq!(kelvin("22"), None);
     }
 }

@@ -1,7 +1,7 @@
 //! `bankshot best`: load, plan, search, write.
 
 use crate::cli::command_line_flags::BestOptions;
-use crate::cli::config_files::load_profile;
+use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::Failure;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
@@ -12,7 +12,7 @@ use bankshot::output::best_shot_text::{best_shots_table, sensitivity_text};
 use bankshot::search_space::TablePlan;
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile)?;
+    let (mut profile, text) = load_profile_with_text(&options.profile, &options.physics)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
@@ -22,7 +22,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = run_folder::of_profile(&profile, options.out.as_deref());
     run_folder::prepare(&folder)?;
     let best = best_shot::find(&profile, &ProgressBars::new(quiet))?;
-    run_folder::write_best_shots(&folder, &options.profile, &profile, &best)?;
+    run_folder::write_best_shots(&folder, text, &profile, &best)?;
     print_answer(&if options.json {
         format!("{:#}\n", best_shots_json(&profile, &best, units))
     } else {

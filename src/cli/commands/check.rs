@@ -15,7 +15,7 @@ pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
-    let profile = load_profile(&options.profile)?;
+    let profile = load_profile(&options.profile, &options.physics)?;
     TablePlan::for_search(&profile)?;
     let (long, metre) = profile.output().units.length();
     let location = profile.location();

@@ -2,12 +2,13 @@
 
 use super::sweep_summary;
 use crate::cli::command_line_flags::CompareOptions;
-use crate::cli::config_files::{load_profile, load_sweep, read_text};
+use crate::cli::config_files::{load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::PhysicsArg;
 use bankshot::best_shot::{self, BestShots};
 use bankshot::output::atomic_file;
 use bankshot::plots::shot_with_probability::PlottedShot;
@@ -124,10 +125,11 @@ fn compare_on_court(
 }
 
 fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
-    let profile = load_profile(&options.what)?;
+    let own_physics = PhysicsArg::default();
+    let (profile, profile_text) = load_profile_with_text(&options.what, &own_physics)?;
     let other = match &options.against {
         None => None,
-        Some(path) => Some(load_profile(path)?),
+        Some(path) => Some(load_profile_with_text(path, &own_physics)?),
     };
     let bars = ProgressBars::new(quiet);
     let best = best_shot::find(&profile, &bars)?;
@@ -140,7 +142,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     let mut text = probabilities_text(&profile, &best);
     let mut exit = run_folder::exit_code(&profile, &best);
     let mut against = None;
-    if let (Some(other), Some(path)) = (other, &options.against) {
+    if let Some((other, other_text)) = other {
         let best = best_shot::find(&other, &bars)?;
         let shots = PlottedShot::of_best(&best);
         if let Some(mut plot) = bank_direct_release_map::draw_probabilities(&other, &shots) {
@@ -149,21 +151,21 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
         }
         text.push_str(&probabilities_text(&other, &best));
         exit = exit.max(run_folder::exit_code(&other, &best));
-        against = Some((path, other, best));
+        against = Some((other_text, other, best));
     }
     let folder = match &options.out {
         Some(folder) => folder.clone(),
         None => run_folder::of_profile(&profile, None),
     };
     plot_files::write(&folder, &plots)?;
-    run_folder::write_best_shots(&folder, &options.what, &profile, &best)?;
+    run_folder::write_best_shots(&folder, profile_text, &profile, &best)?;
     // The folder may have had another comparison.
     let _ = std::fs::remove_file(folder.join(SWEEP_LINK));
     let against_folder = folder.join(AGAINST_FOLDER);
     run_folder::remove_best_shots(&against_folder);
-    if let Some((path, other, best)) = against {
+    if let Some((other_text, other, best)) = against {
         run_folder::prepare(&against_folder)?;
-        run_folder::write_best_shots(&against_folder, path, &other, &best)?;
+        run_folder::write_best_shots(&against_folder, other_text, &other, &best)?;
     }
     print_answer(&text)?;
     plot_files::print_captions(&folder, &plots, quiet)?;

@@ -1,13 +1,11 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
 use crate::cli::command_line_flags::{IntegratorName, SimulateOptions};
-use crate::cli::config_files::read_text;
+use crate::cli::config_files::load_physics;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
-use bankshot::config::parse_physics;
 use bankshot::dynamics::{Integrator, Simulator};
-use bankshot::model::Physics;
 use bankshot::output::atomic_file::{AtomicFile, same_file};
 use bankshot::output::simulation_files::csv_records::{CsvRecords, Row};
 use bankshot::output::simulation_files::outcome_columns::{
@@ -89,18 +87,8 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
 }
 
 fn simulator(options: &SimulateOptions) -> Result<Simulator, Failure> {
-    let (physics, from_file) = if options.physics == "paper" {
-        (Physics::paper(), Integrator::EVENT_DRIVEN)
-    } else {
-        let path = Path::new(&options.physics);
-        if !path.exists() {
-            return Err(Failure::usage(format!(
-                "--physics {}: is neither the preset \"paper\" nor a file",
-                options.physics
-            )));
-        }
-        parse_physics(&read_text(path)?, &options.physics)?
-    };
+    let name = options.physics.physics.as_deref().unwrap_or("paper");
+    let (physics, from_file) = load_physics(name)?;
     let integrator = match options.integrator {
         None => from_file,
         Some(IntegratorName::Exact) if matches!(from_file, Integrator::EventDriven { .. }) => {

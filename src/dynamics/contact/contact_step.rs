@@ -537,10 +537,15 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let roll_swing = scaled(at.swing, -start.effective_mass);
         let linear = (scaled(roll_still, half) + scaled(roll_swing, path))
             .select(rolling, scaled(start.direction, -impulse));
-        let lever = params.ball.radius - (start.motion.compression + u_m) * 0.5;
+        let mean_compression = (start.motion.compression + u_m) * 0.5;
+        let mean_distances = ContactDistances {
+            lever: params.ball.radius - mean_compression,
+            core: self.solid.reach(&params.ball) - mean_compression,
+            ..at.distances
+        };
         let kick = FrictionImpulse {
-            linear: self.times_distances(linear, &at.distances),
-            times_lever: scaled(linear, lever),
+            linear: self.times_distances(linear, &mean_distances),
+            times_lever: scaled(linear, mean_distances.lever),
         };
         let (middle, distances_m) = self.advance(&start, &at.rates, half, (u_m, vn_m), &kick);
         let at_m = self.evaluate(&middle, distances_m);

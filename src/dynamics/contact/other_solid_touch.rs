@@ -14,6 +14,8 @@ use crate::model::{BallState, SolidId};
 /// Gap at which an approached solid counts as touched, m. A compression of this size changes the speed of a
 /// bounce by less than 1e-6 m/s.
 pub(crate) const ARRIVED_M: f64 = 2e-6;
+/// A solid that is touched first with a greater compression than this does not act, m.
+const DEEPEST_M: f64 = 1e-4;
 /// Closest approach within a step up to which it is looked at again, m.
 const GRAZE_M: f64 = 1e-5;
 /// Least and greatest part of a step that is taken again.
@@ -29,7 +31,9 @@ pub(crate) fn has_arrived<T: Real, S: Solid<T>>(
     state: &BallState<T>,
 ) -> T::Mask {
     let (gap, rate) = other.gap(&params.ball, state);
-    gap.le(params.splat(ARRIVED_M)) & rate.is_negative() & other.acts(state)
+    // A ball that comes in front of the paper's board from beside it would be compressed at once.
+    let begins = params.splat(-DEEPEST_M).lt(gap) & gap.le(params.splat(ARRIVED_M));
+    begins & rate.is_negative() & other.acts(state)
 }
 
 /// The gap to a solid at the end of a step, and its rate.

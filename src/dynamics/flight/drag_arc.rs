@@ -59,13 +59,10 @@ impl<T: Real> DragArc<T> {
         let q_0 = v.z * y_0;
         let r_0 = (q_0.squared() + 1.0).sqrt();
         let speed = r_0 * speed_h;
-        // |a|^2 = g^2 + 2 g k |v| v_z + (k |v|^2)^2.
-        let drag = ball.drag * speed;
-        let acceleration = (ball.gravity.squared()
-            + drag * (ball.gravity * v.z * 2.0 + drag * speed.squared()))
-        .sqrt();
-        // 1/|v| and 1/|a| with a single division.
-        let per_both = one / (speed * acceleration);
+        // The sizes of both accelerations: near the terminal velocity they cancel, but the singularities are as near.
+        let accelerations = ball.gravity + ball.drag * speed.squared();
+        // 1/|v| and 1/(g + k |v|^2) with a single division.
+        let per_both = one / (speed * accelerations);
         let singular_s = speed.squared() * per_both;
         let shortest = ball.splat(SHORTEST_S);
         let varies = shortest.le(singular_s);
@@ -77,7 +74,7 @@ impl<T: Real> DragArc<T> {
         let (k, g) = (ball.drag * length, -(ball.gravity * length));
         let (mut y, mut q, mut r) = ([zero; TERMS], [zero; TERMS], [zero; TERMS]);
         (y[0], q[0], r[0]) = (y_0, q_0, r_0);
-        let half_inverse = acceleration * per_both * speed_h * 0.5;
+        let half_inverse = accelerations * per_both * speed_h * 0.5;
         for n in 0..TERMS - 1 {
             if n > 0 {
                 // The coefficient n of 1 + q^2, and from it that of its root.

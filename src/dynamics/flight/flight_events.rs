@@ -17,8 +17,8 @@ pub(crate) struct FlightEvents<T: Real> {
     pub(crate) below_ring: T,
     /// The ball touches a solid; by [`SolidId::index`].
     pub(crate) touch: [T; SolidId::COUNT],
-    /// The ball overlaps the plane of the board beside the rectangle. It may come onto the rectangle or
-    /// pass behind the face: [`FlightEvents::resolve_beside_board`] says which.
+    /// The ball overlaps the plane of the board beside the rectangle: [`FlightEvents::resolve_beside_board`] says when
+    /// the shot is over.
     pub(crate) beside_board: T,
     /// The search for the ring reached its iteration limit. (Never seen. Such a shot is unresolved.)
     pub(crate) unresolved: T::Mask,
@@ -89,16 +89,18 @@ impl FlightEvents<f64> {
         }
     }
 
-    /// Follows a ball that comes beside the board before anything else: updates the touches of board and
-    /// ring, and returns the time at which the centre passes behind the face (never, if the ball does not
-    /// come beside the board first).
+    /// Follows a ball that comes beside the board before anything else: updates the touch of the ring, and returns the
+    /// time at which the shot is over (never, if the ball does not come beside the board first). That is when the
+    /// centre passes behind the face, or comes in front of it: the ball would then be compressed at once and gain
+    /// the energy of the spring from nothing.
     pub(crate) fn resolve_beside_board(&mut self, params: &ModelParams, state: &BallState) -> f64 {
         if self.beside_board >= self.first_end() {
             return params.ball.never_s;
         }
         let (enters, behind) = entry_from_beside(params, state, self.beside_board);
-        self.touch[SolidId::Board.index()] = enters;
-        let search_end = self.below_ring.min(enters).min(behind);
+        let behind = behind.min(enters);
+        self.touch[SolidId::Board.index()] = params.ball.never_s;
+        let search_end = self.below_ring.min(behind);
         (self.touch[SolidId::Ring.index()], self.unresolved) =
             first_ring_touch(params, state, search_end);
         behind

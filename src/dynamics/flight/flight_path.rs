@@ -7,7 +7,7 @@
 //! ```
 //!
 //! As a function of complex time `|v|` is singular about `|v|/|a|` from the start (for gravity alone exactly there:
-//! where `v_h^2 + (v_z - g t)^2 = 0`). So a path holds for a fraction of that time. Without air it is the parabola.
+//! where `v_h^2 + (v_z - g t)^2 = 0`), with |a| the sum of the sizes of all accelerations. So a path holds for a fraction of that time. Without air it is the parabola.
 
 use crate::math::real::Real;
 use crate::math::vector::{RealVector, Vec3};
@@ -44,12 +44,14 @@ impl<T: Real> FlightPath<T> {
         let (zero, one) = (ball.zero(), ball.one());
         let acceleration = ball.free_acceleration(v, w);
         let speed = v.norm();
-        let singular_s = speed / acceleration.norm();
+        let spin = w.norm();
+        let accelerations = ball.gravity + (ball.drag * speed + ball.lift.abs() * spin) * speed;
+        let singular_s = speed / accelerations;
         let shortest = ball.splat(SHORTEST_S);
         let longest_s = Real::max(singular_s * SHARE, shortest);
         let speed_bound = speed + ball.gravity * longest_s;
         let air_acceleration_bound = if ball.has_air {
-            (ball.drag * speed_bound + ball.lift.abs() * w.norm()) * speed_bound
+            (ball.drag * speed_bound + ball.lift.abs() * spin) * speed_bound
         } else {
             zero
         };

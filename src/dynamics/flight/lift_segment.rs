@@ -54,9 +54,13 @@ pub(super) fn lift_segment<T: Real>(
     let fell_s = fall_time(params, &path, state, (end_p.z, end_v.z));
     let core_x = params.board.core.low.x;
     let mut behind_s = never;
-    let passes = end_p.x.lt(core_x);
+    let passes = end_p.x.lt(core_x) | state.position_m.x.lt(core_x);
     if passes.any() {
-        behind_s = passing_time(&path, state, core_x, (end_p.x, end_v.x)).select(passes, never);
+        let starts_behind = state.position_m.x.lt(core_x);
+        let passing = passing_time(&path, state, core_x, (end_p.x, end_v.x));
+        behind_s = params
+            .zero()
+            .select(starts_behind, passing.select(passes, never));
     }
     let end = Real::min(path.longest_s, Real::min(fell_s, behind_s));
     let start = untouched_time(params, &path, state, (end_p.z, end_v.z));

@@ -73,6 +73,11 @@ impl<T: Real> Solid<T> for Board<T> {
     }
 
     #[inline(always)]
+    fn reach(&self, _ball: &BallParams<T>) -> T {
+        self.core.reach
+    }
+
+    #[inline(always)]
     fn contact(
         &self,
         ball: &BallParams<T>,

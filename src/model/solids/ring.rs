@@ -192,6 +192,11 @@ impl<T: Real> Solid<T> for Ring<T> {
     }
 
     #[inline(always)]
+    fn reach(&self, _ball: &BallParams<T>) -> T {
+        self.reach
+    }
+
+    #[inline(always)]
     fn contact(
         &self,
         ball: &BallParams<T>,

@@ -50,6 +50,9 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// The contact law with the ball.
     fn material(&self) -> &Material<T>;
 
+    /// Distance of the centre of a touching ball from the core, m.
+    fn reach(&self, ball: &BallParams<T>) -> T;
+
     /// Position and motion of the ball relative to the nearest point of the solid, in the frame of the
     /// contact, and the directions (n, 1, 2) of that frame in space.
     fn contact(
