@@ -71,15 +71,32 @@ pub(crate) fn load_profile_with_text(
     };
     // The profile itself must be valid, with its own physics.
     parse_profile(&text, &origin)?;
+    text = without_physics_table(&text);
     if has_physics_table(&text) {
         return Err(Failure::usage(format!(
-            "--physics {name}: {origin} has a [physics] table already; give one of the two"
+            "--physics {name}: write the physics of {origin} as a table [physics], which this option replaces"
         )));
     }
     let table = physics_text(name)?;
-    text.push_str(&format!("\n# --physics {name}\n{}\n", table.trim_end()));
+    text.push_str(&format!("\n\n# --physics {name}\n{}\n", table.trim_end()));
     let profile = parse_profile(&text, &format!("{origin} with --physics {name}"))?;
     Ok((profile, text))
+}
+
+/// A text without its `[physics]` table: from the line of its header to the next header.
+fn without_physics_table(text: &str) -> String {
+    let mut kept = String::new();
+    let mut inside = false;
+    for line in text.split_inclusive('\n') {
+        let start = line.trim_start();
+        if start.starts_with('[') {
+            inside = start.starts_with("[physics]");
+        }
+        if !inside {
+            kept.push_str(line);
+        }
+    }
+    kept
 }
 
 /// The physics of a preset or of a file, and the integrator.

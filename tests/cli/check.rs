@@ -29,7 +29,7 @@ fn contract_check_and_plan_accept_the_shipped_profiles() {
 }
 
 /// What is replaced in the profile of the free throw, and words that the message must have.
-const ERRORS: [(&str, &str, &[&str]); 17] = [
+const ERRORS: [(&str, &str, &[&str]); 30] = [
     (
         "c10 = \"0.25 ft/s\"",
         "c10 = \"0.25\"",
@@ -97,6 +97,80 @@ const ERRORS: [(&str, &str, &[&str]); 17] = [
         "preset = \"paper\"",
         "restitution = 1.5",
         &["physics.restitution", "at most 1"],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nair_density = \"-1 kg/m^3\"",
+        &["physics.air_density", "from 0 to 100"],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nair_density = \"1000 kg/m^3\"",
+        &["physics.air_density", "from 0 to 100"],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nair_density = \"50 kg/m^3\"",
+        &[
+            "physics.air_density",
+            "buoyancy is less than half the weight",
+        ],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nring_tube_diameter = \"-1 in\"",
+        &["physics.ring_tube_diameter", "from 0 to 1 m"],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nring_tube_diameter = \"12 in\"",
+        &[
+            "physics.ring_tube_diameter",
+            "less than the ball's diameter",
+        ],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nbracket_width = \"3 ft\"",
+        &["physics.bracket_width", "less than the ring's diameter"],
+    ),
+    (
+        "preset = \"paper\"",
+        "preset = \"ncaa\"\nboard_edge_radius = \"2 ft\"",
+        &["physics.board_edge_radius", "half the board's width"],
+    ),
+    (
+        "preset = \"paper\"",
+        "hoop_restitution = 1.5",
+        &["physics.hoop_restitution", "at most 1"],
+    ),
+    (
+        "preset = \"paper\"",
+        "friction = 0.5\nhoop_friction = 0.5",
+        &[
+            "physics.hoop_friction",
+            "give either friction or hoop_friction",
+        ],
+    ),
+    (
+        "preset = \"paper\"",
+        "restitution = 0.5\nboard_damping = \"20 kg/s\"",
+        &["give either restitution or board_damping"],
+    ),
+    (
+        "preset = \"paper\"",
+        "altitude = \"5280 ft\"\nair_density = \"1 kg/m^3\"",
+        &["physics.altitude", "give either altitude or air_density"],
+    ),
+    (
+        "preset = \"paper\"",
+        "altitude = \"50000 m\"",
+        &["physics.altitude", "9000 m"],
+    ),
+    (
+        "preset = \"paper\"",
+        "temperature = \"72\"",
+        &["physics.temperature", "72 F"],
     ),
     ("preset = \"paper\"", "preset = \"paper", &["not TOML"]),
 ];

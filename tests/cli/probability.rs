@@ -212,3 +212,25 @@ fn contract_vector_instructions_and_threads_change_no_byte() {
         .exits(2)
         .says("must be one of scalar, baseline");
 }
+
+#[test]
+fn contract_physics_replaces_the_table_of_the_profile() {
+    let p = |flags: &[&str]| {
+        probability(&[&["--target", "0.003", "--json"], flags].concat())
+            .exits(0)
+            .json()["probability"]
+            .as_f64()
+            .unwrap()
+    };
+    let (own, paper) = (p(&[]), p(&["--physics", "paper"]));
+    assert_eq!(own, paper);
+    let ncaa = p(&["--physics", "ncaa", "--speed", "24.3 ft/s"]);
+    assert!(
+        (0.65..0.80).contains(&ncaa) && ncaa > own + 0.03,
+        "{ncaa} {own}"
+    );
+    // In air the paper's best speed is too slow.
+    assert!(p(&["--physics", "ncaa"]) < own - 0.1);
+    let answer = probability(&["--physics", "ncaaa"]).exits(2);
+    answer.says("is neither a preset (paper, ncaa, ");
+}

@@ -104,7 +104,7 @@ fn contract_bad_headers_and_physics_are_refused() {
     }
     let (code, _, message) = simulate(&folder, RELEASES, &["--physics", "moon"]);
     assert_eq!(code, Some(2));
-    assert!(message.contains("neither the preset"), "{message}");
+    assert!(message.contains("neither a preset"), "{message}");
     let bad = "[physics]\nrestitution = 0.8457\nball_mass = \"21 ft\"\n";
     let path = write_file(&folder, "physics.toml", bad);
     let options = ["--physics", path.to_str().unwrap()];

@@ -11,5 +11,6 @@ mod nominal_tables;
 mod paper_figures;
 mod probability_methods;
 mod published;
+mod real_hoop;
 mod search;
 mod sensitivity;

@@ -213,7 +213,9 @@ mod tests {
                 spin_rad_s: Vec3::zeros(),
             };
             let (before, after) = (at(0.0), at(dt));
-            let end = GapAtEnd::new(&params, &params.board, &after, 1.0);
+            let speed = |state: &BallState| state.velocity_m_s.abs().sum();
+            let path = (speed(&before) + speed(&after)) * dt;
+            let end = GapAtEnd::new(&params, &params.board, &after, path);
             let (again, share) = passed(&params, &params.board, &before, &end, dt);
             let turn = (-rate / acceleration).clamp(0.0, dt);
             let gap_at = |t: f64| params.board.gap(&params.ball, &at(t)).0;

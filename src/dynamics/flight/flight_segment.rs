@@ -69,7 +69,10 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #![proptest_config(ProptestConfig {
+            max_global_rejects: 200_000,
+            ..ProptestConfig::with_cases(20_000)
+        })]
         /// Authority: the gap at 400 times of the segment.
         #[test]
         fn prop_no_touch_is_missed(
