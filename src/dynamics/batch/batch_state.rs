@@ -13,7 +13,7 @@ use fearless_simd::Simd;
 
 /// A batch that is being simulated.
 ///
-/// `WIDTH` is [`WIDE`], [`NARROW`] or [`BASELINE`].
+/// `WIDTH` is [`WIDE`] or [`NARROW`].
 pub(super) struct Batch<'a, S: Simd, const WIDTH: u8> {
     pub(super) simd: S,
     pub(super) params: &'a ModelParams,
@@ -26,10 +26,6 @@ pub(super) struct Batch<'a, S: Simd, const WIDTH: u8> {
 pub(super) const WIDE: u8 = 2;
 /// Eight lanes; with AVX2 they are several registers already.
 pub(super) const NARROW: u8 = 1;
-/// Eight lanes on registers of two. The two phases with most values (flights in segments, contacts in the frame of
-/// space) run the scalar code: in lanes they would take a third of all compile time.
-pub(super) const BASELINE: u8 = 0;
-
 /// Eight lanes.
 pub(super) type Narrow<S> = F64x8<S>;
 /// Sixteen lanes.
@@ -61,14 +57,6 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         match event_driven::run_segment(self.params, self.limits, shot) {
             Some(verdict) => self.workspace.record(slot, verdict),
             None => self.workspace.enqueue(slot),
-        }
-    }
-
-    /// Simulates one segment of each shot that waits for `phase` with the scalar code.
-    pub(super) fn run_one_by_one(&mut self, phase: Phase) {
-        let waiting = std::mem::take(self.workspace.queue_mut(phase));
-        for slot in waiting {
-            self.run_scalar(slot);
         }
     }
 

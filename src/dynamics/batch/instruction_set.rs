@@ -46,8 +46,14 @@ impl InstructionSet {
         let _ = DEFAULT.set(self);
     }
 
+    /// The instructions of the lanes; none for one shot at a time. That is also what x86-64 without AVX2 does: its registers
+    /// hold two numbers, and lanes of them would take a third of the time to compile the library.
     pub(crate) fn level(self) -> Option<Level> {
-        self.0
+        #[cfg(target_arch = "x86_64")]
+        let level = self.0.filter(|level| level.as_avx2().is_some());
+        #[cfg(not(target_arch = "x86_64"))]
+        let level = self.0;
+        level
     }
 }
 

@@ -9,7 +9,7 @@
 //! It is the same generic code as for one shot, with the same operations in the same order. So the verdicts are
 //! the same, bit for bit.
 
-use super::batch_state::{BASELINE, Batch, NARROW, Narrow, NarrowSingle, WIDE, Wide, WideSingle};
+use super::batch_state::{Batch, NARROW, Narrow, NarrowSingle, WIDE, Wide, WideSingle};
 use super::board_contact_phase::board_contact;
 use super::flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
@@ -23,7 +23,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 use fearless_simd::{Level, Simd};
 
-/// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace.
+/// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace. `level` is one of those
+/// that [`InstructionSet::level`](super::instruction_set::InstructionSet::level) gives.
 pub(crate) fn run(
     level: Level,
     params: &ModelParams,
@@ -31,16 +32,11 @@ pub(crate) fn run(
     starts: &[BallState],
     workspace: &mut BatchWorkspace,
 ) {
-    // `dispatch!` would also compile the batch for SSE4.2. That would take a third more time to compile and
-    // gain little over SSE2.
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = level.as_avx512() {
         Batch::<_, WIDE>::run(simd, params, limits, starts, workspace);
     } else if let Some(simd) = level.as_avx2() {
         Batch::<_, NARROW>::run(simd, params, limits, starts, workspace);
-    } else {
-        let simd = level.as_sse2().expect("every x86-64 has SSE2");
-        Batch::<_, BASELINE>::run(simd, params, limits, starts, workspace);
     }
     #[cfg(not(target_arch = "x86_64"))]
     fearless_simd::dispatch!(level, simd => {
@@ -103,10 +99,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             Phase::Flight if !self.params.has_paper_flight() => {
                 if WIDTH == WIDE {
                     fly_in_segments::<S, Wide<S>, WIDTH>(self);
-                } else if WIDTH == NARROW {
-                    fly_in_segments::<S, Narrow<S>, WIDTH>(self);
                 } else {
-                    self.run_one_by_one(phase);
+                    fly_in_segments::<S, Narrow<S>, WIDTH>(self);
                 }
             }
             Phase::Flight if WIDTH == WIDE => fly::<S, Wide<S>, WIDTH>(self),
@@ -118,13 +112,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 on_solid::<S, WideSingle<S>, WIDTH>(self, solid)
             }
             Phase::Single(solid) => on_solid::<S, NarrowSingle<S>, WIDTH>(self, solid),
-            Phase::InSpace => {
-                if WIDTH == BASELINE {
-                    self.run_one_by_one(phase);
-                } else {
-                    in_space::<S, Narrow<S>, WIDTH>(self);
-                }
-            }
+            Phase::InSpace => in_space::<S, Narrow<S>, WIDTH>(self),
         }
     }
 }
