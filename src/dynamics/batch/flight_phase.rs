@@ -153,6 +153,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             let shot = &mut self.workspace.slots[slots[lane] as usize];
             if bit(end.needs_scalar, lane) || shot.segments >= MAX_SEGMENTS {
                 remaining &= !(1 << lane);
+                block.vacate(lane);
                 self.run_scalar(slots[lane]);
                 continue;
             }

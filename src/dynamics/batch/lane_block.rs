@@ -218,6 +218,12 @@ impl LaneBlock {
         count_step(&mut self.steps, max_steps)
     }
 
+    /// Takes the shot out of a lane, and leaves it as it was.
+    #[inline(always)]
+    pub(super) fn vacate(&mut self, lane: usize) {
+        set_bit(&mut self.flags.occupied, lane, false);
+    }
+
     /// Takes the shot out of a lane; its contacts are left as they were.
     #[inline(always)]
     pub(super) fn remove(&mut self, lane: usize, shot: &mut ShotProgress) {

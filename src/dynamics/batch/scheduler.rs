@@ -17,7 +17,6 @@ use super::segment_flight_phase::fly_in_segments;
 use super::space_contact_phase::in_space;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::ShotLimits;
-use crate::dynamics::integrators::event_driven::{self, solids_touched_at_release};
 use crate::math::real::SimdReal;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
@@ -61,7 +60,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         };
         loop {
             if !params.has_paper_flight() {
-                batch.enqueue_starts(starts);
+                if WIDTH == WIDE {
+                    fly_in_segments::<S, Wide<S>, WIDTH>(&mut batch, starts);
+                } else {
+                    fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
+                }
             } else if WIDTH == WIDE {
                 fly_from_release::<S, Wide<S>, WIDTH>(&mut batch, starts);
             } else {
@@ -76,33 +79,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         }
     }
 
-    /// Puts shots that have not started yet into the queue of the flights, as long as there are free slots.
-    fn enqueue_starts(&mut self, starts: &[BallState]) {
-        loop {
-            let shots = self.workspace.next_starts(1);
-            let Some(start) = starts[shots.clone()].first() else {
-                return;
-            };
-            if solids_touched_at_release(self.params, start).contains(&true) {
-                self.workspace.verdicts[shots.start] =
-                    event_driven::run(self.params, self.limits, *start, &mut ());
-            } else {
-                let slot = self.workspace.occupy(self.params, shots.start, start);
-                self.workspace.queue_mut(Phase::Flight).push(slot);
-            }
-        }
-    }
-
     /// Simulates the shots that wait for a phase.
     fn run_phase(&mut self, phase: Phase) {
         match phase {
-            Phase::Flight if !self.params.has_paper_flight() => {
-                if WIDTH == WIDE {
-                    fly_in_segments::<S, Wide<S>, WIDTH>(self);
-                } else {
-                    fly_in_segments::<S, Narrow<S>, WIDTH>(self);
-                }
-            }
+            // Done above, with the shots that start.
+            Phase::Flight if !self.params.has_paper_flight() => {}
             Phase::Flight if WIDTH == WIDE => fly::<S, Wide<S>, WIDTH>(self),
             Phase::Flight => fly::<S, Narrow<S>, WIDTH>(self),
             Phase::Single(solid) if !self.limits.single_precision => {

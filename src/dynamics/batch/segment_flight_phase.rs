@@ -4,30 +4,80 @@
 use super::batch_state::Batch;
 use super::flight_phase::{FlightEnd, store_ring_motions};
 use super::lane_block::{LaneBlock, LaneShots};
+use super::workspace::Phase;
 use crate::dynamics::end_rules::rose_to_ring;
 use crate::dynamics::flight::FlightSegment;
-use crate::math::real::SimdReal;
-use crate::model::SolidId;
+use crate::dynamics::integrators::event_driven::{self, solids_touched_at_release};
+use crate::math::real::{Mask, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
+use crate::model::{BallState, SolidId};
 use fearless_simd::Simd;
 
-/// Flies every shot that waits for flight, to its end or its next touch.
+/// Starts shots, as long as there are free slots, and flies every shot that waits for flight to its end or its next
+/// touch.
 ///
 /// The phases stand in separate modules, so that the compiler translates them in parallel.
 #[inline(never)]
-pub(super) fn fly_in_segments<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
-where
+pub(super) fn fly_in_segments<S, T, const WIDTH: u8>(
+    batch: &mut Batch<S, WIDTH>,
+    starts: &[BallState],
+) where
     S: Simd,
     T: SimdReal<Simd = S, Element = f64>,
 {
     batch.simd.vectorize(
         #[inline(always)]
-        || batch.fly_in_segments::<T>(),
+        || {
+            batch.start_shots::<T>(starts);
+            batch.fly_in_segments::<T>();
+        },
     );
 }
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
+    /// Flies shots side by side from their releases until one of them comes near the hoop, and puts them into the queue of
+    /// the flights.
+    #[inline(always)]
+    fn start_shots<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
+        let params = &self.lane_params::<T>();
+        let time_limit = params.splat(self.limits.time_limit_s);
+        let mut block = LaneBlock::new();
+        loop {
+            let numbers = self.workspace.next_starts(T::LANES);
+            if numbers.is_empty() {
+                return;
+            }
+            let starts = &starts[numbers.clone()];
+            block.fill_at_release(starts);
+            let mut shots = block.load::<T>(self.simd);
+            while !params.ball.has_lift
+                && let Some(segment) = FlightSegment::far_from_all(params, &shots.state)
+            {
+                let time_s = shots.time_s + segment.dt;
+                if time_limit.lt(time_s).any() {
+                    break;
+                }
+                shots
+                    .crossing
+                    .after_segment(&segment, params.splat_mask(true));
+                (shots.state, shots.time_s) = (segment.end, time_s);
+            }
+            block.store(&shots);
+            for (lane, start) in starts.iter().enumerate() {
+                let number = numbers.start + lane;
+                if solids_touched_at_release(self.params, start).contains(&true) {
+                    self.workspace.verdicts[number] =
+                        event_driven::run(self.params, self.limits, *start, &mut ());
+                } else {
+                    let slot = self.workspace.occupy(self.params, number, start);
+                    block.remove(lane, &mut self.workspace.slots[slot as usize]);
+                    self.workspace.queue_mut(Phase::Flight).push(slot);
+                }
+            }
+        }
+    }
+
     /// Flies the shots that wait, a segment at a time. Lanes whose flight has ended are refilled.
     #[inline(always)]
     fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self) {

@@ -38,9 +38,6 @@ pub(super) fn drag_segment<T: Real>(
 ) -> FlightSegment<T> {
     let (one, never) = (params.one(), params.ball.never_s);
     let arc = DragArc::new(&params.ball, state);
-    if is_far(params, &arc, state).all() {
-        return far_segment(params, &arc, state);
-    }
     let fell = fall_place(params, &arc, state);
     let board = board_place(params, &arc, state);
     let last = Real::min(one, Real::min(fell, board.behind));
@@ -85,6 +82,19 @@ pub(super) fn drag_segment<T: Real>(
         rises,
         rises_inside,
     }
+}
+
+/// The segment that starts at `state` if on it no ball, in any lane, can touch anything.
+#[inline(always)]
+pub(super) fn far_segment_of_all<T: Real>(
+    params: &ModelParams<T>,
+    state: &BallState<T>,
+) -> Option<FlightSegment<T>> {
+    let arc = DragArc::new(&params.ball, state);
+    is_far(params, &arc, state).all().then(
+        #[inline(always)]
+        || far_segment(params, &arc, state),
+    )
 }
 
 /// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens on it.

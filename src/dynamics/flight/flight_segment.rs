@@ -1,7 +1,7 @@
 //! A flight under drag and lift, or at solids with edges and bracket, in segments: each is the time for which one
 //! polynomial holds, or less if the flight ends in it.
 
-use super::drag_segment::drag_segment;
+use super::drag_segment::{drag_segment, far_segment_of_all};
 use super::lift_segment::lift_segment;
 use crate::math::real::Real;
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -44,6 +44,12 @@ impl<T: Real> FlightSegment<T> {
     #[inline(always)]
     pub(crate) fn without_lift(params: &ModelParams<T>, state: &BallState<T>) -> Self {
         drag_segment(params, state)
+    }
+
+    /// The same if on it no ball, in any lane, can touch anything.
+    #[inline(always)]
+    pub(crate) fn far_from_all(params: &ModelParams<T>, state: &BallState<T>) -> Option<Self> {
+        far_segment_of_all(params, state)
     }
 
     /// Whether the flight ends with this segment.
