@@ -199,12 +199,18 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
     /// Never, if not on this arc.
     #[inline(always)]
     fn falls_through(&self, height: T) -> T {
-        self.falling_place(height)
+        height.outlined(
+            #[inline(always)]
+            || self.falling_place(height),
+        )
     }
 
     #[inline(always)]
     fn rises_through(&self, height: T) -> T {
-        self.rising_place(height)
+        height.outlined(
+            #[inline(always)]
+            || self.rising_place(height),
+        )
     }
 
     /// The horizontal speed only falls, so -z'' is greatest at the end.

@@ -37,7 +37,7 @@ pub(super) fn drag_segment<T: Real>(
     state: &BallState<T>,
 ) -> FlightSegment<T> {
     let (one, never) = (params.one(), params.ball.never_s);
-    let arc = DragArc::new(&params.ball, state);
+    let arc = arc_of(params, state);
     let fell = fall_place(params, &arc, state);
     let board = board_place(params, &arc, state);
     let last = Real::min(one, Real::min(fell, board.behind));
@@ -90,10 +90,18 @@ pub(super) fn far_segment_of_all<T: Real>(
     params: &ModelParams<T>,
     state: &BallState<T>,
 ) -> Option<FlightSegment<T>> {
-    let arc = DragArc::new(&params.ball, state);
+    let arc = arc_of(params, state);
     is_far(params, &arc, state).all().then(
         #[inline(always)]
         || far_segment(params, &arc, state),
+    )
+}
+
+#[inline(always)]
+fn arc_of<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> DragArc<T> {
+    params.one().outlined(
+        #[inline(always)]
+        || DragArc::new(&params.ball, state),
     )
 }
 
