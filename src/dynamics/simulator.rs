@@ -3,7 +3,7 @@
 use super::batch::{self, BatchWorkspace, InstructionSet};
 use super::contact::oscillator::Oscillator;
 use super::end_rules::ShotLimits;
-use super::flight::{FlightEvents, FlightSegment, falls_through, height_at_length_m};
+use super::flight::{FlightEvents, falls_through, height_at_length_m, next_segment};
 use super::integrators::event_driven;
 use super::integrators::paper_rk4::{self, StepRange};
 use super::observer::Observer;
@@ -370,7 +370,7 @@ impl Simulator {
             return FlightEvents::new(&self.params, &state).first_touch();
         }
         loop {
-            let segment = FlightSegment::new(&self.params, &state);
+            let segment = next_segment(&self.params, &state);
             if segment.ends() {
                 let touches = |solid: &SolidId| segment.touches[solid.index()];
                 return SolidId::ALL.into_iter().find(touches);

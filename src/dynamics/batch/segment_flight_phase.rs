@@ -6,7 +6,7 @@ use super::flight_phase::{FlightEnd, store_ring_motions};
 use super::lane_block::{LaneBlock, LaneShots};
 use super::workspace::Phase;
 use crate::dynamics::end_rules::rose_to_ring;
-use crate::dynamics::flight::FlightSegment;
+use crate::dynamics::flight::{drag_segment, far_segment_of_all};
 use crate::dynamics::integrators::event_driven::{self, solids_touched_at_release};
 use crate::math::real::{Mask, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -52,7 +52,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             block.fill_at_release(starts);
             let mut shots = block.load::<T>(self.simd);
             while !params.ball.has_lift
-                && let Some(segment) = FlightSegment::far_from_all(params, &shots.state)
+                && let Some(segment) = far_segment_of_all(params, &shots.state)
             {
                 let time_s = shots.time_s + segment.dt;
                 if time_limit.lt(time_s).any() {
@@ -118,7 +118,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         flight: &mut SegmentedFlight<T>,
     ) {
         let flying = flight.flying;
-        let segment = FlightSegment::without_lift(params, &shots.state);
+        let segment = drag_segment(params, &shots.state);
         let dt = segment.dt.select(flying, params.zero());
         shots.crossing.after_segment(&segment, flying);
         shots.state = segment.end.select(flying, shots.state);

@@ -32,7 +32,7 @@ struct BoardPlace<T: Real> {
 
 /// The segment that starts at `state`.
 #[inline(always)]
-pub(super) fn drag_segment<T: Real>(
+pub(crate) fn drag_segment<T: Real>(
     params: &ModelParams<T>,
     state: &BallState<T>,
 ) -> FlightSegment<T> {
@@ -86,7 +86,7 @@ pub(super) fn drag_segment<T: Real>(
 
 /// The segment that starts at `state` if on it no ball, in any lane, can touch anything.
 #[inline(always)]
-pub(super) fn far_segment_of_all<T: Real>(
+pub(crate) fn far_segment_of_all<T: Real>(
     params: &ModelParams<T>,
     state: &BallState<T>,
 ) -> Option<FlightSegment<T>> {

@@ -12,11 +12,14 @@ mod flight_segment;
 pub(crate) mod height_crossing;
 mod height_path;
 mod lift_segment;
+mod next_segment;
 mod ring_search;
 mod safe_step;
 mod undisturbed_flight;
 
+pub(crate) use drag_segment::{drag_segment, far_segment_of_all};
 pub(crate) use flight_events::FlightEvents;
 pub(crate) use flight_path::FlightPath;
 pub(crate) use flight_segment::FlightSegment;
+pub(crate) use next_segment::next_segment;
 pub(crate) use undisturbed_flight::{falls_through, height_at_length_m, highest_point_m};

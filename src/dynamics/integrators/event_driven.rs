@@ -10,7 +10,7 @@ use crate::dynamics::contact::space_contact_step::{self, SpaceContact, SpaceCont
 use crate::dynamics::end_rules::{
     ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
 };
-use crate::dynamics::flight::{FlightEvents, FlightPath, FlightSegment};
+use crate::dynamics::flight::{FlightEvents, FlightPath, FlightSegment, next_segment};
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
@@ -344,7 +344,7 @@ impl<O: Observer> Run<'_, O> {
     fn fly_in_segments(&mut self) -> Option<Verdict> {
         let params = self.params;
         loop {
-            let segment = FlightSegment::new(params, &self.shot.state);
+            let segment = next_segment(params, &self.shot.state);
             let left_s = self.limits.time_limit_s - self.shot.time_s;
             if segment.dt > left_s {
                 self.advance_segment(&segment, left_s);
