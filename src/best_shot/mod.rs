@@ -1,7 +1,9 @@
 //! The best direct and the best bank shot from one location (Eq. 26).
 
 mod pattern_search;
+mod physics_comparison;
 mod search;
 
 pub use crate::shooter::ShotKind;
+pub use physics_comparison::{PhysicsRow, PhysicsVariant, compare_physics, physics_variants};
 pub use search::{BestShot, BestShotError, BestShots, Limit, NoShot, find, find_kinds};

@@ -55,6 +55,8 @@ pub(crate) enum Command {
     Compare(CompareOptions),
     /// Check a profile or a sweep and list everything that is wrong with it.
     Check(CheckOptions),
+    /// Compare the best shots under the presets of physics and under single changes of it.
+    Physics(PhysicsOptions),
     /// Say what `best` or `sweep` would simulate, how long it takes and how much memory it needs. For a profile,
     /// also check that the search range misses no makes.
     Plan(PlanOptions),
@@ -125,6 +127,20 @@ pub(crate) struct CheckOptions {
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct PhysicsOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// Print one JSON array (SI units).
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Units of the output [default: the profile's].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
 }
 
 #[derive(Args, Debug)]

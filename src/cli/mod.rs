@@ -15,7 +15,8 @@ mod value_parsers;
 use clap::{CommandFactory, Parser};
 use command_line_flags::{Arguments, Command};
 use commands::{
-    best, check, compare, figures, plan, probability, report, simulate, sweep, sweep_status, trace,
+    best, check, compare, figures, physics, plan, probability, report, simulate, sweep,
+    sweep_status, trace,
 };
 use failure::{Failure, code};
 use std::process::ExitCode;
@@ -59,6 +60,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Best(options) => best::run(options, quiet),
         Command::Compare(options) => compare::run(options, quiet),
         Command::Check(options) => check::run(options),
+        Command::Physics(options) => physics::run(options, quiet),
         Command::Plan(options) => plan::run(options, quiet),
         Command::Probability(options) => probability::run(options, quiet),
         Command::Simulate(options) => simulate::run(options, quiet),

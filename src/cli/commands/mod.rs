@@ -4,6 +4,7 @@ pub(super) mod best;
 pub(super) mod check;
 pub(super) mod compare;
 pub(super) mod figures;
+pub(super) mod physics;
 pub(super) mod plan;
 mod plan_sweep_time_and_memory;
 pub(super) mod probability;

@@ -1,0 +1,129 @@
+//! How much of an answer rests on the physics: best shots under other physics.
+
+use super::search::{BestShot, BestShotError, NoShot, find_kinds};
+use crate::analysis::aim_past_hoop::aim_past_centre_m;
+use crate::analysis::sensitivity::SensitivityTopics;
+use crate::model::{Air, PRESETS, Physics, SolidId};
+use crate::probability::{Estimate, Progress, Sampler};
+use crate::shooter::{Profile, ShotKind};
+
+/// A physics to compare with.
+#[derive(Clone, Debug)]
+pub struct PhysicsVariant {
+    /// What it is, or what it changes.
+    pub name: String,
+    /// It.
+    pub physics: Physics,
+}
+
+/// The best shots under one physics.
+#[derive(Clone, Debug)]
+pub struct PhysicsRow {
+    /// What the physics is, or what it changes.
+    pub name: String,
+    /// The best direct shot.
+    pub direct: Result<BestShot, NoShot>,
+    /// The best bank shot.
+    pub bank: Result<BestShot, NoShot>,
+    /// Where the undisturbed path of the best direct shot falls past the hoop's centre, m.
+    pub aim_past_centre_m: Option<f64>,
+    /// P, here, of the direct shot that is best in the first row.
+    pub first_shot: Option<Estimate>,
+}
+
+/// The physics of a profile, every preset, and single changes: of the profile's own physics if it has air, of
+/// `ncaa` otherwise.
+#[must_use]
+pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
+    let variant = |name: &str, physics: &Physics| PhysicsVariant {
+        name: name.to_owned(),
+        physics: physics.clone(),
+    };
+    let mut variants = vec![variant("the profile's", own)];
+    variants.extend(
+        PRESETS
+            .iter()
+            .map(|preset| variant(preset.name, &preset.physics())),
+    );
+    let has_air = own.air.density_kg_m3 > 0.0;
+    let ncaa = PRESETS.iter().find(|preset| preset.name == "ncaa");
+    let base = match ncaa {
+        Some(preset) if !has_air => preset.physics(),
+        _ => own.clone(),
+    };
+    let of = if has_air { "the profile's" } else { "ncaa" };
+    let changes: [(&str, fn(&mut Physics)); 8] = [
+        ("no air", |physics| physics.air = Air::NONE),
+        ("air of 5280 ft", |physics| physics.air.density_kg_m3 = 0.98),
+        ("lift_slope 1", |physics| physics.air.lift_slope = 1.0),
+        ("a ring of no thickness", |physics| {
+            physics.ring_tube_diameter_m = 0.0;
+        }),
+        ("no bracket", |physics| physics.bracket_width_m = 0.0),
+        ("a soft hoop, restitution 0.45", |physics| {
+            set_restitution(physics, 0.45);
+        }),
+        ("a hard hoop, restitution 0.70", |physics| {
+            set_restitution(physics, 0.70);
+        }),
+        ("friction 0.8", |physics| {
+            *physics = physics
+                .clone()
+                .with_contacts(|contact| contact.friction = 0.8);
+        }),
+    ];
+    variants.extend(changes.into_iter().map(|(name, change)| {
+        let mut physics = base.clone();
+        change(&mut physics);
+        variant(&format!("{of} with {name}"), &physics)
+    }));
+    variants
+}
+
+fn set_restitution(physics: &mut Physics, restitution: f64) {
+    physics
+        .set_restitution_on(SolidId::Ring, restitution)
+        .expect("between 0 and 1");
+}
+
+/// The best shots of a profile under each physics. One under which the profile is not valid is left out.
+///
+/// # Errors
+/// There is no plan under the first of them.
+pub fn compare_physics(
+    profile: &Profile,
+    variants: &[PhysicsVariant],
+    progress: &dyn Progress,
+) -> Result<Vec<PhysicsRow>, BestShotError> {
+    let mut rows: Vec<PhysicsRow> = Vec::new();
+    for variant in variants {
+        let other = profile.with(|settings| settings.physics = variant.physics.clone());
+        let Ok(other) = other else { continue };
+        let found = find_kinds(&other, &ShotKind::ALL, SensitivityTopics::NONE, progress);
+        let mut shots = match found {
+            Ok((_, shots)) => shots,
+            Err(error) if rows.is_empty() => return Err(error),
+            Err(_) => continue,
+        };
+        let none = |kind| Err(NoShot::Impossible(kind));
+        let bank = shots.pop().unwrap_or_else(|| none(ShotKind::Bank));
+        let direct = shots.pop().unwrap_or_else(|| none(ShotKind::Direct));
+        let first = rows.first().map_or(&direct, |row| &row.direct);
+        let search = other.search();
+        let first_shot = first.as_ref().ok().map(|shot| {
+            let sampler = Sampler::new(&other);
+            sampler.estimate(&shot.nominal, search.standard_error, search.seed, progress)
+        });
+        rows.push(PhysicsRow {
+            name: variant.name.clone(),
+            aim_past_centre_m: direct
+                .as_ref()
+                .ok()
+                .and_then(|shot| aim_past_centre_m(&other, &shot.nominal)),
+            direct,
+            bank,
+            first_shot,
+        });
+    }
+    Ok(rows)
+}

@@ -1,0 +1,97 @@
+//! `bankshot physics`: how much of the answer rests on the physics.
+
+use crate::cli::command_line_flags::PhysicsOptions;
+use crate::cli::config_files::load_profile;
+use crate::cli::failure::{Failure, code};
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::print_answer;
+use bankshot::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
+use bankshot::shooter::Profile;
+use bankshot::units::{DEGREE_RAD, UnitSystem};
+use comfy_table::{CellAlignment, Table, presets};
+use serde_json::{Value, json};
+
+pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> {
+    let mut profile = load_profile(&options.profile, &options.physics)?;
+    if let Some(units) = options.units {
+        profile = profile.with(|settings| settings.output.units = units.into())?;
+    }
+    let variants = physics_variants(profile.physics());
+    let rows = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+    print_answer(&if options.json {
+        format!("{:#}\n", rows_json(&rows))
+    } else {
+        rows_text(&profile, &rows)
+    })?;
+    Ok(code::DONE)
+}
+
+fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
+    let units = profile.output().units;
+    let (long, metre) = units.length();
+    let (short, short_m) = match units {
+        UnitSystem::Imperial => ("in", 0.0254),
+        UnitSystem::Metric => ("cm", 0.01),
+    };
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(vec![
+        "physics".to_owned(),
+        "direct\nP".to_owned(),
+        format!("speed\n{long}/s"),
+        "pitch\ndeg".to_owned(),
+        format!("past\ncentre {short}"),
+        "bank\nP".to_owned(),
+        "P of the\nfirst row's shot".to_owned(),
+    ]);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let p = |shot: &Result<BestShot, NoShot>| match shot {
+        Ok(shot) => format!("{:.3}", shot.estimate.probability),
+        Err(_) => "none".to_owned(),
+    };
+    for row in rows {
+        let nominal = row.direct.as_ref().ok().map(|shot| shot.nominal);
+        let number = |value: Option<f64>, digits: usize| {
+            value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        table.add_row(vec![
+            row.name.clone(),
+            p(&row.direct),
+            number(nominal.map(|shot| shot.speed_m_s / metre), 2),
+            number(nominal.map(|shot| shot.pitch_rad / DEGREE_RAD), 1),
+            number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
+            p(&row.bank),
+            number(row.first_shot.as_ref().map(|p| p.probability), 3),
+        ]);
+    }
+    format!(
+        "{table}\nThe first row's shot is the best direct one under the profile's physics, released the same way everywhere.\n"
+    )
+}
+
+fn rows_json(rows: &[PhysicsRow]) -> Value {
+    let shot = |shot: &Result<BestShot, NoShot>| match shot {
+        Ok(shot) => json!({
+            "probability": shot.estimate.probability,
+            "standard_error": shot.estimate.standard_error,
+            "speed_m_s": shot.nominal.speed_m_s,
+            "pitch_rad": shot.nominal.pitch_rad,
+            "polar_rad": shot.nominal.polar_rad,
+            "backspin_rad_s": shot.nominal.backspin_rad_s,
+        }),
+        Err(reason) => json!({ "none": reason.to_string() }),
+    };
+    rows.iter()
+        .map(|row| {
+            json!({
+                "physics": row.name,
+                "direct": shot(&row.direct),
+                "bank": shot(&row.bank),
+                "aim_past_centre_m": row.aim_past_centre_m,
+                "first_shot_probability": row.first_shot.as_ref().map(|p| p.probability),
+            })
+        })
+        .collect()
+}
