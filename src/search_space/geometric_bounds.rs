@@ -11,6 +11,7 @@
 //! the greatest backspin and the greatest forward spin that errors bring about.
 
 use crate::dynamics::{Release, Simulator};
+use crate::model::BoardEdge;
 use crate::shooter::{Location, Nominal, Profile};
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
@@ -57,6 +58,11 @@ impl Bracket {
         let drag = physics.drag_per_m() * location.distance_m;
         let least =
             least_speed_m_s(location.distance_m, -start_height_m, gravity_m_s2) * (1.0 + drag);
+        // A ball that rolls over the edge of the board can still come back.
+        let over_edge_m = match physics.board_edge {
+            BoardEdge::None => 0.0,
+            BoardEdge::Rounded { .. } => physics.ball_radius_m,
+        };
         let contact_m = physics.ball_radius_m + physics.ring_tube_radius_m();
         let mut bracket = Self {
             polar_rad: (0.0, 0.0),
@@ -72,7 +78,7 @@ impl Bracket {
             gravity_m_s2,
             air: paths_in_air(profile),
             face_x_m: -physics.board_distance_m,
-            board_top_m: physics.board_centre_z_m() + 0.5 * physics.board_height_m,
+            board_top_m: physics.board_centre_z_m() + 0.5 * physics.board_height_m + over_edge_m,
             board_half_width_m: 0.5 * physics.board_width_m,
         };
         let restitution = physics.restitution();

@@ -93,8 +93,12 @@ fn energy_never_grows(physics: &Physics, shots: usize) {
     releases.extend(at_edges);
     for release in releases {
         let trace = simulator.trace(&release, 0.02).unwrap();
+        // Where the paper's board would act at once on a compressed ball, the shot ends.
+        let comes_from_beside = trace.outcome.verdict.ending == Ending::BehindBoard
+            && physics.board_edge == BoardEdge::None;
+        let count = trace.samples.len() - usize::from(comes_from_beside);
         let mut last = f64::INFINITY;
-        for sample in &trace.samples {
+        for sample in &trace.samples[..count] {
             let now = energy(physics, &sample.state);
             assert!(
                 now <= last * (1.0 + 2e-6),

@@ -157,7 +157,6 @@ fn text(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> String {
 
 /// Forecast of the time of `best`, from a batch of shots of the bracket.
 fn forecast_s(profile: &Profile, plan: &TablePlan) -> f64 {
-    let began = Instant::now();
     let mut starts = Vec::new();
     for i in 0..FORECAST_SHOTS {
         // A Kronecker sequence.
@@ -177,6 +176,7 @@ fn forecast_s(profile: &Profile, plan: &TablePlan) -> f64 {
         starts.push(profile.release(&nominal).state());
     }
     let mut workspace = BatchWorkspace::default();
+    let began = Instant::now();
     let _ = std::hint::black_box(profile.simulator().verdicts(&starts, &mut workspace));
     let per_shot = began.elapsed().as_secs_f64() / f64::from(FORECAST_SHOTS);
     per_shot * (plan.shots + WINDOWS * profile.grid().points() + SEARCH_SHOTS) as f64

@@ -227,7 +227,8 @@ mod tests {
                 // The shorter step goes to the touch or to the closest point, or is one of several towards it.
                 let reached = gap_at(share * dt);
                 prop_assert!(share < 1.0 && reached > least - 1e-9);
-                prop_assert!(reached < gap_at(0.0) + 1e-9);
+                // A touch in the first hundredths of the step is passed by the shortest step.
+                prop_assert!(reached < gap_at(0.0) + 1e-9 || share <= SHARE.0);
             }
         }
     }
