@@ -114,15 +114,15 @@ impl Observer for OutcomeClassifier {
         let is_wanted = is_first_flight || self.awaits_flight_off_board;
         let (z, vz) = path.height_and_rate(dt);
         let crosses = z <= 0.0 && vz < 0.0;
-        if is_wanted || crosses {
-            if let Some((state, t)) = falls_through(params, &path.state_after(0.0), 0.0) {
-                let crossing = (state.position_m.x, state.position_m.y);
-                if is_wanted {
-                    self.undisturbed_crossing_m = Some(crossing);
-                }
-                if t > 0.0 && t <= dt {
-                    self.record_entry(crossing, state.velocity_m_s);
-                }
+        if (is_wanted || crosses)
+            && let Some((state, t)) = falls_through(params, &path.state_after(0.0), 0.0)
+        {
+            let crossing = (state.position_m.x, state.position_m.y);
+            if is_wanted {
+                self.undisturbed_crossing_m = Some(crossing);
+            }
+            if t > 0.0 && t <= dt {
+                self.record_entry(crossing, state.velocity_m_s);
             }
         }
         self.awaits_flight_off_board = false;

@@ -214,7 +214,8 @@ impl Physics {
     /// Gravity less the buoyancy of the ball, m/s^2.
     #[must_use]
     pub fn gravity_less_buoyancy_m_s2(&self) -> f64 {
-        let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * self.ball_radius_m.powi(3);
+        let radius = self.ball_radius_m;
+        let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
         self.gravity_m_s2 * (1.0 - self.air.density_kg_m3 * volume_m3 / self.ball_mass_kg)
     }
 

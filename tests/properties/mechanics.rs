@@ -14,8 +14,8 @@ use std::collections::HashSet;
 
 /// Distance of a point from the box between two corners.
 fn distance_from_box(p: [f64; 3], low: [f64; 3], high: [f64; 3]) -> f64 {
-    let squares = [0, 1, 2].map(|i| (p[i] - p[i].clamp(low[i], high[i])).powi(2));
-    squares.iter().sum::<f64>().sqrt()
+    let beyond = [0, 1, 2].map(|i| p[i] - p[i].clamp(low[i], high[i]));
+    beyond.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// How much board and hoop compress the ball, m.

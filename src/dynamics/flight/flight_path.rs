@@ -102,8 +102,8 @@ impl<T: Real> FlightPath<T> {
             let rate = lift * ball.lift - product * ball.drag;
             velocity[n + 1] = rate * (one * (1.0 / (n + 1) as f64));
         }
-        for n in 2..TERMS {
-            path.position[n + 1] = velocity[n] * (one * (1.0 / (n + 1) as f64));
+        for (n, coefficient) in velocity.iter().enumerate().skip(2) {
+            path.position[n + 1] = *coefficient * (one * (1.0 / (n + 1) as f64));
         }
         path
     }
