@@ -342,20 +342,20 @@ impl Physics {
             (
                 "air_density",
                 self.air.density_kg_m3,
-                (0.0, 100.0),
-                "from 0 to 100 kg/m^3 (air at sea level has about 1.2)",
+                (0.0, 10.0),
+                "from 0 to 10 kg/m^3 (air at sea level has about 1.2)",
             ),
             (
                 "drag_coefficient",
                 self.air.drag_coefficient,
-                (0.0, 10.0),
-                "from 0 to 10 (a smooth sphere has about 0.5)",
+                (0.0, 5.0),
+                "from 0 to 5 (a smooth sphere has about 0.5)",
             ),
             (
                 "lift_slope",
                 self.air.lift_slope,
-                (-10.0, 10.0),
-                "from -10 to 10 (textbooks have 1; none is seen in games)",
+                (-2.0, 2.0),
+                "from -2 to 2 (textbooks have 1; none is seen in games)",
             ),
             (
                 "time_limit",
@@ -417,6 +417,14 @@ impl Physics {
                 "air_density",
                 self.air.density_kg_m3,
                 "so low that buoyancy is less than half the weight (air has about 1.2 kg/m^3)",
+            ));
+        }
+        // With less the air would hold or turn the ball for the whole time limit.
+        if self.air.density_kg_m3 > 0.0 && !(self.gravity_m_s2 >= 1.0) {
+            errors.push(PhysicsError::new(
+                "gravity",
+                self.gravity_m_s2,
+                "1 m/s^2 or more in air (air_density = 0 switches it off)",
             ));
         }
         for solid in SolidId::ALL {

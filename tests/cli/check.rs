@@ -101,16 +101,16 @@ const ERRORS: [(&str, &str, &[&str]); 30] = [
     (
         "preset = \"paper\"",
         "preset = \"ncaa\"\nair_density = \"-1 kg/m^3\"",
-        &["physics.air_density", "from 0 to 100"],
+        &["physics.air_density", "from 0 to 10"],
     ),
     (
         "preset = \"paper\"",
         "preset = \"ncaa\"\nair_density = \"1000 kg/m^3\"",
-        &["physics.air_density", "from 0 to 100"],
+        &["physics.air_density", "from 0 to 10"],
     ),
     (
         "preset = \"paper\"",
-        "preset = \"ncaa\"\nair_density = \"50 kg/m^3\"",
+        "preset = \"ncaa\"\nball_mass = \"5 g\"\nair_density = \"1 kg/m^3\"",
         &[
             "physics.air_density",
             "buoyancy is less than half the weight",

@@ -274,9 +274,9 @@ fn random_physics(script: &mut Script<'_>) -> Physics {
         (&mut physics.hoop_contact.friction, 1e-6, 10.0),
         (&mut physics.ring_tube_diameter_m, 1e-6, 0.5),
         (&mut physics.bracket_width_m, 1e-6, 1.0),
-        (&mut physics.air.density_kg_m3, 1e-3, 100.0),
-        (&mut physics.air.drag_coefficient, 1e-3, 10.0),
-        (&mut physics.air.lift_slope, 1e-3, 10.0),
+        (&mut physics.air.density_kg_m3, 1e-3, 10.0),
+        (&mut physics.air.drag_coefficient, 1e-3, 5.0),
+        (&mut physics.air.lift_slope, 1e-3, 2.0),
         (&mut physics.time_limit_s, 0.01, 60.0),
         (&mut physics.lodged_after_s, 1e-6, 60.0),
     ];
