@@ -134,8 +134,8 @@ fn val_speed_bands_in_air_at_a_real_hoop() {
 }
 
 /// Authority: P of the college guard (0.25 ft/s, 1.2 deg, 1.22 deg, 0.3 rev/s) at 53 deg and 3 rev/s from an independent
-/// program, each within 0.002. Here 100,000 shots have a standard error of 0.0014; the limit of 0.006 is passed by
-/// chance less than once in 10,000 runs of all seven.
+/// program, each within 0.002. Here 400,000 shots
+/// have a standard error of 0.0007, so 0.003 allows for both; the seeds are fixed.
 #[test]
 fn val_probabilities_in_air_at_a_real_hoop() {
     let with = |change: fn(&mut Physics)| {
@@ -166,7 +166,7 @@ fn val_probabilities_in_air_at_a_real_hoop() {
             let (u, w): (f64, f64) = (random.random(), random.random());
             (-2.0 * libm::log(1.0 - u)).sqrt() * libm::cos(std::f64::consts::TAU * w)
         };
-        let shots: Vec<_> = (0..100_000)
+        let shots: Vec<_> = (0..400_000)
             .map(|_| {
                 let (speed, pitch) = (speed + 0.25 * normal(), 53.0 + 1.2 * normal());
                 let (polar, spin) = (1.22 * normal(), 3.0 + 0.3 * normal());
@@ -176,7 +176,7 @@ fn val_probabilities_in_air_at_a_real_hoop() {
         let verdicts = common::verdicts(&Simulator::new(&physics).unwrap(), &shots);
         let p = verdicts.iter().filter(|v| v.made).count() as f64 / shots.len() as f64;
         println!("case {i}: {p:.4}, expected {expected}");
-        assert!((p - expected).abs() < 0.006, "case {i}: {p}");
+        assert!((p - expected).abs() < 0.003, "case {i}: {p}");
     }
 }
 
@@ -200,7 +200,7 @@ fn val_without_the_additions_it_is_the_paper() {
         .filter(|(a, b)| a.made != b.made)
         .count();
     println!("{differ} of {} differ", shots.len());
-    assert!(differ <= 40, "{differ}");
+    assert!(differ <= 20, "{differ}");
 }
 
 /// Authority: the rule books. A ball that is dropped from 72 in (NCAA; to its bottom) rebounds to 49 to 54 in (to its
@@ -465,7 +465,7 @@ fn val_slow_integrator_agrees() {
 
 /// The same with 20,000 shots of each physics.
 #[test]
-#[ignore = "takes a quarter of an hour"]
+#[ignore = "half a minute: cargo test --test validation campaign_real_hoop -- --ignored --nocapture"]
 fn campaign_real_hoop() {
     for (name, physics) in compared_physics() {
         let share = agreement(&physics, 20_000, 92);
