@@ -26,8 +26,9 @@ const SHARES: (f64, f64) = (0.40, 0.80);
 const SHARE_PER_STRENGTH: f64 = 0.40;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const LEAST_SPEED_M_S: f64 = 1e-6;
-/// Newton steps to a height. (The first guess errs by some milliseconds.)
-const NEWTON_STEPS: u32 = 4;
+/// Newton steps to a height from a guess that errs by some milliseconds, and from the start of the arc.
+const NEWTON_STEPS: u32 = 3;
+const STEPS_FROM_START: u32 = 6;
 /// Height within which a search for a rising crossing must end, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-9;
 
@@ -42,6 +43,8 @@ pub(super) struct DragArc<T: Real> {
     z: [T; TERMS + 1],
     slowness: [T; TERMS],
     length: T,
+    /// Height and its rate at s = 1.
+    end: (T, T),
     never: T,
 }
 
@@ -97,15 +100,24 @@ impl<T: Real> DragArc<T> {
         for n in 0..TERMS {
             z[n + 1] = q[n] * length * (1.0 / (n + 1) as f64);
         }
-        Self {
+        let mut arc = Self {
             start: *start,
             along,
             path: Vec2::new(along.x * length, along.y * length),
             z,
             slowness: y,
             length,
+            end: (zero, zero),
             never: ball.never_s,
-        }
+        };
+        arc.end = arc.height_and_rate(one);
+        arc
+    }
+
+    /// Height and its rate at the end.
+    #[inline(always)]
+    pub(super) fn end_height_and_rate(&self) -> (T, T) {
+        self.end
     }
 
     /// The position at `s`.
@@ -161,8 +173,7 @@ impl<T: Real> DragArc<T> {
     #[inline(always)]
     pub(super) fn top(&self) -> (T, T) {
         let one = self.never.one();
-        let (_, last) = self.height_and_rate(one);
-        let first = self.z[1];
+        let (first, last) = (self.z[1], self.end.1);
         let mut s = first / Real::max(first - last, self.never.splat(1e-30));
         for _ in 0..NEWTON_STEPS {
             // z'' = -g L^2 y^2.
@@ -205,12 +216,23 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
         )
     }
 
+    /// -z'' only grows: the parabolas with its first and its last value lie above and below the path.
     #[inline(always)]
-    fn rises_through(&self, height: T) -> T {
-        height.outlined(
-            #[inline(always)]
-            || self.rising_place(height),
-        )
+    fn rises_between(&self, height: T) -> (T, T) {
+        let (zero, one) = (height.zero(), height.one());
+        let (rise, rate) = (height - self.z[0], self.z[1]);
+        let may_rise = rise.is_positive() & rate.is_positive();
+        let twice = rise * 2.0;
+        let high = rate.squared() - self.fall_rate(zero) * twice;
+        let low = rate.squared() - self.acceleration_bound() * twice;
+        let rises = may_rise & zero.le(high);
+        let earliest = (twice / (rate + high.positive_part().sqrt())).select(rises, -one);
+        let latest = (twice / (rate + low.positive_part().sqrt())).select(rises, -one);
+        let unsure = rises & low.is_negative();
+        if !unsure.any() {
+            return (earliest, latest);
+        }
+        (earliest, self.rises_through(height).select(unsure, latest))
     }
 
     /// The horizontal speed only falls, so -z'' is greatest at the end.
@@ -222,10 +244,19 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
 }
 
 impl<T: Real> DragArc<T> {
+    /// Where it rises through `height`; for one that has risen before, or does not, a place before the start.
+    #[inline(always)]
+    pub(super) fn rises_through(&self, height: T) -> T {
+        height.outlined(
+            #[inline(always)]
+            || self.rising_place(height),
+        )
+    }
+
     #[inline(always)]
     fn falling_place(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
-        let (end_z, end_rate) = self.height_and_rate(one);
+        let (end_z, end_rate) = self.end;
         let falls = end_z.lt(height) & end_rate.is_negative();
         if !falls.any() {
             return self.never;
@@ -255,7 +286,7 @@ impl<T: Real> DragArc<T> {
             return -one;
         }
         let mut s = zero;
-        for _ in 0..NEWTON_STEPS + 2 {
+        for _ in 0..STEPS_FROM_START {
             let (z, rate) = self.height_and_rate(s);
             let usable = rate.is_positive();
             let next = s - (z - height) / rate.select(usable, one);

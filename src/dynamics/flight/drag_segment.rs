@@ -42,8 +42,10 @@ pub(crate) fn drag_segment<T: Real>(
     let board = board_place(params, &arc, state);
     let last = Real::min(one, Real::min(fell, board.behind));
     let motion = HorizontalMotion::new(params, state.position_m, arc.path);
-    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, Real::min(last, board.face));
-    let mut end = Real::min(Real::min(last, board.face), ring);
+    let falls_to_top = arc.falls_through(params.ring.reach);
+    let until = Real::min(last, board.face);
+    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_to_top, until));
+    let mut end = Real::min(until, ring);
     let (mut edge, mut bracket) = (never, never);
     let mut unresolved = ring_unresolved;
     let near_edge = board.edges.lt(end) & !passes_beside(params, &arc, board.edges, end);
@@ -55,7 +57,8 @@ pub(crate) fn drag_segment<T: Real>(
         end = Real::min(end, edge);
     }
     if params.ring.has_bracket {
-        let from = from_hoop_height(params, &arc, state);
+        let is_above = params.ring.reach.lt(state.position_m.z);
+        let from = falls_to_top.select(is_above, params.zero());
         let near = from.lt(end) & comes_to_bracket(params, &arc, from, end);
         if near.any() {
             let lost;
@@ -112,11 +115,13 @@ fn is_far<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<
     let (end_x, end_y) = (p.x + arc.path.x, p.y + arc.path.y);
     let front = params.ring.radius + params.ring.reach;
     let side = Real::max(params.board.core.high.y + params.board.core.reach, front);
-    let reaches_down = arc.height_and_rate(params.one()).0.lt(-params.ring.reach);
+    let bottom = -params.ring.reach;
+    let (end_z, end_rate) = arc.end_height_and_rate();
+    let falls = end_z.lt(bottom) & !(p.z.lt(bottom) & end_rate.is_positive());
     let beside = side.lt(Real::min(p.y, end_y)) | Real::max(p.y, end_y).lt(-side);
     let in_front = front.lt(Real::min(p.x, end_x));
     let behind = Real::min(p.x, end_x).lt(params.board.core.low.x);
-    (in_front | (beside & !behind)) & !reaches_down & !p.z.lt(-params.ring.reach)
+    (in_front | (beside & !behind)) & !falls
 }
 
 /// A whole arc on which nothing is touched.
@@ -224,18 +229,6 @@ fn passes_beside<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to
     let left = side.lt(Real::min(first.y, last.y));
     let right = Real::max(first.y, last.y).lt(-side);
     above | left | right
-}
-
-/// Where the ball is no longer above the reach of ring and bracket.
-#[inline(always)]
-fn from_hoop_height<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T {
-    let reach = params.ring.reach;
-    let above = reach.lt(start.position_m.z);
-    if above.any() {
-        arc.falls_through(reach).select(above, params.zero())
-    } else {
-        params.zero()
-    }
 }
 
 /// Whether a part of an arc comes where the bracket is nearer than the ring's circle: outside the circle, which is so at

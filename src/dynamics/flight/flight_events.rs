@@ -2,7 +2,7 @@
 
 use super::board_touch::{board_times, entry_from_beside};
 use super::height_crossing::falling_time;
-use super::height_path::Parabola;
+use super::height_path::{HeightPath, Parabola};
 use super::ring_search::{HorizontalMotion, ring_time};
 use crate::math::real::Real;
 use crate::math::vector::Vec2;
@@ -72,7 +72,8 @@ fn first_ring_touch<T: Real>(
         z: p.z,
         vz: v.z,
     };
-    ring_time(params, &motion, &heights, search_end)
+    let falls_to_top = heights.falls_through(params.ring.reach);
+    ring_time(params, &motion, &heights, (falls_to_top, search_end))
 }
 
 impl FlightEvents<f64> {

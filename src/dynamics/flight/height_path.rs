@@ -11,8 +11,10 @@ pub(super) trait HeightPath<T: Real> {
     fn height_and_rate(&self, t: T) -> (T, T);
     /// When it falls through `height`.
     fn falls_through(&self, height: T) -> T;
-    /// When it rises through `height`; for one that has risen before, or does not, any time up to its highest point.
-    fn rises_through(&self, height: T) -> T;
+    /// Two times at which, and between which, it may rise through `height`: one not later, one not earlier, and from the
+    /// later one to the highest point it is above. For a ball that has risen before, or does not, any times up to its
+    /// highest point.
+    fn rises_between(&self, height: T) -> (T, T);
     /// A bound on -z''.
     fn acceleration_bound(&self) -> T;
 }
@@ -41,8 +43,9 @@ impl<T: Real> HeightPath<T> for Parabola<'_, T> {
     }
 
     #[inline(always)]
-    fn rises_through(&self, height: T) -> T {
-        rising_time(self.params, self.z, self.vz, height)
+    fn rises_between(&self, height: T) -> (T, T) {
+        let time = rising_time(self.params, self.z, self.vz, height);
+        (time, time)
     }
 
     #[inline(always)]

@@ -82,9 +82,9 @@ impl<T: Real> HorizontalMotion<T> {
 struct SearchBounds<T> {
     /// The centre falls through z = R.
     falls_to_top: T,
-    /// The centre rises through z = -R.
+    /// The centre rises through z = -R, at this time or later.
     rises_to_bottom: T,
-    /// The centre rises through z = R.
+    /// The centre rises through z = R, at this time or before.
     rises_to_top: T,
     /// Times at which the centre enters and leaves the circle of radius R_H - R.
     inner_enter: T,
@@ -120,8 +120,8 @@ impl<T: Real> SearchBounds<T> {
             overlap: Real::min(value, value.zero()),
             height_bound: heights.acceleration_bound() * reach,
             falls_to_top,
-            rises_to_bottom: heights.rises_through(-reach),
-            rises_to_top: heights.rises_through(reach),
+            rises_to_bottom: heights.rises_between(-reach).0,
+            rises_to_top: heights.rises_between(reach).1,
             inner_enter: (motion.closest_time - half_time)
                 .select(!motion.is_vertical, -params.ball.never_s),
             inner_leave: (motion.closest_time + half_time)
@@ -133,13 +133,14 @@ impl<T: Real> SearchBounds<T> {
 }
 
 /// Time of the first touch of the ring's circle before `search_end` (else never), and whether the search reached its
-/// iteration limit. The time may be any variable in which the horizontal motion is even.
+/// iteration limit. The time may be any variable in which the horizontal motion is even; `falls_to_top` is that at which the
+/// centre falls through the reach above the hoop.
 #[inline(always)]
 pub(super) fn ring_time<T: Real>(
     params: &ModelParams<T>,
     motion: &HorizontalMotion<T>,
     heights: &impl HeightPath<T>,
-    search_end: T,
+    (falls_to_top, search_end): (T, T),
 ) -> (T, T::Mask) {
     let (zero, reach) = (params.zero(), params.ring.reach);
     let outer = params.ring.radius + reach;
@@ -151,7 +152,6 @@ pub(super) fn ring_time<T: Real>(
     let out_of_reach = !motion.is_vertical & outer_time_squared.is_negative()
         | motion.is_vertical & outer.squared().lt(motion.distance_squared);
     let stop = Real::min(search_end, leave_time);
-    let falls_to_top = heights.falls_through(reach);
     let mut t = enter_time.select(!motion.is_vertical, zero).positive_part();
     // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
     // and still rising then (a release from beneath) starts when it has come near.
