@@ -14,7 +14,7 @@
 use super::flight_path::{LONGEST_SHARE, SHORTEST_S};
 use super::height_path::HeightPath;
 use crate::math::real::{Mask, Real};
-use crate::math::vector::{Vec2, Vec3};
+use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::BallState;
 use crate::model::ball_params::BallParams;
 
@@ -35,7 +35,8 @@ const CROSSING_TOLERANCE_M: f64 = 1e-9;
 /// A part of a flight, from s = 0 to 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DragArc<T: Real> {
-    start: BallState<T>,
+    start_x: T,
+    start_y: T,
     /// Horizontal unit vector along the path, and the horizontal path itself, m.
     along: Vec2<T>,
     pub(super) path: Vec2<T>,
@@ -75,42 +76,27 @@ impl<T: Real> DragArc<T> {
         let length = Real::max(singular_s * share, shortest) * speed_h;
         let along = Vec2::new((v.x * y_0).select(!is_vertical, one), v.y * y_0);
 
-        let (k, g) = (ball.drag * length, -(ball.gravity * length));
-        let (mut y, mut q, mut r) = ([zero; TERMS], [zero; TERMS], [zero; TERMS]);
-        (y[0], q[0], r[0]) = (y_0, q_0, r_0);
-        let half_inverse = accelerations * per_both * speed_h * 0.5;
-        for n in 0..TERMS - 1 {
-            if n > 0 {
-                // The coefficient n of 1 + q^2 = r^2, without the part of r_n.
-                let square = inner_square(&q, n) - inner_square(&r, n) + q[0] * q[n] * 2.0;
-                r[n] = (square * half_inverse).select(varies, zero);
-            }
-            let mut product = zero;
-            for i in 1..n {
-                product += r[i] * y[n - i];
-            }
-            let (product, square) = if n == 0 {
-                (r[0] * y[0], y[0].squared())
-            } else {
-                (
-                    product + r[0] * y[n] + r[n] * y[0],
-                    inner_square(&y, n) + y[0] * y[n] * 2.0,
-                )
-            };
-            let part = 1.0 / (n + 1) as f64;
-            y[n + 1] = (k * part) * product;
-            q[n + 1] = (g * part) * square;
-        }
-        let rate = q.map(
-            #[inline(always)]
-            |q| q * length,
-        );
-        let mut z = [start.position_m.z; TERMS + 1];
+        let mut series = Series {
+            y: [zero; TERMS],
+            q: [zero; TERMS],
+            r: [zero; TERMS],
+            k: ball.drag * length,
+            g: -(ball.gravity * length),
+            half_inverse_r: (accelerations * per_both * speed_h * 0.5).select(varies, zero),
+        };
+        (series.y[0], series.q[0], series.r[0]) = (y_0, q_0, r_0);
+        series.append_all();
+        let Series { y, q, .. } = series;
+        let p = start.position_m;
+        let mut rate = q;
+        let mut z = [p.z; TERMS + 1];
         for n in 0..TERMS {
+            rate[n] = q[n] * length;
             z[n + 1] = rate[n] * (1.0 / (n + 1) as f64);
         }
         let mut arc = Self {
-            start: *start,
+            start_x: p.x,
+            start_y: p.y,
             along,
             path: Vec2::new(along.x * length, along.y * length),
             z,
@@ -133,20 +119,22 @@ impl<T: Real> DragArc<T> {
     /// The position at `s`.
     #[inline(always)]
     pub(super) fn position(&self, s: T) -> Vec3<T> {
-        let p = self.start.position_m;
-        let (z, _) = self.height_and_rate(s);
-        Vec3::new(p.x + self.path.x * s, p.y + self.path.y * s, z)
+        let z = polynomial(&self.z, s);
+        Vec3::new(
+            self.start_x + self.path.x * s,
+            self.start_y + self.path.y * s,
+            z,
+        )
     }
 
-    /// Position and its rate at `s`, as a state whose time is s.
+    /// Position and its rate at `s`, as a state without spin whose time is s.
     #[inline(always)]
     pub(super) fn state_in_s(&self, s: T) -> BallState<T> {
-        let p = self.start.position_m;
-        let (z, rate) = self.height_and_rate(s);
+        let rate = polynomial(&self.rate, s);
         BallState {
-            position_m: Vec3::new(p.x + self.path.x * s, p.y + self.path.y * s, z),
+            position_m: self.position(s),
             velocity_m_s: Vec3::new(self.path.x, self.path.y, rate),
-            spin_rad_s: self.start.spin_rad_s,
+            spin_rad_s: Vec3::splat(s.zero()),
         }
     }
 
@@ -160,10 +148,11 @@ impl<T: Real> DragArc<T> {
         polynomial(&terms, s) * s * self.length
     }
 
-    /// The state at `s`.
+    /// The state at `s` of a ball with a spin.
     #[inline(always)]
-    pub(super) fn state(&self, s: T) -> BallState<T> {
+    pub(super) fn state(&self, s: T, spin_rad_s: Vec3<T>) -> BallState<T> {
         let mut state = self.state_in_s(s);
+        state.spin_rad_s = spin_rad_s;
         let slowness = polynomial(&self.slowness, s);
         // v_h, and v_h/L, with a single division.
         let per_both = s.one() / (slowness * self.length);
@@ -299,16 +288,65 @@ impl<T: Real> DragArc<T> {
     }
 }
 
-/// The coefficient n of the square of a series, without the two products with its first term.
+/// The series of y, q and `r = sqrt(1 + q^2)` while they are computed.
+struct Series<T> {
+    y: [T; TERMS],
+    q: [T; TERMS],
+    r: [T; TERMS],
+    /// Drag and -g, times the length of the arc.
+    k: T,
+    g: T,
+    /// 1/(2 r) at the start; zero if r is taken as constant.
+    half_inverse_r: T,
+}
+
+impl<T: Real> Series<T> {
+    /// Computes all terms from the first. (The numbers are constants, so that nothing is left of the loops.)
+    #[inline(always)]
+    fn append_all(&mut self) {
+        const { assert!(TERMS == 9) };
+        self.append::<0>();
+        self.append::<1>();
+        self.append::<2>();
+        self.append::<3>();
+        self.append::<4>();
+        self.append::<5>();
+        self.append::<6>();
+        self.append::<7>();
+    }
+
+    /// Computes the terms N of r and N + 1 of y and q. Products with the newest terms come last: the rest does not wait for
+    /// them.
+    #[inline(always)]
+    fn append<const N: usize>(&mut self) {
+        let Self { y, q, r, .. } = self;
+        let (mut product, mut square) = (r[0] * y[0], y[0].squared());
+        if N > 0 {
+            let known = inner_square::<T, N>(q) - inner_square::<T, N>(r);
+            r[N] = (known + q[0] * q[N] * 2.0) * self.half_inverse_r;
+            product = y[0].zero();
+            for i in 1..N {
+                product += r[i] * y[N - i];
+            }
+            product = product + r[0] * y[N] + r[N] * y[0];
+            square = inner_square::<T, N>(y) + y[0] * y[N] * 2.0;
+        }
+        let part = 1.0 / (N + 1) as f64;
+        y[N + 1] = (self.k * part) * product;
+        q[N + 1] = (self.g * part) * square;
+    }
+}
+
+/// The coefficient N of the square of a series, without the two products with its first term.
 #[inline(always)]
-fn inner_square<T: Real>(terms: &[T; TERMS], n: usize) -> T {
+fn inner_square<T: Real, const N: usize>(terms: &[T; TERMS]) -> T {
     let mut sum = terms[0].zero();
-    for i in 1..n.div_ceil(2) {
-        sum += terms[i] * terms[n - i];
+    for i in 1..N.div_ceil(2) {
+        sum += terms[i] * terms[N - i];
     }
     sum = sum * 2.0;
-    if n > 0 && n.is_multiple_of(2) {
-        sum += terms[n / 2].squared();
+    if N > 0 && N.is_multiple_of(2) {
+        sum += terms[N / 2].squared();
     }
     sum
 }
@@ -340,7 +378,6 @@ fn up_to_four_terms<T: Real>(terms: &[T], s: T, square: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vector::RealVector;
     use crate::model::Preset;
     use crate::model::constants_per_ball_mass::ModelParams;
 
@@ -388,7 +425,7 @@ mod tests {
                 }
                 // A ball that goes straight up moves along at LEAST_SPEED_M_S.
                 let allowed_m = allowed_m + 1e-6 * duration * f64::from(velocity[0] == 0.0);
-                let end = arc.state(1.0);
+                let end = arc.state(1.0, start.spin_rad_s);
                 let error = (end.position_m - p).norm();
                 assert!(error < allowed_m, "{velocity:?} {duration}: {error}");
                 let error = (end.velocity_m_s - v).norm();

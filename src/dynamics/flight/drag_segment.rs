@@ -67,7 +67,7 @@ pub(crate) fn drag_segment<T: Real>(
             end = Real::min(end, bracket);
         }
     }
-    let state_at_end = arc.state(end);
+    let state_at_end = arc.state(end, state.spin_rad_s);
     let on_ring = (ring.le(end) | bracket.le(end)) & !unresolved;
     let on_edge = edge.le(end) & !on_ring & !unresolved;
     let on_face = board.face.le(end) & !on_ring & !on_edge & !unresolved;
@@ -135,7 +135,7 @@ fn far_segment<T: Real>(
     let (rises, rises_inside) = rising_crossing(params, arc, start, one);
     FlightSegment {
         dt: arc.time(one),
-        end: arc.state(one),
+        end: arc.state(one, start.spin_rad_s),
         touches: [none; SolidId::COUNT],
         fell: none,
         behind_board: none,
