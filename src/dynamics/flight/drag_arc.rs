@@ -26,9 +26,10 @@ const SHARES: (f64, f64) = (0.40, 1.09);
 const SHARE_PER_STRENGTH: f64 = 0.48;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const LEAST_SPEED_M_S: f64 = 1e-6;
-/// Newton steps to a height from a guess that errs by some milliseconds, and from the start of the arc.
+/// Newton steps to a height. (The first guess errs by some milliseconds.)
 const NEWTON_STEPS: u32 = 3;
-const STEPS_FROM_START: u32 = 6;
+/// Limit on those to a rising crossing: two or three, more only where the path is nearly flat.
+const MAX_STEPS_TO_RISE: u32 = 30;
 /// Height within which a search for a rising crossing must end, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-9;
 
@@ -212,6 +213,9 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
         let (zero, one) = (height.zero(), height.one());
         let (rise, rate) = (height - self.z[0], self.rate[0]);
         let may_rise = rise.is_positive() & rate.is_positive();
+        if !may_rise.any() {
+            return (-one, -one);
+        }
         let twice = rise * 2.0;
         let high = rate.squared() - self.fall_rate(zero) * twice;
         let low = rate.squared() - self.acceleration_bound() * twice;
@@ -267,24 +271,27 @@ impl<T: Real> DragArc<T> {
         Real::max(s, zero).select(falls, self.never)
     }
 
+    /// Newton's steps from the place where the parabola above the path rises through the height: they never pass it.
     #[inline(always)]
     fn rising_place(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
-        let (z_0, rate_0) = (self.z[0], self.rate[0]);
-        let may_rise = z_0.lt(height) & rate_0.is_positive();
-        if !may_rise.any() {
-            return -one;
-        }
-        let mut s = zero;
-        for _ in 0..STEPS_FROM_START {
+        let (rise, rate_0) = (height - self.z[0], self.rate[0]);
+        let above = rate_0.squared() - self.fall_rate(zero) * rise * 2.0;
+        let mut searching = rise.is_positive() & rate_0.is_positive() & zero.le(above);
+        let mut found = -one;
+        let root = above.positive_part().sqrt();
+        let mut s = (rise * 2.0) / (rate_0 + root).select(searching, one);
+        for _ in 0..MAX_STEPS_TO_RISE {
+            if !searching.any() {
+                break;
+            }
             let (z, rate) = self.height_and_rate(s);
-            let usable = rate.is_positive();
-            let next = s - (z - height) / rate.select(usable, one);
-            s = next.select(usable, s);
+            let arrives = searching & (z - height).abs().lt(height.splat(CROSSING_TOLERANCE_M));
+            found = s.select(arrives, found);
+            searching = searching & !arrives & rate.is_positive();
+            s = s - (z - height) / rate.select(searching, one);
         }
-        let (z, rate) = self.height_and_rate(s);
-        let arrives = (z - height).abs().lt(height.splat(CROSSING_TOLERANCE_M));
-        s.select(may_rise & arrives & rate.is_positive(), -one)
+        found
     }
 }
 

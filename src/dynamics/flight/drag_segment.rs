@@ -48,13 +48,15 @@ pub(crate) fn drag_segment<T: Real>(
     let mut end = Real::min(until, ring);
     let (mut edge, mut bracket) = (never, never);
     let mut unresolved = ring_unresolved;
-    let near_edge = board.edges.lt(end) & !passes_beside(params, &arc, board.edges, end);
-    if near_edge.any() {
-        let span = (board.edges, end);
-        let lost;
-        (edge, lost) = convex_touch(&params.board.core, &arc, span, near_edge);
-        unresolved = unresolved | lost;
-        end = Real::min(end, edge);
+    let passes_plane = board.edges.lt(end);
+    if passes_plane.any() {
+        let near = passes_plane & !passes_beside(params, &arc, board.edges, end);
+        if near.any() {
+            let lost;
+            (edge, lost) = convex_touch(&params.board.core, &arc, (board.edges, end), near);
+            unresolved = unresolved | lost;
+            end = Real::min(end, edge);
+        }
     }
     if params.ring.has_bracket {
         let is_above = params.ring.reach.lt(state.position_m.z);
