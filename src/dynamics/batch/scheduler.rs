@@ -61,7 +61,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         loop {
             if !params.has_paper_flight() {
                 if WIDTH == WIDE {
-                    fly_in_segments::<S, Wide<S>, WIDTH>(&mut batch, starts);
+                    fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
                 } else {
                     fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
                 }

@@ -201,10 +201,7 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
     /// Never, if not on this arc.
     #[inline(always)]
     fn falls_through(&self, height: T) -> T {
-        height.outlined(
-            #[inline(always)]
-            || self.falling_place(height),
-        )
+        self.falling_place(height)
     }
 
     /// -z'' only grows: the parabolas with its first and its last value lie above and below the path.

@@ -104,10 +104,7 @@ pub(crate) fn far_segment_of_all<T: Real>(
 
 #[inline(always)]
 fn arc_of<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> DragArc<T> {
-    params.one().outlined(
-        #[inline(always)]
-        || DragArc::new(&params.ball, state),
-    )
+    DragArc::new(&params.ball, state)
 }
 
 /// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens on it.
