@@ -2,6 +2,7 @@
 
 use super::batch_state::Batch;
 use super::lane_block::{LaneBlock, LaneShots, bit, lanes_in, set_bit};
+use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
 use crate::dynamics::flight::FlightEvents;
@@ -75,35 +76,52 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             let starts = &starts[shots.clone()];
             block.fill_at_release(starts);
             let end = self.fly_lanes(params, &mut block);
-            let in_flight = |start| !solids_touched_at_release(self.params, start).contains(&true);
-            let mut flying = 0;
-            for (lane, start) in starts.iter().enumerate() {
-                set_bit(&mut flying, lane, in_flight(start));
-            }
-            let real_lanes = T::ALL >> (T::LANES - starts.len());
-            for lane in lanes_in(real_lanes & !flying) {
-                self.workspace.verdicts[shots.start + lane] =
-                    event_driven::run(self.params, self.limits, starts[lane], &mut ());
-            }
-            let [on_board, on_ring] = end.touches;
-            let go_on = flying & (on_board | on_ring | end.needs_scalar);
-            for lane in lanes_in(flying & !go_on) {
-                let ending = end.ending(lane);
-                self.workspace.verdicts[shots.start + lane] = Verdict {
-                    made: ending == Ending::Fell && bit(end.made, lane),
-                    ending,
-                    contacts: ContactSequence::default(),
-                    time_s: block.time_s(lane),
-                };
-            }
-            let mut slots = [0; MAX_F64_LANES];
-            for lane in lanes_in(go_on) {
-                slots[lane] = self
-                    .workspace
-                    .occupy(self.params, shots.start + lane, &starts[lane]);
-            }
-            self.finish_flights(&mut block, &slots, go_on, &end);
+            self.finish_first_flights(&mut block, (shots.start, starts), T::ALL, &end);
         }
+    }
+
+    /// Takes the shots of a block out of their lanes after the first part of their flight. `first` is the number of the
+    /// first of them; `ended` tells whose flight has ended. The others wait for the next part.
+    #[inline(always)]
+    pub(super) fn finish_first_flights(
+        &mut self,
+        block: &mut LaneBlock,
+        (first, starts): (usize, &[BallState]),
+        ended: LaneBits,
+        end: &FlightEnd,
+    ) {
+        let mut flying = 0;
+        for (lane, start) in starts.iter().enumerate() {
+            if solids_touched_at_release(self.params, start).contains(&true) {
+                self.workspace.verdicts[first + lane] =
+                    event_driven::run(self.params, self.limits, *start, &mut ());
+            } else {
+                set_bit(&mut flying, lane, true);
+            }
+        }
+        let [on_board, on_ring] = end.touches;
+        let goes_on = on_board | on_ring | end.needs_scalar | !ended;
+        for lane in lanes_in(flying & !goes_on) {
+            let ending = end.ending(lane);
+            self.workspace.verdicts[first + lane] = Verdict {
+                made: ending == Ending::Fell && bit(end.made, lane),
+                ending,
+                contacts: ContactSequence::default(),
+                time_s: block.time_s(lane),
+            };
+        }
+        let mut slots = [0; MAX_F64_LANES];
+        for lane in lanes_in(flying & goes_on) {
+            let slot = self
+                .workspace
+                .occupy(self.params, first + lane, &starts[lane]);
+            slots[lane] = slot;
+            if !bit(ended, lane) {
+                block.remove(lane, &mut self.workspace.slots[slot as usize]);
+                self.workspace.queue_mut(Phase::Flight).push(slot);
+            }
+        }
+        self.finish_flights(block, &slots, flying & goes_on & ended, end);
     }
 
     /// Flies the lanes of a block to the ends of their arcs.

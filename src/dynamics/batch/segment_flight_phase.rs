@@ -7,7 +7,6 @@ use super::lane_block::{LaneBlock, LaneShots};
 use super::workspace::Phase;
 use crate::dynamics::end_rules::rose_to_ring;
 use crate::dynamics::flight::{drag_segment, far_segment_of_all};
-use crate::dynamics::integrators::event_driven::{self, solids_touched_at_release};
 use crate::math::real::{Mask, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
@@ -29,85 +28,86 @@ pub(super) fn fly_in_segments<S, T, const WIDTH: u8>(
     batch.simd.vectorize(
         #[inline(always)]
         || {
-            batch.start_shots::<T>(starts);
-            batch.fly_in_segments::<T>();
+            batch.fly_in_segments::<T>(starts);
         },
     );
 }
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
-    /// Flies shots side by side from their releases until one of them comes near the hoop, and puts them into the queue of
-    /// the flights.
+    /// Flies the shots that have not started yet, as long as there are free slots, and then those that wait, a segment at a
+    /// time.
     #[inline(always)]
-    fn start_shots<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
-        let params = &self.lane_params::<T>();
-        let time_limit = params.splat(self.limits.time_limit_s);
-        let mut block = LaneBlock::new();
-        loop {
-            let numbers = self.workspace.next_starts(T::LANES);
-            if numbers.is_empty() {
-                return;
-            }
-            let starts = &starts[numbers.clone()];
-            block.fill_at_release(starts);
-            let mut shots = block.load::<T>(self.simd);
-            while !params.ball.has_lift
-                && let Some(segment) = far_segment_of_all(params, &shots.state)
-            {
-                let time_s = shots.time_s + segment.dt;
-                if time_limit.lt(time_s).any() {
-                    break;
-                }
-                shots
-                    .crossing
-                    .after_segment(&segment, params.splat_mask(true));
-                (shots.state, shots.time_s) = (segment.end, time_s);
-            }
-            block.store(&shots);
-            for (lane, start) in starts.iter().enumerate() {
-                let number = numbers.start + lane;
-                if solids_touched_at_release(self.params, start).contains(&true) {
-                    self.workspace.verdicts[number] =
-                        event_driven::run(self.params, self.limits, *start, &mut ());
-                } else {
-                    let slot = self.workspace.occupy(self.params, number, start);
-                    block.remove(lane, &mut self.workspace.slots[slot as usize]);
-                    self.workspace.queue_mut(Phase::Flight).push(slot);
-                }
-            }
-        }
-    }
-
-    /// Flies the shots that wait, a segment at a time. Lanes whose flight has ended are refilled.
-    #[inline(always)]
-    fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
+    fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();
         let mut queue = self.workspace.take_flights();
-        let block = &mut LaneBlock::new();
-        if params.ball.has_lift {
-            for slot in queue.drain(..) {
-                self.run_scalar(slot);
-            }
-        }
+        let mut first_flights = LaneBlock::new();
+        let mut later_flights = LaneBlock::new();
         loop {
-            let free = T::ALL & !block.occupied();
-            let shots_in_progress = &mut self.workspace.slots;
-            block.fill(free, self.params, shots_in_progress, || queue.pop());
-            if block.occupied() == 0 {
-                break;
-            }
+            let numbers = self.workspace.next_starts(T::LANES);
+            let starts = &starts[numbers.clone()];
+            let at_release = !numbers.is_empty();
+            let block = if at_release {
+                first_flights.fill_at_release(starts);
+                &mut first_flights
+            } else {
+                queue.append(self.workspace.queue_mut(Phase::Flight));
+                if params.ball.has_lift {
+                    for slot in queue.drain(..) {
+                        self.run_scalar(slot);
+                    }
+                }
+                let free = T::ALL & !later_flights.occupied();
+                let shots_in_progress = &mut self.workspace.slots;
+                later_flights.fill(free, self.params, shots_in_progress, || queue.pop());
+                if later_flights.occupied() == 0 {
+                    break;
+                }
+                &mut later_flights
+            };
             let mut shots = block.load::<T>(self.simd);
-            block.leave_ring(self.simd, params, &mut shots.state);
             let mut flight = SegmentedFlight::new(params);
-            self.fly_one_segment(params, &mut shots, &mut flight);
+            if at_release {
+                self.fly_far_segments(params, &mut shots);
+            } else {
+                block.leave_ring(self.simd, params, &mut shots.state);
+            }
+            if !params.ball.has_lift {
+                self.fly_one_segment(params, &mut shots, &mut flight);
+            }
             block.store_without_frames(&shots);
             let end = flight.end(params, &shots);
             store_ring_motions(params, block, &shots, &end);
-            let ended = !T::mask_to_bits(flight.flying) & block.occupied();
-            let slots = block.slots();
-            self.finish_flights(block, &slots, ended, &end);
+            let ended = !T::mask_to_bits(flight.flying);
+            if at_release {
+                self.finish_first_flights(block, (numbers.start, starts), ended, &end);
+            } else {
+                let slots = block.slots();
+                self.finish_flights(block, &slots, ended & block.occupied(), &end);
+            }
         }
         self.workspace.return_queue(queue);
+    }
+
+    /// Flies shots side by side from their releases until one of them comes near the hoop.
+    #[inline(always)]
+    fn fly_far_segments<T: SimdReal<Simd = S, Element = f64>>(
+        &self,
+        params: &ModelParams<T>,
+        shots: &mut LaneShots<T>,
+    ) {
+        let time_limit = params.splat(self.limits.time_limit_s);
+        while !params.ball.has_lift
+            && let Some(segment) = far_segment_of_all(params, &shots.state)
+        {
+            let time_s = shots.time_s + segment.dt;
+            if time_limit.lt(time_s).any() {
+                return;
+            }
+            shots
+                .crossing
+                .after_segment(&segment, params.splat_mask(true));
+            (shots.state, shots.time_s) = (segment.end, time_s);
+        }
     }
 
     #[inline(always)]
