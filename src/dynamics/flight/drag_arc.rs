@@ -27,8 +27,8 @@ const SHARES: (f64, f64) = (0.40, 1.02);
 const SHARE_PER_STRENGTH: f64 = 0.45;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const LEAST_SPEED_M_S: f64 = 1e-6;
-/// Newton steps to a height. (The first guess errs by some milliseconds.)
-const NEWTON_STEPS: u32 = 3;
+/// Newton steps to a height. (The first guess errs by up to some hundredths of an arc.)
+const NEWTON_STEPS: u32 = 4;
 /// Limit on those to a rising crossing: two or three, more only where the path is nearly flat.
 const MAX_STEPS_TO_RISE: u32 = 30;
 /// Height within which a search for a rising crossing must end, m.
