@@ -66,23 +66,34 @@ fn energy(physics: &Physics, state: &BallState) -> f64 {
         + 0.5 * physics.hoop_contact.stiffness_n_m * hoop * hoop
 }
 
-/// Without damping all losses come from friction. (Only the paper's: a ball that is wedged between board and the hoop of a
-/// league without damping gains energy at these steps.) Lift does no work.
+/// Without damping all losses come from friction. Lift does no work. What is allowed is a share of the energy at the release:
+/// for the errors of an arc in air and, without damping, of a ball that is wedged between board and hoop for long (an error
+/// in each step that falls with the square of its length: those shots take shorter steps). Where a contact passes from the ring to the bracket, the
+/// normal jumps within a step, and the energy errs by the length of that step: brackets are tested with their damping.
 #[test]
 fn prop_energy_never_grows() {
     for preset in &PRESETS {
-        let physics = preset.physics();
-        energy_never_grows(&physics, 150);
+        let mut physics = preset.physics();
+        let allowed = if physics.air.density_kg_m3 > 0.0 {
+            1e-5
+        } else {
+            1e-6
+        };
+        energy_never_grows(&physics, (64, 150), allowed);
+        physics.bracket_width_m = 0.0;
+        for id in SolidId::ALL {
+            physics.set_restitution_on(id, 1.0).unwrap();
+        }
+        energy_never_grows(&physics, (256, 300), 2e-5);
     }
-    energy_never_grows(&Physics::with_restitution(1.0).unwrap(), 300);
     let mut lifted = Preset::named("ncaa").unwrap().physics();
     lifted.air.lift_slope = 1.0;
-    energy_never_grows(&lifted, 300);
+    energy_never_grows(&lifted, (64, 300), 1e-5);
 }
 
 /// Over the board's edges and beside it on purpose too.
-fn energy_never_grows(physics: &Physics, shots: usize) {
-    let simulator = event_driven(physics, 64);
+fn energy_never_grows(physics: &Physics, (steps, shots): (u32, usize), allowed: f64) {
+    let simulator = event_driven(physics, steps);
     let mut releases = [free_throw_uniform(shots, 21), side_uniform(shots, 22)].concat();
     let mut at_edges = side_uniform(shots, 23);
     for (i, release) in at_edges.iter_mut().enumerate() {
@@ -96,16 +107,12 @@ fn energy_never_grows(physics: &Physics, shots: usize) {
         let comes_from_beside = trace.outcome.verdict.ending == Ending::BehindBoard
             && physics.board_edge == BoardEdge::None;
         let count = trace.samples.len() - usize::from(comes_from_beside);
-        let allowed = if physics.bracket_width_m > 0.0 {
-            3e-5
-        } else {
-            2e-6
-        };
+        let gain = energy(physics, &trace.samples[0].state) * allowed;
         let mut last = f64::INFINITY;
         for sample in &trace.samples[..count] {
             let now = energy(physics, &sample.state);
             assert!(
-                now <= last * (1.0 + allowed),
+                now <= last + gain,
                 "{release:?} at {}: {last} to {now}",
                 sample.time_s
             );
