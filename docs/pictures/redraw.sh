@@ -17,5 +17,5 @@ if [ $# -eq 0 ]; then
   cp "$figures"/*.svg docs/pictures
   rm -r "$figures"
 fi
-draw tutorial_before '23.48 ft/s' '51.1 deg' '2.05 rev/s'
-draw tutorial_after '23.71 ft/s' '54 deg' '2.6 rev/s'
+draw tutorial_before '24.18 ft/s' '51.1 deg' '2.05 rev/s'
+draw tutorial_after '24.45 ft/s' '54.4 deg' '2.6 rev/s'

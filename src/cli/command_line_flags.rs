@@ -127,6 +127,9 @@ pub(crate) struct CheckOptions {
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
+    /// List every value of the physics, and whether it is measured, from a rule book or assumed.
+    #[arg(long)]
+    pub(crate) verbose: bool,
 }
 
 #[derive(Args, Debug)]

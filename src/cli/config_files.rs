@@ -1,6 +1,7 @@
 //! Reads configuration files.
 
 use super::failure::Failure;
+use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use bankshot::config::{
     MAX_FILE_BYTES, MAX_TOML_BYTES, has_physics_table, parse_physics, parse_profile,
@@ -49,14 +50,19 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
 }
 
 /// Reads and checks a profile.
-pub(crate) fn load_profile(path: &Path, physics: &PhysicsArg) -> Result<Profile, Failure> {
-    Ok(load_profile_with_text(path, physics)?.0)
+pub(crate) fn load_profile(
+    path: &Path,
+    physics: &PhysicsArg,
+    quiet: bool,
+) -> Result<Profile, Failure> {
+    Ok(load_profile_with_text(path, physics, quiet)?.0)
 }
 
 /// The same with its text, to which the other physics is added.
 pub(crate) fn load_profile_with_text(
     path: &Path,
     physics: &PhysicsArg,
+    quiet: bool,
 ) -> Result<(Profile, String), Failure> {
     let mut text = read_text(path)?;
     if is_sweep(&text) {
@@ -70,7 +76,7 @@ pub(crate) fn load_profile_with_text(
         return Ok((parse_profile(&text, &origin)?, text));
     };
     // The profile itself must be valid, with its own physics.
-    parse_profile(&text, &origin)?;
+    let own = parse_profile(&text, &origin)?;
     text = without_physics_table(&text);
     if has_physics_table(&text) {
         return Err(Failure::usage(format!(
@@ -80,7 +86,29 @@ pub(crate) fn load_profile_with_text(
     let table = physics_text(name)?;
     text.push_str(&format!("\n\n# --physics {name}\n{}\n", table.trim_end()));
     let profile = parse_profile(&text, &format!("{origin} with --physics {name}"))?;
+    if !quiet && let Some(warning) = other_physics_warning(&own, &profile, name) {
+        print_remark(&warning);
+    }
     Ok((profile, text))
+}
+
+/// What another physics changes.
+fn other_physics_warning(own: &Profile, profile: &Profile, name: &str) -> Option<String> {
+    let (before, after) = (own.physics().values(), profile.physics().values());
+    let changes: Vec<_> = before
+        .iter()
+        .zip(&after)
+        .filter(|(a, b)| a.value != b.value)
+        .map(|(a, b)| format!("  {:<20} {} -> {}\n", a.key, a.value, b.value))
+        .collect();
+    (!changes.is_empty()).then(|| {
+        let changes = changes.concat();
+        format!(
+            "warning: the profile was written for another physics than --physics {name}. Speeds and errors that were \
+             measured or chosen for one do not hold for the other. What changes:\n{}",
+            changes.trim_end()
+        )
+    })
 }
 
 /// A text without its `[physics]` table: from the line of its header to the next header.

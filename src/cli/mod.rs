@@ -59,7 +59,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
     pool.install(|| match &arguments.command {
         Command::Best(options) => best::run(options, quiet),
         Command::Compare(options) => compare::run(options, quiet),
-        Command::Check(options) => check::run(options),
+        Command::Check(options) => check::run(options, quiet),
         Command::Physics(options) => physics::run(options, quiet),
         Command::Plan(options) => plan::run(options, quiet),
         Command::Probability(options) => probability::run(options, quiet),

@@ -9,10 +9,13 @@ use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 
-/// The profile `configs/NAME.toml`.
+/// The profile `configs/NAME.toml` with the paper's physics, which the numbers of the tests belong to.
 pub fn load(name: &str) -> Profile {
     let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    config::parse_profile(&std::fs::read_to_string(&path).unwrap(), &path).unwrap()
+    config::parse_profile(&std::fs::read_to_string(&path).unwrap(), &path)
+        .unwrap()
+        .with(|settings| settings.physics = Physics::paper())
+        .unwrap()
 }
 
 /// The same profile at another location.

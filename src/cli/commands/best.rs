@@ -12,7 +12,7 @@ use bankshot::output::best_shot_text::{best_shots_table, sensitivity_text};
 use bankshot::search_space::TablePlan;
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
-    let (mut profile, text) = load_profile_with_text(&options.profile, &options.physics)?;
+    let (mut profile, text) = load_profile_with_text(&options.profile, &options.physics, quiet)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

@@ -4,25 +4,59 @@ use crate::cli::command_line_flags::CheckOptions;
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::print_answer;
+use bankshot::model::{PRESETS, Physics, PhysicsValue};
 use bankshot::search_space::TablePlan;
 use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::units::DEGREE_RAD;
+use std::fmt::Write as _;
 
-pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
     let path = options.profile.display();
     if is_sweep(&read_text(&options.profile)?) {
         let (config, _) = load_sweep(&options.profile)?;
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
-    let profile = load_profile(&options.profile, &options.physics)?;
+    let profile = load_profile(&options.profile, &options.physics, quiet)?;
     TablePlan::for_search(&profile)?;
     let (long, metre) = profile.output().units.length();
     let location = profile.location();
-    print_answer(&format!(
+    let mut answer = format!(
         "{path}: valid ({}, {:.2} {long} from the hoop at {:.1} deg)\n",
         profile.shooter().name,
         location.distance_m / metre,
         location.angle_rad / DEGREE_RAD
-    ))
+    );
+    if options.verbose {
+        answer.push_str(&physics_text(profile.physics()));
+    }
+    print_answer(&answer)
+}
+
+/// Every value of the physics, and whether it is measured, from a rule book or assumed.
+fn physics_text(physics: &Physics) -> String {
+    let values = physics.values();
+    let named = PRESETS
+        .iter()
+        .map(|preset| (preset, preset.physics().values()));
+    // The preset that it is, or differs from least.
+    let differing = |other: &[PhysicsValue]| {
+        let pairs = values.iter().zip(other);
+        pairs.filter(|(a, b)| a.value != b.value).count()
+    };
+    let (preset, of_preset) = named
+        .min_by_key(|(_, other)| differing(other))
+        .expect("there are presets");
+    let mut text = format!("physics: {} ({})\n", preset.name, preset.description);
+    for (own, usual) in values.iter().zip(&of_preset) {
+        let source = if own.value != usual.value {
+            format!("from the profile ({}: {})", preset.name, usual.value)
+        } else if preset.name == "paper" {
+            "the paper's".to_owned()
+        } else {
+            own.source.to_owned()
+        };
+        let _ = writeln!(text, "  {:<20} {:<36} {source}", own.key, own.value);
+    }
+    text
 }

@@ -12,7 +12,7 @@ use comfy_table::{CellAlignment, Table, presets};
 use serde_json::{Value, json};
 
 pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics)?;
+    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

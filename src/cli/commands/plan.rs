@@ -39,7 +39,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     if is_sweep(&read_text(&options.profile)?) {
         return plan_sweep_time_and_memory::run(&options.profile, options.json, quiet);
     }
-    let profile = load_profile(&options.profile, &options.physics)?;
+    let profile = load_profile(&options.profile, &options.physics, quiet)?;
     let plan = TablePlan::for_search(&profile)?;
     let forecast = forecast(&profile, &plan, options.wide_sample);
     if options.json {

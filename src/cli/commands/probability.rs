@@ -29,7 +29,7 @@ struct Precision {
 }
 
 pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics)?;
+    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

@@ -22,7 +22,7 @@ const INTERVAL_S: f64 = 0.005;
 const BLACK: &str = "#000000";
 
 pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics)?;
+    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

@@ -1,0 +1,117 @@
+//! The values of a physics in words: what each one is, and whether it is measured, from a rule book or assumed.
+
+use super::physics::{BoardEdge, Physics};
+use super::restitution::restitution_of_damping;
+use crate::units::{FOOT_M, INCH_M};
+use std::f64::consts::PI;
+
+/// One value of a physics.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PhysicsValue {
+    /// Its key in the `[physics]` table.
+    pub key: &'static str,
+    /// The number with its unit.
+    pub value: String,
+    /// Where the presets of balls in play have theirs from.
+    pub source: &'static str,
+}
+
+/// Where a value of the balls in play comes from.
+const BALL_RULES: &str = "rule book: size of the ball";
+const HOOP_RULES: &str = "rule book: equipment";
+const DROP_TEST: &str = "rule book: drop test of the ball";
+const SHOTS: &str = "measured: 27 three-point shots (0.41 +- 0.035; a smooth sphere has 0.47)";
+const NO_LIFT: &str = "measured: none in 27 three-point shots (0.00 +- 0.05)";
+const SHELL: &str = "assumed: a thin shell";
+const HOOP_LOSS: &str =
+    "assumed; rule books let the ring absorb 35 to 50 % of the energy; try 0.45 to 0.70";
+const FRICTION: &str =
+    "assumed: leather on painted steel or glass; new composite balls have up to 0.8";
+const STIFFNESS: &str = "assumed: the paper's";
+const SHAPE: &str = "assumed: usual equipment";
+const ROOM: &str = "assumed: a gym near sea level; give altitude and temperature";
+const STANDARD: &str = "standard gravity";
+
+impl Physics {
+    /// All values in the order of the README, in the units of rule books.
+    #[must_use]
+    pub fn values(&self) -> Vec<PhysicsValue> {
+        let inches = |metres: f64| format!("{:.3} in", metres / INCH_M);
+        let restitution = |contact: &super::ContactLaw| {
+            let c = restitution_of_damping(
+                contact.damping_kg_s,
+                contact.stiffness_n_m,
+                self.ball_mass_kg,
+            );
+            format!("{c:.4}")
+        };
+        let edge = match self.board_edge {
+            BoardEdge::None => "none: the board ends at its face".to_owned(),
+            BoardEdge::Rounded { radius_m } => inches(radius_m),
+        };
+        let (board, hoop) = (&self.board_contact, &self.hoop_contact);
+        let stiffness = |n_m: f64| format!("{n_m:.0} N/m");
+        let rows = [
+            (
+                "ball_radius",
+                format!(
+                    "{} (circumference {})",
+                    inches(self.ball_radius_m),
+                    inches(2.0 * PI * self.ball_radius_m)
+                ),
+                BALL_RULES,
+            ),
+            (
+                "ball_mass",
+                format!("{:.1} g", self.ball_mass_kg * 1000.0),
+                BALL_RULES,
+            ),
+            ("inertia_ratio", format!("{:.4}", self.inertia_ratio), SHELL),
+            ("ring_radius", inches(self.ring_radius_m), HOOP_RULES),
+            (
+                "ring_tube_diameter",
+                inches(self.ring_tube_diameter_m),
+                HOOP_RULES,
+            ),
+            ("bracket_width", inches(self.bracket_width_m), SHAPE),
+            (
+                "hoop_height",
+                format!("{:.3} ft", self.hoop_height_m / FOOT_M),
+                HOOP_RULES,
+            ),
+            ("board_distance", inches(self.board_distance_m), HOOP_RULES),
+            ("board_width", inches(self.board_width_m), HOOP_RULES),
+            ("board_height", inches(self.board_height_m), HOOP_RULES),
+            (
+                "board_centre_height",
+                inches(self.board_centre_height_m),
+                HOOP_RULES,
+            ),
+            ("board_edge_radius", edge, SHAPE),
+            ("board_restitution", restitution(board), DROP_TEST),
+            ("hoop_restitution", restitution(hoop), HOOP_LOSS),
+            ("board_friction", format!("{}", board.friction), FRICTION),
+            ("hoop_friction", format!("{}", hoop.friction), FRICTION),
+            ("board_stiffness", stiffness(board.stiffness_n_m), STIFFNESS),
+            ("hoop_stiffness", stiffness(hoop.stiffness_n_m), STIFFNESS),
+            (
+                "air_density",
+                format!("{:.4} kg/m^3", self.air.density_kg_m3),
+                ROOM,
+            ),
+            (
+                "drag_coefficient",
+                format!("{}", self.air.drag_coefficient),
+                SHOTS,
+            ),
+            ("lift_slope", format!("{}", self.air.lift_slope), NO_LIFT),
+            (
+                "gravity",
+                format!("{:.5} m/s^2", self.gravity_m_s2),
+                STANDARD,
+            ),
+        ];
+        rows.map(|(key, value, source)| PhysicsValue { key, value, source })
+            .into()
+    }
+}
