@@ -7,7 +7,7 @@
 use bankshot::best_shot;
 use bankshot::config::parse_profile;
 use bankshot::dynamics::{BatchWorkspace, InstructionSet, Integrator, Release, Simulator};
-use bankshot::model::{BallState, Physics};
+use bankshot::model::{BallState, Physics, Preset};
 use bankshot::probability::{NominalTable, Silent};
 use bankshot::search_space::TablePlan;
 use bankshot::shooter::Nominal;
@@ -38,6 +38,9 @@ fn main() {
     for (name, court_deg, polar_deg) in SAMPLES {
         compare_integrators(&physics, name, &uniform(BATCH, court_deg, polar_deg));
     }
+    for (name, court_deg, polar_deg) in SAMPLES {
+        compare_presets(name, court_deg, polar_deg);
+    }
     compare_agreement(&physics, &uniform(BATCH, 0.0, 0.0));
     time_free_throw();
     compare_threads(&physics, &uniform(THREAD_SHOTS, 0.0, 0.0));
@@ -46,6 +49,13 @@ fn main() {
 /// Uniform releases 13.75 ft away: speed 22..27 ft/s, pitch 40..65 deg, polar angle within 3 deg of its mean,
 /// backspin 0..5 rev/s.
 fn uniform(count: usize, court_deg: f64, polar_deg: f64) -> Vec<BallState> {
+    releases(count, court_deg, polar_deg)
+        .iter()
+        .map(Release::state)
+        .collect()
+}
+
+fn releases(count: usize, court_deg: f64, polar_deg: f64) -> Vec<Release> {
     let mut random = ChaCha12Rng::seed_from_u64(1);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     (0..count)
@@ -60,7 +70,6 @@ fn uniform(count: usize, court_deg: f64, polar_deg: f64) -> Vec<BallState> {
             rifle_spin_rad_s: 0.0,
             side_spin_rad_s: 0.0,
         })
-        .map(|release| release.state())
         .collect()
 }
 
@@ -178,6 +187,35 @@ fn compare_integrators(physics: &Physics, sample: &str, starts: &[BallState]) {
             1.0 / time,
             time / times[0],
             contender.starts.len()
+        );
+    }
+}
+
+/// Shots per second under the preset `ncaa` (speeds 3 % higher) and under the paper's, by instruction set.
+fn compare_presets(sample: &str, court_deg: f64, polar_deg: f64) {
+    let in_play = Preset::named("ncaa").unwrap().physics();
+    let releases = releases(SMALL_BATCH, court_deg, polar_deg);
+    let of_paper: Vec<_> = releases.iter().map(Release::state).collect();
+    let of_ncaa: Vec<_> = releases
+        .iter()
+        .map(|release| {
+            let mut release = *release;
+            release.speed_m_s *= 1.03;
+            release.height_above_hoop_m = 7.0 * FOOT_M - in_play.hoop_plane_height_m();
+            release.state()
+        })
+        .collect();
+    let mut contenders = Contender::event_driven(&Physics::paper(), &of_paper);
+    contenders.extend(Contender::event_driven(&in_play, &of_ncaa));
+    let times = shot_times_s(&contenders);
+    println!("\n{sample}, one thread, batches of {SMALL_BATCH}: ncaa against paper");
+    let (paper, ncaa) = times.split_at(times.len() / 2);
+    for ((contender, paper), ncaa) in contenders.iter().zip(paper).zip(ncaa) {
+        println!(
+            "  {:27} {:>9.0} shots/s of ncaa, {:.2} of paper's",
+            contender.name,
+            1.0 / ncaa,
+            paper / ncaa
         );
     }
 }

@@ -28,6 +28,28 @@ fn contract_check_and_plan_accept_the_shipped_profiles() {
         .prints("; 0 of those were made");
 }
 
+#[test]
+fn contract_check_lists_the_physics_and_what_it_rests_on() {
+    let list = |arguments: &[&str]| {
+        let mut command = bankshot();
+        command.args(["check", "configs/free_throw.toml", "--verbose"]);
+        Answer::of(command.args(arguments)).exits(0)
+    };
+    let mut own = list(&[]);
+    for words in [
+        "physics: ncaa (",
+        "drag_coefficient     0.45",
+        "measured: ",
+        "rule book: ",
+        "hoop_restitution     0.6000",
+        "assumed",
+    ] {
+        own = own.prints(words);
+    }
+    assert_eq!(own.stderr, "");
+    list(&["--physics", "paper"]).prints("physics: paper (");
+}
+
 /// What is replaced in the profile of the free throw, and words that the message must have.
 const ERRORS: [(&str, &str, &[&str]); 30] = [
     (

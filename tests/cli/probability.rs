@@ -231,6 +231,10 @@ fn contract_physics_replaces_the_table_of_the_profile() {
     );
     // In air the paper's best speed is too slow.
     assert!(p(&["--physics", "ncaa"]) < own - 0.1);
+    probability(&["--physics", "ncaa", "--target", "0.01"])
+        .exits(0)
+        .says("written for another physics")
+        .says("0.0000 kg/m^3 -> 1.1900 kg/m^3");
     let answer = probability(&["--physics", "ncaaa"]).exits(2);
     answer.says("is neither a preset (paper, ncaa, ");
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-pub(crate) const FREE_THROW: &str = include_str!("../../configs/free_throw.toml");
+pub(crate) const FREE_THROW: &str = include_str!("paper_free_throw.toml");
 
 /// Three releases: a swish, a bank shot and an airball.
 pub(crate) const RELEASES: &str = "\
