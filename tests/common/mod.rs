@@ -18,6 +18,11 @@ pub fn load(name: &str) -> Profile {
         .unwrap()
 }
 
+/// The guard of `configs/bank_wing.toml` 12 ft from the hoop at 50 deg, where the paper's physics favours the bank shot.
+pub fn guard_on_the_wing() -> Profile {
+    at(&load("bank_wing"), 12.0 * FOOT_M, 50.0)
+}
+
 /// The same profile at another location.
 pub fn at(profile: &Profile, distance_m: f64, angle_deg: f64) -> Profile {
     profile

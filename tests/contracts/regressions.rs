@@ -3,7 +3,9 @@
 //! Authority: version 0.1.0 before its modules were renamed. The values are the same on every machine and on
 //! every instruction set.
 
-use crate::common::{free_throw_uniform, grid, load, nominal, verdicts, wild, with_search};
+use crate::common::{
+    free_throw_uniform, grid, guard_on_the_wing, load, nominal, verdicts, wild, with_search,
+};
 use bankshot::best_shot::{self, BestShot};
 use bankshot::dynamics::{Release, Simulator};
 use bankshot::model::{Physics, SolidId};
@@ -116,7 +118,7 @@ fn bits(shot: &BestShot) -> [u64; 5] {
 
 #[test]
 fn regress_best_shots() {
-    let profile = with_search(&load("bank_wing"), grid(24, 16, 16, 6), 0.004);
+    let profile = with_search(&guard_on_the_wing(), grid(24, 16, 16, 6), 0.004);
     let best = best_shot::find(&profile, &Silent).unwrap();
     let found = [bits(&best.direct.unwrap()), bits(&best.bank.unwrap())];
     println!("{found:#018x?}");

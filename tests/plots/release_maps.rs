@@ -1,6 +1,6 @@
 //! Maps over speed and pitch angle, and names in drawings.
 
-use super::common::{grid, load, nominal, on_threads, with_search};
+use super::common::{grid, guard_on_the_wing, load, nominal, on_threads, with_search};
 use bankshot::analysis::release_map::{ReleaseCells, probabilities};
 use bankshot::best_shot;
 use bankshot::plots::bank_direct_release_map;
@@ -13,7 +13,7 @@ use bankshot::units::{DEGREE_RAD, FOOT_M};
 
 #[test]
 fn contract_a_map_of_release_space_is_the_same_on_any_number_of_threads() {
-    let profile = with_search(&load("bank_wing"), grid(20, 12, 12, 4), 0.01);
+    let profile = with_search(&guard_on_the_wing(), grid(20, 12, 12, 4), 0.01);
     let shots = PlottedShot::of_best(&best_shot::find(&profile, &Silent).unwrap());
     let draw = || bank_direct_release_map::draw_probabilities(&profile, &shots).unwrap();
     let one = on_threads(1, draw);

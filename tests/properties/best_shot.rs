@@ -1,6 +1,6 @@
 //! Properties of the search for the best shots, over all of the nominal values and over a part of them.
 
-use crate::common::{at, grid, load, with_search};
+use crate::common::{at, grid, guard_on_the_wing, load, with_search};
 use bankshot::analysis::sensitivity::SensitivityTopics;
 use bankshot::best_shot::{self, BestShot, ShotKind};
 use bankshot::dynamics::OutcomeKind;
@@ -14,7 +14,7 @@ const SEARCH_LOSS: f64 = 0.003;
 
 /// The wing, with a table small enough for a test.
 fn wing() -> Profile {
-    with_search(&load("bank_wing"), grid(30, 20, 20, 6), 0.002)
+    with_search(&guard_on_the_wing(), grid(30, 20, 20, 6), 0.002)
 }
 
 /// The best direct and the best bank shot.
@@ -114,7 +114,7 @@ fn prop_curves_pass_through_the_best_shot() {
 #[test]
 fn prop_best_shots_are_of_their_kind_and_mirror() {
     // The points of the tables are not mirrored, so the two searches are independent.
-    let profile = with_search(&load("bank_wing"), grid(40, 28, 28, 8), 0.0007);
+    let profile = with_search(&guard_on_the_wing(), grid(40, 28, 28, 8), 0.0007);
     let location = profile.location();
     let mirrored = at(
         &profile,
