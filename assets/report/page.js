@@ -54,6 +54,11 @@
   const low = court.board_centre_height_m - court.board_height_m / 2;
   const high = court.board_centre_height_m + court.board_height_m / 2;
   const board = [[face, -half, low], [face, half, low], [face, half, high], [face, -half, high], [face, -half, low]];
+  // Where the rounded edge, padding included, begins.
+  const edge = court.board_edge_radius_m;
+  const inner = [[face, edge - half, low + edge], [face, half - edge, low + edge], [face, half - edge, high - edge], [face, edge - half, high - edge], [face, edge - half, low + edge]];
+  const side = court.bracket_width_m / 2;
+  const bracket = [[face, -side, 0], [-court.ring_radius_m, -side, 0], [-court.ring_radius_m, side, 0], [face, side, 0]];
   const ring = arc(0, court.ring_radius_m, 0, 2 * Math.PI).map(([x, y]) => [x, y, 0]);
 
   // From space to the canvas, by a camera that looks at a point between the hoop and the shooter.
@@ -107,6 +112,8 @@
     for (const line of lines) stroke(project, line, "#9a9a92", 1.2);
     stroke(project, board, "#333333", 2.5);
     stroke(project, [[face, 0, low], [base * 0.9, 0, low], [base * 0.9, 0, floor]], "#bbbbbb", 3);
+    if (edge > 0) stroke(project, inner, "#999999", 1);
+    if (side > 0) stroke(project, bracket, "#d55e00", 1.5);
     stroke(project, ring, "#d55e00", 3);
     for (const shot of current()) {
       stroke(project, shot.path.map(([, x, y]) => [x, y, floor]), "rgba(0,0,0,0.18)", 1.5);

@@ -15,6 +15,9 @@ pub const MADE_COLOUR: &str = "#0072b2";
 /// Colour of missed shots.
 pub const MISSED_COLOUR: &str = "#d55e00";
 
+/// Colours of the ring's line and of the bracket's surface.
+const RING_COLOUR: &str = "#cc3311";
+const BRACKET_FILL: &str = "#f3c9bf";
 /// Width of the drawing, px.
 const WIDTH: f64 = 1060.0;
 /// Segments of the ring.
@@ -120,8 +123,16 @@ impl Panel {
     }
 
     fn draw_board_and_ring(&self, svg: &mut Svg, physics: &Physics) {
+        self.draw_bracket_and_padding(svg, physics);
+        let (_, unit_m) = self.units.length();
+        let rod = self
+            .axes
+            .pixels_of_length(physics.ring_tube_diameter_m / unit_m);
         let board = format!("stroke=\"{INK}\" stroke-width=\"2.5\" fill=\"none\"");
-        let ring = "stroke=\"#cc3311\" stroke-width=\"2.5\" fill=\"none\"";
+        let ring = format!(
+            "stroke=\"{RING_COLOUR}\" stroke-width=\"{:.1}\" fill=\"none\"",
+            rod.max(2.5)
+        );
         let (low, high) = board_edges(physics);
         let half_width = 0.5 * physics.board_width_m;
         let face = -physics.board_distance_m;
@@ -152,8 +163,52 @@ impl Panel {
                 ring_circle.map(|(x, y)| (y, x)).collect(),
             ),
         };
-        for (line, style) in [(board_line, board.as_str()), (ring_line, ring)] {
+        for (line, style) in [(board_line, board.as_str()), (ring_line, ring.as_str())] {
             svg.polyline(line.into_iter().map(|point| self.pixel(point)), style);
+        }
+    }
+
+    /// The flat bracket between ring and board, and the board's edges of glass and padding.
+    fn draw_bracket_and_padding(&self, svg: &mut Svg, physics: &Physics) {
+        let (low, high) = board_edges(physics);
+        let half_width = 0.5 * physics.board_width_m;
+        let (face, ring) = (-physics.board_distance_m, -physics.ring_radius_m);
+        let half_bracket = 0.5 * physics.bracket_width_m;
+        let half_rod = 0.5 * physics.ring_tube_diameter_m;
+        let edge = physics.board_edge.radius_m();
+        let back = face - 2.0 * edge;
+        let rectangle = |(x0, x1): (f64, f64), (y0, y1): (f64, f64)| {
+            [(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)].map(|point| self.pixel(point))
+        };
+        let (bracket, board) = match self.view {
+            View::Side => (
+                rectangle((face, ring), (-half_rod, half_rod)),
+                rectangle((back, face), (low, high)),
+            ),
+            View::Above => (
+                rectangle((face, ring), (-half_bracket, half_bracket)),
+                rectangle((back, face), (-half_width, half_width)),
+            ),
+            View::FacingBoard => (
+                rectangle((-half_bracket, half_bracket), (-half_rod, half_rod)),
+                rectangle(
+                    (edge - half_width, half_width - edge),
+                    (low + edge, high - edge),
+                ),
+            ),
+            View::RingFromAbove => (
+                rectangle((-half_bracket, half_bracket), (face, ring)),
+                rectangle((-half_width, half_width), (back, face)),
+            ),
+        };
+        if edge > 0.0 {
+            let style = format!("stroke=\"{FAINT}\" stroke-width=\"1\" fill=\"none\"");
+            svg.polyline(board, &style);
+        }
+        if physics.bracket_width_m > 0.0 {
+            let style =
+                format!("stroke=\"{RING_COLOUR}\" stroke-width=\"0.5\" fill=\"{BRACKET_FILL}\"");
+            svg.polyline(bracket, &style);
         }
     }
 

@@ -80,7 +80,9 @@ impl Scene {
             ("board_width_m", physics.board_width_m),
             ("board_height_m", physics.board_height_m),
             ("board_centre_height_m", physics.board_centre_z_m()),
+            ("board_edge_radius_m", physics.board_edge.radius_m()),
             ("ring_radius_m", physics.ring_radius_m),
+            ("bracket_width_m", physics.bracket_width_m),
             ("ball_radius_m", physics.ball_radius_m),
         ] {
             record[name] = number(value);

@@ -27,12 +27,12 @@ const SHARES: (f64, f64) = (0.40, 1.02);
 const SHARE_PER_STRENGTH: f64 = 0.45;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const LEAST_SPEED_M_S: f64 = 1e-6;
-/// Newton steps to a height. (The first guess errs by up to some hundredths of an arc.)
+/// Newton steps to the highest point.
 const NEWTON_STEPS: u32 = 4;
-/// Limit on those to a rising crossing: two or three, more only where the path is nearly flat.
-const MAX_STEPS_TO_RISE: u32 = 30;
+/// Limit on those to a height: three or four, more only where the path is nearly flat.
+const MAX_STEPS_TO_HEIGHT: u32 = 30;
 /// Height within which a search for a rising crossing must end, m.
-const CROSSING_TOLERANCE_M: f64 = 1e-9;
+const CROSSING_TOLERANCE_M: f64 = 1e-10;
 
 /// A part of a flight, from s = 0 to 1.
 #[derive(Clone, Copy, Debug)]
@@ -253,18 +253,22 @@ impl<T: Real> DragArc<T> {
         if !falls.any() {
             return self.never;
         }
-        // From the end backwards with the mean curvature; z is concave, so Newton's steps come from later s.
-        let mean = (self.rate[0] - end_rate).positive_part();
+        // From the end backwards with the least curvature, that of the start: a place that is not earlier. z is concave, so
+        // Newton's steps from there never pass the height.
         let below = (height - end_z).positive_part();
-        let root = (end_rate.squared() - mean * below * 2.0)
-            .positive_part()
-            .sqrt();
+        let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
+        let root = square.positive_part().sqrt();
         let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
-        for _ in 0..NEWTON_STEPS {
+        let mut searching = falls;
+        for _ in 0..MAX_STEPS_TO_HEIGHT {
             let (z, rate) = self.height_and_rate(s);
-            let usable = rate.is_negative();
-            let next = s - (z - height) / rate.select(usable, one);
-            s = next.select(usable, s);
+            let arrives = height.le(z + CROSSING_TOLERANCE_M);
+            searching = searching & !arrives & rate.is_negative();
+            if !searching.any() {
+                break;
+            }
+            let next = s - (z - height) / rate.select(searching, one);
+            s = next.select(searching, s);
         }
         Real::max(s, zero).select(falls, self.never)
     }
@@ -279,7 +283,7 @@ impl<T: Real> DragArc<T> {
         let mut found = -one;
         let root = above.positive_part().sqrt();
         let mut s = (rise * 2.0) / (rate_0 + root).select(searching, one);
-        for _ in 0..MAX_STEPS_TO_RISE {
+        for _ in 0..MAX_STEPS_TO_HEIGHT {
             if !searching.any() {
                 break;
             }
