@@ -9,7 +9,7 @@
 //! As a function of complex time `|v|` is singular about `|v|/|a|` from the start (for gravity alone exactly there:
 //! where `v_h^2 + (v_z - g t)^2 = 0`), with |a| the sum of the sizes of all accelerations. So a path holds for a fraction of that time. Without air it is the parabola.
 
-use crate::math::real::Real;
+use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec3};
 use crate::model::BallState;
 use crate::model::ball_params::BallParams;
@@ -156,16 +156,24 @@ impl<T: Real> FlightPath<T> {
         }
     }
 
-    /// The time near `guess` at which a falling ball is at the height `z`. (z is concave in time: Newton's steps
-    /// approach the root from later times.)
+    /// The time near `guess` at which a ball that falls at the end of the path is at the height `z`. (z is concave in time:
+    /// Newton's steps approach the root from later times. Before the highest point a step goes half of the way to the end.)
     #[inline(always)]
     pub(crate) fn falls_through(&self, z: T, guess: T) -> T {
         let mut t = guess;
-        for _ in 0..NEWTON_STEPS {
+        let mut searching = z.splat_mask(true);
+        for _ in 0..MAX_STEPS_TO_FALL {
             let (height, rate) = self.height_and_rate(t);
             let falls = rate.is_negative();
-            let next = t - (height - z) / rate.select(falls, t.one());
-            t = next.select(falls, t);
+            let above = height - z;
+            let arrives = falls & above.abs().le(z.splat(FALL_TOLERANCE_M));
+            searching = searching & !arrives;
+            if !searching.any() {
+                break;
+            }
+            let later = (t + self.longest_s) * 0.5;
+            let next = (t - above / rate.select(falls, t.one())).select(falls, later);
+            t = Real::min(next, self.longest_s).select(searching, t);
         }
         t
     }
@@ -203,6 +211,9 @@ impl<T: Real> FlightPath<T> {
 
 /// Newton steps to a height.
 const NEWTON_STEPS: u32 = 5;
+/// Limit on those of a falling ball, more than five only where the path is nearly flat; and where they end, m.
+const MAX_STEPS_TO_FALL: u32 = 40;
+const FALL_TOLERANCE_M: f64 = 1e-11;
 
 #[cfg(test)]
 mod tests {
