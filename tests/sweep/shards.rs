@@ -1,6 +1,8 @@
 //! Shards, threads, and several processes in one folder.
 
-use crate::support::{TestFolder, assert_code, assert_printed, bankshot, printed, stores, tables};
+use crate::support::{
+    SWEEP, TestFolder, assert_code, assert_printed, bankshot, printed, stores, tables,
+};
 use bankshot::dynamics::InstructionSet;
 use std::fs;
 
@@ -111,4 +113,25 @@ fn contract_all_shards_are_refused_while_one_is_running() {
     assert_printed(&output, &format!("process {}", shard.child.id()));
     assert_code(&shard.release(), 0);
     assert_code(&test.run(&out, &["--quiet"]), 0);
+}
+
+/// In air, at a ring with a rod, a bracket and edges: killed, continued with other instructions, and computed again.
+#[test]
+fn contract_a_sweep_under_ncaa_resumes_and_verifies_to_the_same_bytes() {
+    let test = TestFolder::with(&format!("{SWEEP}\n[physics]\npreset = \"ncaa\"\n"));
+    let (undisturbed, bytes) = test.undisturbed();
+    let out = test.out("resumed");
+    test.start_and_wait_at(&out, 3).kill();
+    assert_code(&test.run(&out, &["--simd", "scalar", "--quiet"]), 0);
+    assert_eq!(tables(&out), bytes);
+    for folder in [&undisturbed, &out] {
+        let mut verify = bankshot();
+        verify
+            .arg("verify")
+            .arg(folder)
+            .args(["--recompute", "100%"]);
+        assert_code(&verify.output().unwrap(), 0);
+    }
+    let paper = TestFolder::new();
+    assert_ne!(paper.undisturbed().1, bytes);
 }
