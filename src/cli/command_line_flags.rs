@@ -138,6 +138,9 @@ pub(crate) struct PhysicsOptions {
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
+    /// Draw P under each physics (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
     /// Print one JSON array (SI units).
     #[arg(long)]
     pub(crate) json: bool,

@@ -26,6 +26,36 @@ pub(crate) fn write(folder: &Path, plots: &[Plot]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// How a single plot is written.
+#[derive(Clone, Copy)]
+pub(crate) enum PlotType {
+    Svg,
+    Png,
+}
+
+impl PlotType {
+    /// That of the file that `--plot` names.
+    pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Failure::usage(format!(
+                "--plot {}: the name must end in .svg or .png",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// Writes one plot to the file that `--plot` names.
+pub(crate) fn write_one(path: &Path, plot: &Plot) -> Result<(), Failure> {
+    let bytes = match PlotType::of(path)? {
+        PlotType::Svg => plot.svg.clone().into_bytes(),
+        PlotType::Png => to_png(&plot.svg, PNG_SCALE).map_err(Failure::bug)?,
+    };
+    atomic_file::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))
+}
+
 /// Prints the captions of the written plots.
 pub(crate) fn print_captions(folder: &Path, plots: &[Plot], quiet: bool) -> Result<u8, Failure> {
     for plot in plots {

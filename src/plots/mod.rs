@@ -9,6 +9,7 @@ pub mod colour_key;
 mod court_lines;
 pub mod court_map;
 pub mod paper_figures;
+pub mod physics_probabilities;
 mod polyline_thinning;
 pub mod probability_curves;
 pub mod rasterise;

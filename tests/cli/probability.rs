@@ -163,6 +163,7 @@ fn contract_a_small_probability_is_printed_with_its_digits() {
     let answer = Answer::of(
         command
             .args(["probability", "configs/free_throw.toml"])
+            .args(["--physics", "paper"])
             .args(&flags),
     );
     let answer = answer.exits(1);
@@ -231,10 +232,25 @@ fn contract_physics_replaces_the_table_of_the_profile() {
     );
     // In air the paper's best speed is too slow.
     assert!(p(&["--physics", "ncaa"]) < own - 0.1);
-    probability(&["--physics", "ncaa", "--target", "0.01"])
+    let mut command = bankshot();
+    command.args([
+        "probability",
+        "configs/free_throw.toml",
+        "--speed",
+        "24 ft/s",
+    ]);
+    command.args([
+        "--pitch",
+        "53 deg",
+        "--physics",
+        "paper",
+        "--target",
+        "0.01",
+    ]);
+    Answer::of(&mut command)
         .exits(0)
         .says("written for another physics")
-        .says("0.0000 kg/m^3 -> 1.1900 kg/m^3");
+        .says("1.1900 kg/m^3 -> 0.0000 kg/m^3");
     let answer = probability(&["--physics", "ncaaa"]).exits(2);
     answer.says("is neither a preset (paper, ncaa, ");
 }

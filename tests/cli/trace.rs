@@ -5,11 +5,11 @@ use std::fs;
 use std::process::Command;
 use tempfile::TempDir;
 
-/// `bankshot trace` of the free throw with some options.
+/// `bankshot trace` of the free throw, with the paper's physics and some options.
 fn trace(options: &[&str]) -> Command {
     let mut command = bankshot();
     command
-        .args(["trace", "configs/free_throw.toml"])
+        .args(["trace", "configs/free_throw.toml", "--physics", "paper"])
         .args(options);
     command
 }

@@ -3,9 +3,11 @@
 use crate::cli::command_line_flags::PhysicsOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
+use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
+use bankshot::plots::physics_probabilities;
 use bankshot::shooter::Profile;
 use bankshot::units::{DEGREE_RAD, UnitSystem};
 use comfy_table::{CellAlignment, Table, presets};
@@ -16,8 +18,18 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
+    if let Some(path) = &options.plot {
+        PlotType::of(path)?;
+    }
     let variants = physics_variants(profile.physics());
     let rows = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+    if let Some(path) = &options.plot {
+        let plot = physics_probabilities::draw(&profile.shooter().name, &rows);
+        plot_files::write_one(path, &plot)?;
+        if !quiet {
+            print_remark(&format!("plot written to {}", path.display()));
+        }
+    }
     print_answer(&if options.json {
         format!("{:#}\n", rows_json(&rows))
     } else {

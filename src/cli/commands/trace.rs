@@ -4,11 +4,10 @@ use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
 use crate::cli::command_line_flags::TraceOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
-use crate::cli::plot_files::PNG_SCALE;
+use crate::cli::plot_files;
 use crate::cli::terminal::{print_answer, print_bytes, print_remark};
 use bankshot::dynamics::{Release, Trace};
 use bankshot::output::atomic_file;
-use bankshot::plots::rasterise::to_png;
 use bankshot::plots::shot_views::{self, MADE_COLOUR, MISSED_COLOUR, ShotPath};
 use bankshot::plots::svg::shortened;
 use bankshot::probability::Sampler;
@@ -108,17 +107,7 @@ fn write_plot(
     let title = title(profile, nominal, trace);
     let note = note(&others);
     let plot = shot_views::draw("shot", &title, &note, profile.physics(), units, &paths);
-    let bytes = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => plot.svg.into_bytes(),
-        Some("png") => to_png(&plot.svg, PNG_SCALE).map_err(Failure::bug)?,
-        _ => {
-            return Err(Failure::usage(format!(
-                "--plot {}: the name must end in .svg or .png",
-                path.display()
-            )));
-        }
-    };
-    atomic_file::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))
+    plot_files::write_one(path, &plot)
 }
 
 fn title(profile: &Profile, nominal: &Nominal, trace: &Trace) -> String {
