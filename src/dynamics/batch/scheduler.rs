@@ -60,11 +60,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         };
         loop {
             if !params.has_paper_flight() {
-                if WIDTH == WIDE {
-                    fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
-                } else {
-                    fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
-                }
+                // Sixteen lanes would need more registers than there are.
+                fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
             } else if WIDTH == WIDE {
                 fly_from_release::<S, Wide<S>, WIDTH>(&mut batch, starts);
             } else {
