@@ -1,6 +1,6 @@
 //! The values of a physics in words: what each one is, and whether it is measured, from a rule book or assumed.
 
-use super::physics::{BoardEdge, Physics};
+use super::physics::{BoardEdge, ContactLaw, Physics};
 use super::restitution::restitution_of_damping;
 use crate::units::{FOOT_M, INCH_M};
 use std::f64::consts::PI;
@@ -37,7 +37,7 @@ impl Physics {
     #[must_use]
     pub fn values(&self) -> Vec<PhysicsValue> {
         let inches = |metres: f64| format!("{:.3} in", metres / INCH_M);
-        let restitution = |contact: &super::ContactLaw| {
+        let restitution = |contact: &ContactLaw| {
             let c = restitution_of_damping(
                 contact.damping_kg_s,
                 contact.stiffness_n_m,
