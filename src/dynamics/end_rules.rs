@@ -3,6 +3,7 @@
 use super::contact::oscillator::Oscillator;
 use super::outcome::Ending;
 use crate::math::real::Real;
+use crate::math::vector::RealVector;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
 use crate::model::{BallState, SolidId};
@@ -84,6 +85,17 @@ pub(crate) fn fell_below_ring<T: Real>(params: &ModelParams<T>, state: &BallStat
 pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     let height = params.splat(-1.0) * params.ring.reach - TOUCH_GAP_M;
     height.lt(state.position_m.z)
+}
+
+/// A ball faster than this is not one that any step has followed well, m/s.
+const LARGEST_SPEED_M_S: f64 = 1000.0;
+
+/// Whether the numerics have lost a ball: its speed is beyond every bound, or not a number. (Seen where gravity is a
+/// hundred times that of the earth, and a step of a contact crosses the whole hoop.) Such a shot is unresolved.
+#[inline(always)]
+pub(crate) fn has_diverged<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
+    let largest = params.splat(LARGEST_SPEED_M_S * LARGEST_SPEED_M_S);
+    !state.velocity_m_s.norm_squared().le(largest)
 }
 
 /// How a flight ended that reached neither a solid nor the time limit.

@@ -21,8 +21,8 @@ pub(crate) struct OutcomeClassifier {
     board_point_m: Option<(f64, f64, f64)>,
     /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop.
     undisturbed_crossing_m: Option<(f64, f64)>,
-    /// The first contact was with the board, and the flight after it has not begun.
-    awaits_flight_off_board: bool,
+    /// The next flight is the one from the release, or the one off the board after a first contact there.
+    awaits_flight: bool,
 }
 
 impl OutcomeClassifier {
@@ -44,7 +44,7 @@ impl OutcomeClassifier {
             was_inside: false,
             board_point_m: None,
             undisturbed_crossing_m: None,
-            awaits_flight_off_board: false,
+            awaits_flight: true,
         }
     }
 
@@ -110,8 +110,8 @@ impl OutcomeClassifier {
 impl Observer for OutcomeClassifier {
     fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, path: &FlightPath) {
         self.apex_m = self.apex_m.max(highest_point_m(params, path, dt));
-        let is_first_flight = self.undisturbed_crossing_m.is_none() && self.first_contact.is_none();
-        let is_wanted = is_first_flight || self.awaits_flight_off_board;
+        // Once for each flight, not for each segment: every part of a hovering one would be followed to the end.
+        let is_wanted = std::mem::take(&mut self.awaits_flight);
         let (z, vz) = path.height_and_rate(dt);
         let crosses = z <= 0.0 && vz < 0.0;
         if (is_wanted || crosses)
@@ -125,7 +125,6 @@ impl Observer for OutcomeClassifier {
                 self.record_entry(crossing, state.velocity_m_s);
             }
         }
-        self.awaits_flight_off_board = false;
     }
 
     fn touch(&mut self, t: f64, solid: SolidId, state: &BallState) {
@@ -136,7 +135,7 @@ impl Observer for OutcomeClassifier {
         if self.first_contact.is_none() {
             self.first_contact = Some(solid);
             self.first_touch_s = Some(t);
-            self.awaits_flight_off_board = solid == SolidId::Board;
+            self.awaits_flight = solid == SolidId::Board;
         }
     }
 

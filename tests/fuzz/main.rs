@@ -2,7 +2,8 @@
 //!
 //! Each target turns random bytes into mutations of a small corpus; a failure is shrunk. An ordinary run tries a few
 //! hundred, always the same. `BANKSHOT_FUZZ_TRIES=10000000 cargo test --release --test fuzz -- --nocapture` is the
-//! campaign of `docs/reliability.md`; its random numbers differ from run to run.
+//! campaign of `docs/reliability.md`; its random numbers differ from run to run, unless `BANKSHOT_FUZZ_SEED` (0 to 255)
+//! fixes them.
 
 mod mutation;
 
@@ -47,6 +48,8 @@ short,5.2e1,22.0,13.75,-0.0,7,0,3
 const PLACES: &str = "name,x_ft,y_ft\nelbow,11,8\ncorner,1,-20\n\"the, line\",13.75,0\n";
 /// Tries of all targets in an ordinary test run.
 const TRIES: u32 = 3000;
+/// Longest time to shrink a failure, ms.
+const MAX_SHRINK_MS: u32 = 20_000;
 /// Most random bytes of a try.
 const MAX_SCRIPT: usize = 200;
 
@@ -59,14 +62,18 @@ fn attack(share: u32, target: impl Fn(&[u8])) {
         cases: (u64::from(tries) * u64::from(share) / 1000) as u32,
         failure_persistence: None,
         max_shrink_iters: 2000,
+        max_shrink_time: MAX_SHRINK_MS,
         ..ProptestConfig::default()
     };
-    // An ordinary run tries the same bytes every time.
-    let mut runner = if is_campaign {
-        TestRunner::new(config)
-    } else {
-        let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-        TestRunner::new_with_rng(config, rng)
+    // An ordinary run tries the same bytes every time, and so does one with a seed.
+    let seed = std::env::var("BANKSHOT_FUZZ_SEED").ok();
+    let seed = seed.map(|seed| seed.parse::<u8>().unwrap());
+    let mut runner = match seed.or((!is_campaign).then_some(0)) {
+        Some(seed) => {
+            let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]);
+            TestRunner::new_with_rng(config, rng)
+        }
+        None => TestRunner::new(config),
     };
     let bytes = proptest::collection::vec(proptest::num::u8::ANY, 0..MAX_SCRIPT);
     let result = runner.run(&bytes, |bytes| {
@@ -221,7 +228,11 @@ fn fuzz_physics() {
                     outcome.verdict.ending
                 );
             }
-            assert!(outcome.verdict.time_s <= physics.time_limit_s * 1.001 + 1.0);
+            assert!(
+                outcome.verdict.time_s <= physics.time_limit_s * 1.001 + 1.0,
+                "{:?} {physics:?} {release:?}",
+                outcome.verdict
+            );
             let state = release.state();
             let mut workspace = Default::default();
             let verdicts = simulator.verdicts(&[state], &mut workspace).unwrap();

@@ -12,6 +12,48 @@ use bankshot::model::{BallState, BoardEdge, PRESETS, Physics, Preset, SolidId};
 use proptest::prelude::*;
 use std::collections::HashSet;
 
+/// A ball so fast that one step of a contact carries it across the hoop.
+#[test]
+fn contract_a_ball_that_the_numerics_lose_is_unresolved() {
+    let mut physics = Physics {
+        ball_radius_m: 0.15903711719162847,
+        ball_mass_kg: 0.2796784161135271,
+        ring_radius_m: 0.2534077306019684,
+        ring_tube_diameter_m: 0.018,
+        bracket_width_m: 9.518671372147642e-5,
+        board_distance_m: 0.2669682555123216,
+        gravity_m_s2: 1000.0,
+        board_edge: BoardEdge::Rounded { radius_m: 0.0 },
+        ..Preset::named("fiba").unwrap().physics()
+    };
+    physics.air.drag_coefficient = 0.001;
+    physics.hoop_contact.stiffness_n_m = 29187.805874412727;
+    physics.hoop_contact.damping_kg_s = 39.92315698169847;
+    physics.hoop_contact.friction = 3.706622933656553e-5;
+    let release = Release {
+        distance_m: 4.608033875028611,
+        court_angle_rad: -1.0299656672007325,
+        height_above_hoop_m: -0.6795529106584268,
+        speed_m_s: 78.11399385902473,
+        pitch_rad: 1.1100938429846647,
+        polar_rad: -1.0420495918211643,
+        backspin_rad_s: 37.11146715495536,
+        rifle_spin_rad_s: -16.976424811169604,
+        side_spin_rad_s: 15.68551155870908,
+    };
+    for slope in [0.0, 1e-9] {
+        physics.air.lift_slope = slope;
+        let simulator = Simulator::new(&physics).unwrap();
+        let verdict = simulator.simulate(&release).unwrap().verdict;
+        assert_eq!(verdict.ending, Ending::Unresolved);
+        assert!(verdict.time_s < 1.0 && !verdict.made, "{verdict:?}");
+        let mut workspace = Default::default();
+        let states = [release.state(); 9];
+        let in_lanes = simulator.verdicts(&states, &mut workspace).unwrap();
+        assert_eq!(in_lanes, [verdict; 9]);
+    }
+}
+
 /// Distance of a point from the box between two corners.
 fn distance_from_box(p: [f64; 3], low: [f64; 3], high: [f64; 3]) -> f64 {
     let beyond = [0, 1, 2].map(|i| p[i] - p[i].clamp(low[i], high[i]));

@@ -10,6 +10,7 @@ use super::flight_segment::FlightSegment;
 use super::height_path::HeightPath;
 use super::ring_search::{HorizontalMotion, ring_time};
 use super::safe_step::gap_step;
+use crate::dynamics::end_rules::has_diverged;
 use crate::math::real::{Mask, Real};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Rectangle;
@@ -47,7 +48,7 @@ pub(crate) fn drag_segment<T: Real>(
     let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_to_top, until));
     let mut end = Real::min(until, ring);
     let (mut edge, mut bracket) = (never, never);
-    let mut unresolved = ring_unresolved;
+    let mut unresolved = ring_unresolved | has_diverged(params, state);
     let passes_plane = board.edges.lt(end);
     if passes_plane.any() {
         let near = passes_plane & !passes_beside(params, &arc, board.edges, end);
@@ -120,7 +121,7 @@ fn is_far<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<
     let beside = side.lt(Real::min(p.y, end_y)) | Real::max(p.y, end_y).lt(-side);
     let in_front = front.lt(Real::min(p.x, end_x));
     let behind = Real::min(p.x, end_x).lt(params.board.core.low.x);
-    (in_front | (beside & !behind)) & !falls
+    (in_front | (beside & !behind)) & !falls & !has_diverged(params, start)
 }
 
 /// A whole arc on which nothing is touched.

@@ -4,6 +4,7 @@ use super::board_touch::{board_times, entry_from_beside};
 use super::height_crossing::falling_time;
 use super::height_path::{HeightPath, Parabola};
 use super::ring_search::{HorizontalMotion, ring_time};
+use crate::dynamics::end_rules::has_diverged;
 use crate::math::real::Real;
 use crate::math::vector::Vec2;
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -20,7 +21,7 @@ pub(crate) struct FlightEvents<T: Real> {
     /// The ball overlaps the plane of the board beside the rectangle: [`FlightEvents::resolve_beside_board`] says when
     /// the shot is over.
     pub(crate) beside_board: T,
-    /// The search for the ring reached its iteration limit. (Never seen. Such a shot is unresolved.)
+    /// The ball is lost, or the search for the ring reached its iteration limit. (The latter was never seen.)
     pub(crate) unresolved: T::Mask,
 }
 
@@ -37,7 +38,7 @@ impl<T: Real> FlightEvents<T> {
             below_ring,
             touch: [board, ring],
             beside_board,
-            unresolved,
+            unresolved: unresolved | has_diverged(params, state),
         }
     }
 
@@ -102,8 +103,9 @@ impl FlightEvents<f64> {
         let behind = behind.min(enters);
         self.touch[SolidId::Board.index()] = params.ball.never_s;
         let search_end = self.below_ring.min(behind);
-        (self.touch[SolidId::Ring.index()], self.unresolved) =
-            first_ring_touch(params, state, search_end);
+        let (ring, unresolved) = first_ring_touch(params, state, search_end);
+        self.touch[SolidId::Ring.index()] = ring;
+        self.unresolved |= unresolved;
         behind
     }
 }

@@ -18,6 +18,7 @@
 use super::flight_path::FlightPath;
 use super::flight_segment::FlightSegment;
 use super::safe_step::{PARTING_STEP, TOUCH_M, gap_step};
+use crate::dynamics::end_rules::has_diverged;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -76,7 +77,8 @@ pub(super) fn lift_segment<T: Real>(
     }
     let [board, ring] = search.solids;
     let touched = board | ring | search.beside_face;
-    let ended = !touched & !search.unresolved;
+    let unresolved = search.unresolved | has_diverged(params, state);
+    let ended = !touched & !unresolved;
     let behind = ended & behind_s.le(end);
     let (rises, rises_inside) = rising_crossing(params, &path, state, search.time);
     FlightSegment {
@@ -85,7 +87,7 @@ pub(super) fn lift_segment<T: Real>(
         touches: search.solids,
         fell: ended & fell_s.le(end) & !behind,
         behind_board: behind | search.beside_face,
-        unresolved: search.unresolved,
+        unresolved,
         rises,
         rises_inside,
     }

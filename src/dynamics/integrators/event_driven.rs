@@ -307,15 +307,15 @@ impl<O: Observer> Run<'_, O> {
         }
         let mut flight = FlightEvents::new(params, &self.shot.state);
         let behind = flight.resolve_beside_board(params, &self.shot.state);
+        if flight.unresolved {
+            return Some(self.shot.verdict(Ending::Unresolved, false));
+        }
         let dt = Real::min(flight.first_end(), behind);
         if self.shot.time_s + dt > self.limits.time_limit_s {
             self.advance_flight(self.limits.time_limit_s - self.shot.time_s);
             return Some(self.shot.verdict(Ending::TimeLimit, false));
         }
         self.advance_flight(dt);
-        if flight.unresolved {
-            return Some(self.shot.verdict(Ending::Unresolved, false));
-        }
         // The ring is searched only up to the time of the board, so at most one of the two is touched.
         for solid in [SolidId::Ring, SolidId::Board] {
             if flight.touch_of(solid) <= dt {
@@ -345,15 +345,15 @@ impl<O: Observer> Run<'_, O> {
         let params = self.params;
         loop {
             let segment = next_segment(params, &self.shot.state);
+            if segment.unresolved {
+                return Some(self.shot.verdict(Ending::Unresolved, false));
+            }
             let left_s = self.limits.time_limit_s - self.shot.time_s;
             if segment.dt > left_s {
                 self.advance_segment(&segment, left_s);
                 return Some(self.shot.verdict(Ending::TimeLimit, false));
             }
             self.advance_segment(&segment, segment.dt);
-            if segment.unresolved {
-                return Some(self.shot.verdict(Ending::Unresolved, false));
-            }
             for solid in SolidId::ALL {
                 if segment.touches[solid.index()] {
                     self.touch(solid);
