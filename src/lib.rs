@@ -2,7 +2,7 @@
 //!
 //! Data flows one way: a checked [`shooter::Profile`] (from TOML by [`config`]), the releases worth trying
 //! ([`search_space`]), the simulation ([`dynamics`]), probabilities ([`probability`]), what they depend on
-//! ([`analysis`]), and the best shots ([`best_shot`]). No module imports one further down the list below.
+//! ([`analysis`]), the best shots ([`best_shot`]), and profiles fitted to measured shots ([`fitting`]). No module imports one further down the list below.
 //!
 //! The model is that of "Numerical Analysis of the Basketball Shot" (J. Dyn. Sys. Meas. Control,
 //! DOI 10.1115/1.1636193), with its errata; `docs/model.md` has the equations.
@@ -60,8 +60,13 @@ pub mod analysis;
 
 pub mod best_shot;
 
+pub mod fitting;
+
 #[cfg(feature = "app")]
 pub mod output;
+
+#[cfg(feature = "app")]
+pub mod measured_shots;
 
 #[cfg(feature = "app")]
 pub mod sweep;

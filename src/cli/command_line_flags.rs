@@ -1,5 +1,9 @@
 //! The command line: commands and their options.
 
+use super::commands::advise::AdviseOptions;
+use super::commands::compare_sessions::CompareSessionsOptions;
+use super::commands::design::DesignOptions;
+use super::commands::fit::FitOptions;
 use super::nominal_shot_flags::NominalOptions;
 use super::value_parsers::{
     PhysicsArg, UnitsArg, fault_injection, fraction, instruction_set, sample, shard, standard_error,
@@ -51,6 +55,14 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Find the best direct and the best bank shot from the profile's location.
     Best(BestOptions),
+    /// Fit a profile to measured shots: releases, landings of a gym sensor, or tracked trajectories.
+    Fit(FitOptions),
+    /// Say what a measured shooter should change and train, and how sure that is.
+    Advise(AdviseOptions),
+    /// Say what changed between two sessions of a shooter.
+    CompareSessions(CompareSessionsOptions),
+    /// Say what a shooting test of some size will tell.
+    Design(DesignOptions),
     /// Draw maps of bank and direct shots: over the court of a sweep, or over speed and pitch at one location.
     Compare(CompareOptions),
     /// Check a profile or a sweep and list everything that is wrong with it.

@@ -4,6 +4,8 @@ mod command_line_flags;
 mod commands;
 mod config_files;
 mod failure;
+mod fit_folder;
+mod measured_shots_flags;
 mod nominal_shot_flags;
 mod plot_files;
 mod progress_bars;
@@ -15,8 +17,8 @@ mod value_parsers;
 use clap::{CommandFactory, Parser};
 use command_line_flags::{Arguments, Command};
 use commands::{
-    best, check, compare, figures, physics, plan, probability, report, simulate, sweep,
-    sweep_status, trace,
+    advise, best, check, compare, compare_sessions, design, figures, fit, physics, plan,
+    probability, report, simulate, sweep, sweep_status, trace,
 };
 use failure::{Failure, code};
 use std::process::ExitCode;
@@ -59,6 +61,10 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
     pool.install(|| match &arguments.command {
         Command::Best(options) => best::run(options, quiet),
         Command::Compare(options) => compare::run(options, quiet),
+        Command::Fit(options) => fit::run(options, quiet),
+        Command::Advise(options) => advise::run(options, quiet),
+        Command::CompareSessions(options) => compare_sessions::run(options),
+        Command::Design(options) => design::run(options, quiet),
         Command::Check(options) => check::run(options, quiet),
         Command::Physics(options) => physics::run(options, quiet),
         Command::Plan(options) => plan::run(options, quiet),

@@ -24,8 +24,13 @@ const FILES: [&str; 7] = [
     "provenance.json",
 ];
 
-/// `<name>-<hash>`. The name is reduced to letters, digits and dashes, so it never becomes a path.
+/// `<name>-<hash>`.
 fn folder_name(name: &str, hash: &str) -> String {
+    format!("{}-{}", safe_name(name), &hash[..12])
+}
+
+/// A name reduced to letters, digits and dashes, so that it never becomes a path.
+pub(crate) fn safe_name(name: &str) -> String {
     let mut name: String = name
         .chars()
         .map(|c| {
@@ -42,7 +47,7 @@ fn folder_name(name: &str, hash: &str) -> String {
     }
     let name = name.trim_matches('-');
     let name = if name.is_empty() { "shooter" } else { name };
-    format!("{name}-{}", &hash[..12])
+    name.to_owned()
 }
 
 /// The folder of a profile's run in `parent`, or else in the profile's output folder.

@@ -3,7 +3,7 @@
 use super::batch::{self, BatchWorkspace, InstructionSet};
 use super::contact::oscillator::Oscillator;
 use super::end_rules::ShotLimits;
-use super::flight::{FlightEvents, falls_through, height_at_length_m, next_segment};
+use super::flight::{FlightEvents, falls_through, height_at_length_m, next_segment, state_after};
 use super::integrators::event_driven;
 use super::integrators::paper_rk4::{self, StepRange};
 use super::observer::Observer;
@@ -283,6 +283,20 @@ impl Simulator {
     #[must_use]
     pub fn integrator(&self) -> Integrator {
         self.integrator
+    }
+
+    /// The state of a ball that flies for `seconds` and touches nothing; negative for the past. The values must be
+    /// finite.
+    #[must_use]
+    pub fn undisturbed_state(&self, start: &BallState, seconds: f64) -> BallState {
+        state_after(&self.params, start, seconds)
+    }
+
+    /// The state in which a ball that touches nothing falls through the height of the hoop, and the time until then, s.
+    /// `None` if it does not rise so high. The values must be finite.
+    #[must_use]
+    pub fn undisturbed_fall_to_hoop(&self, start: &BallState) -> Option<(BallState, f64)> {
+        falls_through(&self.params, start, 0.0)
     }
 
     /// The outcome of one shot.

@@ -5,6 +5,7 @@ pub mod atomic_file;
 pub mod best_shot_csv;
 pub mod best_shot_json;
 pub mod best_shot_text;
+pub mod fit_files;
 pub mod json_object;
 pub mod probability_text_json;
 pub mod simulation_files;

@@ -8,6 +8,7 @@ pub mod colormaps;
 pub mod colour_key;
 mod court_lines;
 pub mod court_map;
+pub mod measured_shots;
 pub mod paper_figures;
 pub mod physics_probabilities;
 mod polyline_thinning;

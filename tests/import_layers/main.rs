@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers. Each may use those before it.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 17] = [
     "math",
     "units",
     "model",
@@ -17,7 +17,9 @@ const LAYERS: [&str; 15] = [
     "probability",
     "analysis",
     "best_shot",
+    "fitting",
     "output",
+    "measured_shots",
     "sweep",
     "plots",
     "report",

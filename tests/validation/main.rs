@@ -14,3 +14,4 @@ mod published;
 mod real_hoop;
 mod search;
 mod sensitivity;
+mod shooters_test;

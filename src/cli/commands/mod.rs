@@ -1,9 +1,13 @@
 //! The commands, one file each, and the text that some of them share.
 
+pub(super) mod advise;
 pub(super) mod best;
 pub(super) mod check;
 pub(super) mod compare;
+pub(super) mod compare_sessions;
+pub(super) mod design;
 pub(super) mod figures;
+pub(super) mod fit;
 pub(super) mod physics;
 pub(super) mod plan;
 mod plan_sweep_time_and_memory;

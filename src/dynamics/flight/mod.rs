@@ -22,4 +22,6 @@ pub(crate) use flight_events::FlightEvents;
 pub(crate) use flight_path::FlightPath;
 pub(crate) use flight_segment::FlightSegment;
 pub(crate) use next_segment::next_segment;
-pub(crate) use undisturbed_flight::{falls_through, height_at_length_m, highest_point_m};
+pub(crate) use undisturbed_flight::{
+    falls_through, height_at_length_m, highest_point_m, state_after,
+};

@@ -42,6 +42,22 @@ pub(crate) fn falls_through(
     None
 }
 
+/// The state of an undisturbed ball after `t`, which may be negative, s.
+pub(crate) fn state_after(params: &ModelParams, start: &BallState, t: f64) -> BallState {
+    let (mut state, mut left) = (*start, t);
+    for _ in 0..MAX_PARTS {
+        let path = FlightPath::new(&params.ball, &state);
+        if left.abs() <= path.longest_s || !params.ball.has_air {
+            return path.state_after(left);
+        }
+        // Half of a path: backwards in time the speed decreases, and with it the reach of the series.
+        let part = (0.5 * path.longest_s).copysign(left);
+        state = path.state_after(part);
+        left -= part;
+    }
+    state
+}
+
 /// The highest point of an undisturbed flight, m.
 pub(crate) fn highest_point_m(params: &ModelParams, path: &FlightPath, dt: f64) -> f64 {
     let (start, vz) = path.height_and_rate(0.0);

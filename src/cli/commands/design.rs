@@ -1,0 +1,124 @@
+//! `bankshot design`: what a test of some size will tell, before anyone shoots.
+
+use crate::cli::config_files::load_profile;
+use crate::cli::failure::{Failure, code};
+use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::print_answer;
+use crate::cli::value_parsers::PhysicsArg;
+use bankshot::fitting::{
+    Covariance, FitError, Landing, Place, Tracker, design, landing_of, release_of_landing,
+    values_of,
+};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual
+shot comes from the flags, then from the profile's [nominal] table.
+
+Example:
+  bankshot design configs/free_throw.toml --speed '24.2 ft/s' --pitch '51 deg' --shots 25,50,100,200 --tracker noah")]
+pub(crate) struct DesignOptions {
+    /// A profile like that of the shooter.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    #[command(flatten)]
+    pub(crate) nominal: NominalOptions,
+    /// The sizes of the tests.
+    #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "25,50,100,200", value_parser = clap::value_parser!(u32).range(10..=5000))]
+    pub(crate) shots: Vec<u32>,
+    /// The tracker: lab, noah, optical_25hz or optical_60hz.
+    #[arg(long, value_name = "NAME", default_value = "lab")]
+    pub(crate) tracker: String,
+    /// Simulated tests of each size.
+    #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u64).range(4..=10_000))]
+    pub(crate) repetitions: u64,
+}
+
+pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
+    let profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let nominal = options.nominal.resolve(&profile)?;
+    let tracker = Tracker::named(&options.tracker).ok_or_else(|| {
+        let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
+        Failure::usage(format!(
+            "--tracker {}: must be one of {}",
+            options.tracker,
+            names.join(", ")
+        ))
+    })?;
+    let noise = noise(&tracker, &profile, &nominal)?;
+    let sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
+    let bars = ProgressBars::new(quiet);
+    let rows = design(
+        &profile,
+        &nominal,
+        &noise,
+        &sizes,
+        options.repetitions,
+        &bars,
+    )
+    .map_err(|error| Failure {
+        code: match error {
+            FitError::NotConverged { .. } => code::IMPRECISE,
+            FitError::NoScatter => code::USAGE,
+        },
+        message: error.to_string(),
+    })?;
+    let mut text = format!(
+        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation\n\n{:>6} {:>14} {:>14} {:>14} {:>16} {:>16}\n",
+        profile.shooter().name,
+        tracker.name,
+        tracker.source,
+        options.repetitions,
+        "shots",
+        "speed's sd to",
+        "pitch's sd to",
+        "polar's sd to",
+        "P by the fit to",
+        "by counting to"
+    );
+    for row in rows {
+        let [speed, pitch, polar] = row.sd_errors.map(|error| 100.0 * error);
+        text += &format!(
+            "{:>6} {:>12.1} % {:>12.1} % {:>12.1} % {:>9.1} points {:>9.1} points\n",
+            row.shots,
+            speed,
+            pitch,
+            polar,
+            100.0 * row.probability_error,
+            100.0 * row.counting_error
+        );
+    }
+    print_answer(&text)
+}
+
+/// The tracker's errors as errors of the usual release.
+fn noise(
+    tracker: &Tracker,
+    profile: &bankshot::shooter::Profile,
+    nominal: &bankshot::shooter::Nominal,
+) -> Result<Covariance, Failure> {
+    if tracker.name != "noah" {
+        return Ok(tracker.noise.release_covariance());
+    }
+    let place = Place {
+        location: profile.location(),
+        release_height_m: profile.shooter().release_height_m,
+    };
+    let values = values_of(nominal);
+    let refuse = || Failure::usage("the usual shot does not fall through the height of the hoop");
+    let landing: Landing = landing_of(profile.simulator(), &place, &values).ok_or_else(refuse)?;
+    let simulator = profile.simulator();
+    release_of_landing(
+        simulator,
+        &place,
+        &landing,
+        &tracker.noise.landing,
+        values[3],
+    )
+    .map(|(_, covariance)| covariance)
+    .map_err(|_| refuse())
+}

@@ -1,0 +1,343 @@
+//! `bankshot fit`: a profile from measured shots.
+
+use crate::cli::failure::{Failure, code};
+use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
+use crate::cli::plot_files;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::run_folder;
+use crate::cli::terminal::{print_answer, print_remark};
+use bankshot::fitting::{
+    ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
+    likelihood_curve,
+};
+use bankshot::measured_shots::read::ShooterShots;
+use bankshot::output::atomic_file;
+use bankshot::output::fit_files::draws_table::draws_parquet;
+use bankshot::output::fit_files::fit_json::fit_json;
+use bankshot::output::fit_files::fit_text::fit_text;
+use bankshot::output::fit_files::fitted_profile_toml::fitted_profile_toml;
+use bankshot::output::fit_files::shots_table::shots_csv;
+use bankshot::plots::measured_shots;
+use bankshot::probability::Progress;
+use bankshot::units::REV_RAD;
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The file holds releases (speed, pitch, polar or aim), landings (entry_angle, depth, left_right) or trajectories (shot,
+time, x, y, z); each column has its unit in its name, as in speed_ft_s, depth_in, time_s. It can have made, shooter,
+session, and the place (distance, court_angle, release_height).
+
+Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv and plots; with several
+shooters, one folder for each and shooters.csv.
+
+Examples:
+  bankshot fit docs/data/gym_sensor.csv
+  bankshot fit shots.csv --map 'speed_ft_s=ReleaseSpeed:mph' --distance '13.75 ft' --release-height '7 ft'
+  bankshot fit tracking.csv --tracker optical_25hz --frame court_94x50 --free drag_coefficient")]
+pub(crate) struct FitOptions {
+    /// The measured shots: CSV or Parquet.
+    pub(crate) shots: PathBuf,
+    #[command(flatten)]
+    pub(crate) measured: MeasuredShotsOptions,
+    /// Folder of the results [default: results/<name of the file>-fit].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Also ask the shots for what no sensor sees: backspin or hoop_restitution (from made and missed), or
+    /// drag_coefficient (from trajectories); may be repeated.
+    #[arg(long, value_name = "PARAMETER")]
+    pub(crate) free: Vec<String>,
+    /// Print fit.json instead of the text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Rejected rows that are named.
+const MOST_NAMED: usize = 20;
+
+pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
+    check_free(&options.free)?;
+    let file = options.measured.read(&options.shots)?;
+    let out = options
+        .out
+        .clone()
+        .unwrap_or_else(|| default_folder(&options.shots));
+    let is_single = file.shooters.len() == 1;
+    let bars = ProgressBars::new(quiet);
+    if !is_single {
+        bars.begin("fitting shooters", file.shooters.len() as u64);
+    }
+    let mut table = String::from("shooter,shots,made,probability,low,high,folder,error\n");
+    let mut worst = code::DONE;
+    let mut is_any_done = false;
+    for shots in &file.shooters {
+        let name = file.name_of(shots);
+        report_rejected(&file, shots, is_single);
+        if !shots.rejected.is_empty() {
+            worst = worst.max(code::INCOMPLETE);
+        }
+        let fit = match file.fit(shots, &file.physics) {
+            Ok(fit) => fit,
+            Err(error) if is_single => {
+                return Err(failure(&format!("{}", options.shots.display()), &error));
+            }
+            Err(error) => {
+                print_remark(&format!("{name}: {error}"));
+                table += &format!(
+                    "{},{},,,,,,{}\n",
+                    cell(&name),
+                    shots.shots.len(),
+                    cell(&error.to_string())
+                );
+                worst = worst.max(code::INCOMPLETE);
+                bars.advance(1);
+                continue;
+            }
+        };
+        is_any_done = true;
+        let folder = if is_single {
+            out.clone()
+        } else {
+            out.join(run_folder::safe_name(&name))
+        };
+        write(&folder, &file, shots, &fit, options)?;
+        let p = fit.probabilities[0].interval();
+        table += &format!(
+            "{},{},{},{:.4},{:.4},{:.4},{},\n",
+            cell(&name),
+            fit.posterior.shots,
+            if fit.makes.labelled > 0 {
+                fit.makes.made.to_string()
+            } else {
+                String::new()
+            },
+            p.mean,
+            p.low,
+            p.high,
+            cell(&folder.display().to_string())
+        );
+        if is_single {
+            answer(&file, shots, &fit, options, &folder, quiet)?;
+        }
+        bars.advance(1);
+    }
+    if !is_single {
+        bars.end();
+        if !is_any_done {
+            return Err(Failure::usage(format!(
+                "{}: no shooter could be fitted",
+                options.shots.display()
+            )));
+        }
+        let path = out.join("shooters.csv");
+        atomic_file::write(&path, table.as_bytes())
+            .map_err(|error| Failure::io(path.display(), &error))?;
+        print_answer(&table)?;
+    }
+    Ok(worst)
+}
+
+/// A cell of a CSV table.
+fn cell(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+pub(crate) fn failure(place: &str, error: &ShooterFitError) -> Failure {
+    Failure {
+        code: match error {
+            ShooterFitError::Fit(bankshot::fitting::FitError::NotConverged { .. }) => {
+                code::IMPRECISE
+            }
+            _ => code::USAGE,
+        },
+        message: format!("{place}: {error}"),
+    }
+}
+
+fn check_free(free: &[String]) -> Result<(), Failure> {
+    for name in free {
+        if name != "drag_coefficient" && UnseenParameter::named(name).is_none() {
+            return Err(Failure::usage(format!(
+                "--free {name}: must be backspin, hoop_restitution or drag_coefficient"
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn default_folder(shots: &Path) -> PathBuf {
+    let stem = shots
+        .file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    Path::new("results").join(format!("{}-fit", run_folder::safe_name(&stem)))
+}
+
+pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, names_rows: bool) {
+    if shots.rejected.is_empty() {
+        return;
+    }
+    let of = if shots.name.is_empty() {
+        String::new()
+    } else {
+        format!("{}: ", shots.name)
+    };
+    if names_rows {
+        for (row, reason) in shots.rejected.iter().take(MOST_NAMED) {
+            print_remark(&format!(
+                "{}: {} {row}: {reason}",
+                file.file.display(),
+                file.row_name
+            ));
+        }
+        if shots.rejected.len() > MOST_NAMED {
+            print_remark(&format!(
+                "... and {} more (all are in shots.csv)",
+                shots.rejected.len() - MOST_NAMED
+            ));
+        }
+    }
+    print_remark(&format!(
+        "{of}{} shots are used, {} were kept out",
+        shots.shots.len(),
+        shots.rejected.len()
+    ));
+}
+
+fn write(
+    folder: &Path,
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    fit: &ShooterFit,
+    options: &FitOptions,
+) -> Result<(), Failure> {
+    run_folder::prepare(folder)?;
+    let units = options.measured.unit_system();
+    let source = file.source(shots);
+    let contents: [(&str, Vec<u8>); 4] = [
+        (
+            "fit.json",
+            format!("{:#}\n", fit_json(fit, &source, units)).into_bytes(),
+        ),
+        (
+            "profile.toml",
+            fitted_profile_toml(fit, &source, &file.physics_toml).into_bytes(),
+        ),
+        (
+            "draws.parquet",
+            draws_parquet(&fit.posterior).map_err(Failure::bug)?,
+        ),
+        ("shots.csv", shots_csv(fit, &shots.rejected, units)),
+    ];
+    for (name, bytes) in contents {
+        let path = folder.join(name);
+        atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+    }
+    plot_files::write(
+        &folder.join("plots"),
+        &measured_shots::all(fit, &shots.shots, units),
+    )
+}
+
+fn answer(
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    fit: &ShooterFit,
+    options: &FitOptions,
+    folder: &Path,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let units = options.measured.unit_system();
+    let source = file.source(shots);
+    if options.json {
+        print_answer(&format!("{:#}\n", fit_json(fit, &source, units)))?;
+    } else {
+        print_answer(&fit_text(fit, &source, units))?;
+        for name in &options.free {
+            print_answer(&free_parameter(name, file, shots, fit)?)?;
+        }
+    }
+    if !quiet {
+        if !file.unused.is_empty() {
+            print_remark(&format!(
+                "columns that were not used: {}",
+                file.unused.join(", ")
+            ));
+        }
+        print_remark(&format!(
+            "written to {}; next: bankshot advise {}",
+            folder.display(),
+            folder.display()
+        ));
+    }
+    Ok(())
+}
+
+/// What the shots say of a parameter that was not measured.
+fn free_parameter(
+    name: &str,
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    fit: &ShooterFit,
+) -> Result<String, Failure> {
+    let Some(parameter) = UnseenParameter::named(name) else {
+        let tracks: Vec<_> = shots.tracks.iter().map(Vec::as_slice).collect();
+        if tracks.is_empty() {
+            return Err(Failure::usage(
+                "--free drag_coefficient: only trajectories tell it",
+            ));
+        }
+        let backspin = file.backspin_rad_s.unwrap_or(0.0);
+        let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
+        return Ok(match found {
+            Some((best, [low, high])) => format!(
+                "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n",
+                tracks.len(),
+                file.physics_name,
+                file.with_drag(file.physics.air.drag_coefficient)
+                    .air
+                    .drag_coefficient
+            ),
+            None => "drag_coefficient  these flights cannot tell\n".to_owned(),
+        });
+    };
+    let (made, labelled) = (fit.makes.made, fit.makes.labelled);
+    if labelled == 0 || made == 0 || made == labelled {
+        return Err(Failure::usage(format!(
+            "--free {name}: needs shots that were made and shots that were missed; {made} of {labelled} with a result were made"
+        )));
+    }
+    let is_measured = shots.spin == SpinSource::Measured;
+    let curve = likelihood_curve(
+        parameter,
+        &fit.profiles,
+        &shots.shots,
+        &fit.typical,
+        is_measured,
+    )?;
+    let (unit, size) = match parameter {
+        UnseenParameter::Backspin => (" rev/s", REV_RAD),
+        UnseenParameter::HoopRestitution => ("", 1.0),
+    };
+    let [low, high] = curve.interval.map(|end| end / size);
+    let mut text = format!(
+        "{name}  {:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}\n",
+        curve.best / size,
+        if curve.is_decided {
+            ""
+        } else {
+            "; the interval reaches the end of the range: these shots cannot tell"
+        }
+    );
+    for (value, logarithm) in &curve.points {
+        text += &format!(
+            "  {:>6.2}{unit}  log-likelihood {logarithm:>8.2}\n",
+            value / size
+        );
+    }
+    Ok(text)
+}

@@ -1,0 +1,337 @@
+//! The options of commands that read measured shots.
+
+use super::config_files::{load_physics, read_text};
+use super::failure::Failure;
+use super::value_parsers::{PhysicsArg, UnitsArg};
+use bankshot::dynamics::Simulator;
+use bankshot::fitting::{
+    FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tracker, TrackerNoise,
+    fit_shooter,
+};
+use bankshot::measured_shots::columns::Columns;
+use bankshot::measured_shots::court_frame::CourtFrame;
+use bankshot::measured_shots::read::{ReadOptions, ShooterShots, Source, read};
+use bankshot::measured_shots::table::Table;
+use bankshot::model::{Air, Physics};
+use bankshot::output::fit_files::fit_json::FitSource;
+use bankshot::units::{self, Dimension, UnitSystem};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// What a file of measured shots does not say by itself.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct MeasuredShotsOptions {
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a TOML file with its
+    /// noise [default: lab for releases, noah for landings, optical_25hz for trajectories].
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(crate) tracker: Option<String>,
+    /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed_ft_s=ReleaseSpeed:mph'; may be repeated.
+    #[arg(long, value_name = "MAP")]
+    pub(crate) map: Vec<String>,
+    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre) or court_94x50 (from a corner).
+    #[arg(long, value_name = "FRAME", default_value = "hoop")]
+    pub(crate) frame: String,
+    /// Instead of --frame: where the hoop's centre is in the coordinates of the file, and the direction of x that leads
+    /// onto the court, such as '5.25 ft,25 ft,+x'.
+    #[arg(long, value_name = "X,Y,DIRECTION", allow_hyphen_values = true)]
+    pub(crate) hoop: Option<String>,
+    /// Distance of the place from the hoop's centre, where the file has no column for it.
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) distance: Option<String>,
+    /// Angle of the place on the court [default: 0 deg].
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    pub(crate) angle: Option<String>,
+    /// Height of the release above the floor.
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) release_height: Option<String>,
+    /// Backspin, where it was not measured [default: that of the population, 2.5 rev/s give or take 0.25].
+    #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
+    pub(crate) backspin: Option<String>,
+    /// Seed of the posterior's draws.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Units of the results.
+    #[arg(long, default_value = "imperial")]
+    pub(crate) units: UnitsArg,
+}
+
+/// A file of measured shots, read.
+pub(crate) struct MeasuredFile {
+    pub(crate) shooters: Vec<ShooterShots>,
+    pub(crate) physics: Physics,
+    pub(crate) physics_name: String,
+    /// The text of the `[physics]` table.
+    pub(crate) physics_toml: String,
+    pub(crate) noise: TrackerNoise,
+    pub(crate) tracker: (String, String),
+    pub(crate) file: PathBuf,
+    pub(crate) blake3: String,
+    pub(crate) row_name: &'static str,
+    pub(crate) unused: Vec<String>,
+    pub(crate) seed: u64,
+    pub(crate) backspin_rad_s: Option<f64>,
+}
+
+/// The physics of fits where none is named.
+const USUAL_PHYSICS: &str = "ncaa";
+
+fn quantity(
+    flag: &str,
+    text: Option<&String>,
+    dimension: Dimension,
+) -> Result<Option<f64>, Failure> {
+    text.map(|text| {
+        units::parse(text, dimension).map_err(|error| Failure::usage(format!("--{flag}: {error}")))
+    })
+    .transpose()
+}
+
+impl MeasuredShotsOptions {
+    pub(crate) fn unit_system(&self) -> UnitSystem {
+        self.units.into()
+    }
+
+    /// Reads a file.
+    pub(crate) fn read(&self, path: &Path) -> Result<MeasuredFile, Failure> {
+        let refuse = |message: String| Failure::usage(format!("{}: {message}", path.display()));
+        let table = Table::read(path).map_err(refuse)?;
+        let columns =
+            Columns::new(&table.header, &self.map).map_err(|errors| refuse(errors.join("\n")))?;
+        let source = Source::of(&columns).map_err(refuse)?;
+        let physics_name = self
+            .physics
+            .physics
+            .clone()
+            .unwrap_or_else(|| USUAL_PHYSICS.to_owned());
+        let (physics, _) = load_physics(&physics_name)?;
+        let simulator = Simulator::new(&physics).map_err(Failure::usage)?;
+        let (noise, tracker) = self.noise(source)?;
+        let backspin_rad_s = quantity("backspin", self.backspin.as_ref(), Dimension::Spin)?;
+        let options = ReadOptions {
+            frame: self.frame()?,
+            distance_m: quantity("distance", self.distance.as_ref(), Dimension::Length)?,
+            court_angle_rad: quantity("angle", self.angle.as_ref(), Dimension::Angle)?,
+            release_height_m: quantity(
+                "release-height",
+                self.release_height.as_ref(),
+                Dimension::Length,
+            )?,
+            backspin_rad_s,
+            noise,
+        };
+        let shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
+        let bytes = std::fs::read(path).map_err(|error| Failure::io(path.display(), &error))?;
+        Ok(MeasuredFile {
+            shooters,
+            physics_toml: physics_table(&physics_name)?,
+            physics,
+            physics_name,
+            noise,
+            tracker,
+            file: path.to_owned(),
+            blake3: blake3::hash(&bytes).to_hex().to_string(),
+            row_name: table.row_name,
+            unused: columns.unused().into_iter().map(str::to_owned).collect(),
+            seed: self.seed,
+            backspin_rad_s,
+        })
+    }
+
+    fn frame(&self) -> Result<CourtFrame, Failure> {
+        let Some(hoop) = &self.hoop else {
+            return CourtFrame::named(&self.frame).ok_or_else(|| {
+                Failure::usage(format!(
+                    "--frame {}: must be hoop or court_94x50",
+                    self.frame
+                ))
+            });
+        };
+        let refuse = || {
+            Failure::usage(format!(
+                "--hoop '{hoop}': must be two lengths and a direction, such as '5.25 ft,25 ft,+x'"
+            ))
+        };
+        let parts: Vec<&str> = hoop.split(',').map(str::trim).collect();
+        let [x, y, direction] = parts[..] else {
+            return Err(refuse());
+        };
+        let length = |text: &str| units::parse(text, Dimension::Length).map_err(|_| refuse());
+        let sign = match direction {
+            "+x" => 1.0,
+            "-x" => -1.0,
+            _ => return Err(refuse()),
+        };
+        Ok(CourtFrame::HoopAt(length(x)?, length(y)?, sign))
+    }
+
+    fn noise(&self, source: Source) -> Result<(TrackerNoise, (String, String)), Failure> {
+        let name = self.tracker.as_deref().unwrap_or(source.usual_tracker());
+        if let Some(tracker) = Tracker::named(name) {
+            return Ok((tracker.noise, (name.to_owned(), tracker.source.to_owned())));
+        }
+        let path = Path::new(name);
+        if !path.exists() {
+            let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
+            return Err(Failure::usage(format!(
+                "--tracker {name}: is neither a tracker ({}) nor a file",
+                names.join(", ")
+            )));
+        }
+        let noise = tracker_of_file(&read_text(path)?, source)
+            .map_err(|error| Failure::usage(format!("{name}: {error}")))?;
+        Ok((noise, (name.to_owned(), "given".to_owned())))
+    }
+}
+
+/// The noise of a tracker's TOML file. What it does not say is that of the usual tracker.
+fn tracker_of_file(text: &str, source: Source) -> Result<TrackerNoise, String> {
+    const KEYS: [(&str, Dimension); 8] = [
+        ("speed", Dimension::Speed),
+        ("pitch", Dimension::Angle),
+        ("polar", Dimension::Angle),
+        ("backspin", Dimension::Spin),
+        ("depth", Dimension::Length),
+        ("left_right", Dimension::Length),
+        ("entry_angle", Dimension::Angle),
+        ("position", Dimension::Length),
+    ];
+    let usual = Tracker::named(source.usual_tracker());
+    let mut noise = usual.map(|tracker| tracker.noise).ok_or("has no default")?;
+    let table: toml::Table = text
+        .parse()
+        .map_err(|error: toml::de::Error| error.to_string())?;
+    for (key, value) in &table {
+        if let Some(index) = KEYS.iter().position(|(name, _)| name == key) {
+            let dimension = KEYS[index].1;
+            let text = value.as_str().ok_or_else(|| {
+                format!(
+                    "{key}: must be a text with a unit ({})",
+                    dimension.unit_names()
+                )
+            })?;
+            let sd = units::parse(text, dimension).map_err(|error| format!("{key}: {error}"))?;
+            if !(sd > 0.0) {
+                return Err(format!("{key}: must be above 0"));
+            }
+            match index {
+                0..4 => noise.release[index] = sd,
+                4..7 => noise.landing[index - 4] = sd,
+                _ => noise.position_m = sd,
+            }
+            continue;
+        }
+        let number = value
+            .as_float()
+            .or_else(|| value.as_integer().map(|n| n as f64));
+        match (key.as_str(), number) {
+            ("frame_correlation", Some(value)) if (0.0..0.99).contains(&value) => {
+                noise.frame_correlation = value
+            }
+            ("frames_per_s", Some(value)) if (1.0..100_000.0).contains(&value) => {
+                noise.frames_per_s = value
+            }
+            ("frame_correlation", _) => {
+                return Err("frame_correlation: must be a number from 0 to 0.99".to_owned());
+            }
+            ("frames_per_s", _) => {
+                return Err("frames_per_s: must be a number from 1 to 100000".to_owned());
+            }
+            _ => {
+                let names: Vec<&str> = KEYS.iter().map(|(name, _)| *name).collect();
+                return Err(format!(
+                    "{key}: is no key of a tracker; the keys are {}, frame_correlation, frames_per_s",
+                    names.join(", ")
+                ));
+            }
+        }
+    }
+    Ok(noise)
+}
+
+/// The `[physics]` table of a preset or a file.
+fn physics_table(name: &str) -> Result<String, Failure> {
+    if bankshot::model::Preset::named(name).is_some() {
+        return Ok(format!("[physics]\npreset = \"{name}\""));
+    }
+    let text = read_text(Path::new(name))?;
+    let mut kept = String::new();
+    let mut is_inside = false;
+    for line in text.lines() {
+        if line.trim_start().starts_with('[') {
+            is_inside = line.trim_start().starts_with("[physics");
+        }
+        if is_inside {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    Ok(kept)
+}
+
+impl MeasuredFile {
+    pub(crate) fn source<'a>(&'a self, shots: &'a ShooterShots) -> FitSource<'a> {
+        FitSource {
+            kind: shots.source.name(),
+            file: self.file.display().to_string(),
+            file_blake3: self.blake3.clone(),
+            tracker: self.tracker.clone(),
+            physics: self.physics_name.clone(),
+            seed: self.seed,
+            rejected: &shots.rejected,
+        }
+    }
+
+    /// Options of the fit of a shooter.
+    pub(crate) fn fit_options(&self, shots: &ShooterShots) -> FitOptions {
+        let mut prior = PopulationPrior::MEASURED;
+        if let Some(backspin) = self.backspin_rad_s {
+            prior.backspin.mean = backspin;
+        }
+        FitOptions {
+            prior,
+            spin: shots.spin,
+            seed: self.seed,
+            ..FitOptions::default()
+        }
+    }
+
+    /// The physics with another drag coefficient.
+    pub(crate) fn with_drag(&self, drag_coefficient: f64) -> Physics {
+        Physics {
+            air: Air {
+                drag_coefficient,
+                ..self.physics.air
+            },
+            ..self.physics.clone()
+        }
+    }
+
+    /// Fits one shooter.
+    pub(crate) fn fit(
+        &self,
+        shots: &ShooterShots,
+        physics: &Physics,
+    ) -> Result<ShooterFit, ShooterFitError> {
+        let name = self.name_of(shots);
+        let test = ShooterTest {
+            name: &name,
+            places: &shots.places,
+            shots: &shots.shots,
+            speed_unit: shots.speed_unit,
+            chi_squares: &shots.chi_squares,
+        };
+        fit_shooter(&test, physics, &self.fit_options(shots))
+    }
+
+    /// The name of a shooter, or that of the file.
+    pub(crate) fn name_of(&self, shots: &ShooterShots) -> String {
+        if shots.name.is_empty() {
+            let stem = self.file.file_stem();
+            stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+        } else {
+            shots.name.clone()
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! The probability of making a shot for each draw of the posterior, from one sample of simulated shots.
+//!
+//! The shots are drawn once, about one aim and with a wider scatter than that of the draws. For each draw, a shot
+//! counts with the ratio of the densities (self-normalised importance sampling; Owen, *Monte Carlo theory, methods
+//! and examples*, 2013, chapter 9). All draws share the shots, so their differences hardly have a numerical error.
+
+use super::measured_release::{Values, nominal_of};
+use super::posterior::Draw;
+use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed};
+use crate::math::normal_distribution::quantile;
+use crate::math::sobol::{ScrambleKey, Sobol};
+use crate::shooter::Profile;
+use nalgebra::SMatrix;
+use rayon::prelude::*;
+
+/// Scrambles of the sample. Their spread is the numerical error.
+const REPLICATES: usize = 8;
+/// How much wider the scatter of the sample is than that of the typical draw.
+const WIDENING: f64 = 1.25;
+
+/// Mean, standard deviation and the middle 95 % of some values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// The mean.
+    pub mean: f64,
+    /// The standard deviation.
+    pub sd: f64,
+    /// The 2.5 % quantile.
+    pub low: f64,
+    /// The 97.5 % quantile.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Of at least one value.
+    #[must_use]
+    pub fn of(mut values: Vec<f64>) -> Self {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+        values.sort_by(f64::total_cmp);
+        let at = |p: f64| {
+            let place = p * (count - 1.0);
+            let below = place.floor() as usize;
+            let above = (below + 1).min(values.len() - 1);
+            values[below] + (place - place.floor()) * (values[above] - values[below])
+        };
+        Self {
+            mean,
+            sd: (squares / (count - 1.0).max(1.0)).sqrt(),
+            low: at(0.025),
+            high: at(0.975),
+        }
+    }
+
+    /// The same in another unit.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self {
+            mean: self.mean * factor,
+            sd: self.sd * factor,
+            low: self.low * factor,
+            high: self.high * factor,
+        }
+    }
+}
+
+/// Simulated shots that are weighted for the draws.
+pub struct WeightedShots {
+    centre: Values,
+    scales: Values,
+    /// Standard normals of each shot, replicate by replicate.
+    normals: Vec<Values>,
+    made: Vec<bool>,
+}
+
+/// P of each draw.
+#[derive(Clone, Debug)]
+pub struct DrawProbabilities {
+    /// P of each draw.
+    pub of_draws: Vec<f64>,
+    /// The mean over the draws of each replicate.
+    replicate_means: Vec<f64>,
+}
+
+impl DrawProbabilities {
+    /// P over the draws.
+    #[must_use]
+    pub fn interval(&self) -> Interval {
+        Interval::of(self.of_draws.clone())
+    }
+
+    /// The standard error of the mean by the simulation alone.
+    #[must_use]
+    pub fn numerical_standard_error(&self) -> f64 {
+        let spread = Interval::of(self.replicate_means.clone());
+        spread.sd / (self.replicate_means.len() as f64).sqrt()
+    }
+
+    /// Draw by draw, this less `other`.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let subtract = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        Self {
+            of_draws: subtract(&self.of_draws, &other.of_draws),
+            replicate_means: subtract(&self.replicate_means, &other.replicate_means),
+        }
+    }
+
+    /// The sum of multiples of probabilities of the same draws.
+    #[must_use]
+    pub fn combination(terms: &[(f64, &Self)]) -> Self {
+        let sum = |values: &dyn Fn(&Self) -> &[f64]| {
+            let length = values(terms[0].1).len();
+            (0..length)
+                .map(|k| {
+                    terms
+                        .iter()
+                        .map(|(factor, term)| factor * values(term)[k])
+                        .sum()
+                })
+                .collect()
+        };
+        Self {
+            of_draws: sum(&|term| &term.of_draws),
+            replicate_means: sum(&|term| &term.replicate_means),
+        }
+    }
+}
+
+impl WeightedShots {
+    /// Simulates about `shots` shots from the profile's location about the aims `means`, with the scatter of
+    /// `typical` at a place and that of the aims together.
+    #[must_use]
+    pub fn simulate(
+        profile: &Profile,
+        (typical, place): (&Draw, usize),
+        means: &[Values],
+        shots: usize,
+        seed: u64,
+    ) -> Self {
+        let sds = typical.sds_at(place);
+        let mut centre = [0.0; 4];
+        let mut scales = [0.0; 4];
+        for i in 0..4 {
+            let of_means = Interval::of(means.iter().map(|mean| mean[i]).collect());
+            centre[i] = of_means.mean;
+            scales[i] = WIDENING * (sds[i] * sds[i] + of_means.sd * of_means.sd).sqrt();
+        }
+        let points = (shots / REPLICATES).max(1).next_power_of_two() as u32;
+        let sobol = Sobol::new();
+        let release = profile.release(&nominal_of(&centre));
+        let position_m = release.position_m();
+        let parts: Vec<(Vec<Values>, Vec<bool>)> = (0..REPLICATES as u64)
+            .into_par_iter()
+            .map_init(BatchWorkspace::default, |workspace, replicate| {
+                let scramble = sobol.scrambled(ScrambleKey { seed, replicate });
+                let normals: Vec<Values> = (0..points)
+                    .map(|index| std::array::from_fn(|k| quantile(scramble.point(index, k))))
+                    .collect();
+                let starts: Vec<_> = normals
+                    .iter()
+                    .map(|normals| {
+                        let value = |i: usize| centre[i] + scales[i] * normals[i];
+                        let shot = profile.release(&nominal_of(&std::array::from_fn(value)));
+                        ReleaseWithoutSpeed::at(position_m, &shot)
+                            .state(shot.speed_m_s, shot.backspin_rad_s)
+                    })
+                    .collect();
+                let verdicts = profile.simulator().finite_verdicts(&starts, workspace);
+                let made = verdicts.iter().map(|verdict| verdict.made).collect();
+                (normals, made)
+            })
+            .collect();
+        let (normals, made): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        Self {
+            centre,
+            scales,
+            normals: normals.concat(),
+            made: made.concat(),
+        }
+    }
+
+    /// P of each draw, with the aim `mean` and the Cholesky factor `factor` that the functions give for it.
+    pub fn probabilities(
+        &self,
+        draws: &[Draw],
+        mean: impl Fn(&Draw) -> Values + Sync,
+        factor: impl Fn(&Draw) -> SMatrix<f64, 4, 4> + Sync,
+    ) -> DrawProbabilities {
+        let all: Vec<[(f64, f64); REPLICATES]> = draws
+            .par_iter()
+            .map(|draw| self.weighted_counts(&mean(draw), &factor(draw)))
+            .collect();
+        let share = |counts: &mut dyn Iterator<Item = (f64, f64)>| {
+            let (mut made, mut total) = (0.0, 0.0);
+            for (m, t) in counts {
+                made += m;
+                total += t;
+            }
+            if total > 0.0 { made / total } else { 0.0 }
+        };
+        DrawProbabilities {
+            of_draws: all
+                .iter()
+                .map(|counts| share(&mut counts.iter().copied()))
+                .collect(),
+            replicate_means: (0..REPLICATES)
+                .map(|replicate| {
+                    let shares = all
+                        .iter()
+                        .map(|counts| share(&mut [counts[replicate]].into_iter()));
+                    shares.sum::<f64>() / all.len() as f64
+                })
+                .collect(),
+        }
+    }
+
+    /// The weight of the made shots and of all shots of each replicate.
+    fn weighted_counts(
+        &self,
+        mean: &Values,
+        factor: &SMatrix<f64, 4, 4>,
+    ) -> [(f64, f64); REPLICATES] {
+        // u = L^-1 (x - mean), with x = centre + scales z, is lower triangular in z.
+        let Some(inverse) = factor.solve_lower_triangular(&SMatrix::<f64, 4, 4>::identity()) else {
+            return [(0.0, 0.0); REPLICATES];
+        };
+        let mut offset = [0.0; 4];
+        let mut slopes = [[0.0; 4]; 4];
+        for i in 0..4 {
+            for j in 0..=i {
+                offset[i] += inverse[(i, j)] * (self.centre[j] - mean[j]);
+                slopes[i][j] = inverse[(i, j)] * self.scales[j];
+            }
+        }
+        let points = self.normals.len() / REPLICATES;
+        let weight = |z: &Values| {
+            let mut exponent = 0.0;
+            for i in 0..4 {
+                let mut u = offset[i];
+                for j in 0..=i {
+                    u += slopes[i][j] * z[j];
+                }
+                exponent += z[i] * z[i] - u * u;
+            }
+            libm::exp(0.5 * exponent)
+        };
+        std::array::from_fn(|replicate| {
+            let range = replicate * points..(replicate + 1) * points;
+            let (mut made, mut total) = (0.0, 0.0);
+            for (z, is_made) in self.normals[range.clone()].iter().zip(&self.made[range]) {
+                let weight = weight(z);
+                total += weight;
+                if *is_made {
+                    made += weight;
+                }
+            }
+            (made, total)
+        })
+    }
+}

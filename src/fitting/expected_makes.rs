@@ -1,0 +1,290 @@
+//! Predicted against observed: each measured shot's chance, and how good these chances are.
+
+use super::measured_release::{Covariance, MeasuredRelease, Values, nominal_of};
+use super::posterior::Draw;
+use crate::dynamics::OutcomeKind;
+use crate::math::normal_distribution::quantile;
+use crate::math::sobol::{ScrambleKey, Sobol};
+use crate::shooter::Profile;
+use rayon::prelude::*;
+
+/// Releases that a shot may have had, for each measured one.
+const RELEASES: u32 = 128;
+/// Shots in a bin of the reliability diagram, at least, and bins at most.
+const LEAST_IN_BIN: usize = 8;
+const MOST_BINS: usize = 8;
+/// A shot is predicted to be a swish from this chance of one on.
+const PREDICTED: f64 = 0.5;
+
+/// What is known of one measured shot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShotChance {
+    /// The line or row of the file.
+    pub row: u64,
+    /// The release: the mean, given the measurement and the shooter.
+    pub release: Values,
+    /// The standard deviations of it.
+    pub release_sd: Values,
+    /// The chance that it goes in.
+    pub chance: f64,
+    /// The chance that it goes in without a touch.
+    pub swish_chance: f64,
+    /// The distance from the shooter's aim in standard deviations (Mahalanobis).
+    pub distance: f64,
+    /// Whether it went in.
+    pub made: Option<bool>,
+}
+
+/// Some shots of similar chance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReliabilityBin {
+    /// Mean chance.
+    pub predicted: f64,
+    /// The share that went in, and its interval.
+    pub observed: Wilson,
+    /// The number of shots.
+    pub shots: usize,
+}
+
+/// A share with Wilson's 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wilson {
+    /// The share.
+    pub share: f64,
+    /// The ends of the interval.
+    pub low: f64,
+    /// See `low`.
+    pub high: f64,
+}
+
+/// Wilson's interval of a share (J. Am. Stat. Assoc. 22 (1927) 209).
+#[must_use]
+pub fn wilson_interval(made: usize, shots: usize) -> Wilson {
+    const Z: f64 = 1.959_963_984_540_054;
+    let n = (shots as f64).max(1.0);
+    let share = made as f64 / n;
+    let centre = (share + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+    let half = Z / (1.0 + Z * Z / n) * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
+    Wilson {
+        share,
+        low: (centre - half).max(0.0),
+        high: (centre + half).min(1.0),
+    }
+}
+
+/// Predicted against observed.
+#[derive(Clone, Debug)]
+pub struct ExpectedMakes {
+    /// Every shot.
+    pub shots: Vec<ShotChance>,
+    /// Shots whose result is known.
+    pub labelled: usize,
+    /// Makes that were expected of these.
+    pub expected: f64,
+    /// The standard deviation of the number of makes if the chances are right.
+    pub expected_sd: f64,
+    /// Makes that were seen.
+    pub made: usize,
+    /// The share of makes.
+    pub share: Wilson,
+    /// Mean square of chance less result.
+    pub brier: f64,
+    /// Mean logarithmic loss.
+    pub log_loss: f64,
+    /// The probability that a made shot had the greater chance than a missed one; where there are both.
+    pub area_under_curve: Option<f64>,
+    /// Shots that were predicted to be a swish, and how many of them went in.
+    pub swishes: (usize, usize),
+    /// The reliability diagram.
+    pub bins: Vec<ReliabilityBin>,
+}
+
+/// The release of a measured shot, given the shooter: mean and covariance.
+pub(super) fn release_given(
+    shot: &MeasuredRelease,
+    draw: &Draw,
+    is_spin_measured: bool,
+) -> Option<(Values, Covariance)> {
+    let factor = draw.factors[shot.place];
+    let prior = factor * factor.transpose();
+    let mean = nalgebra::Vector4::from(draw.means[shot.place]);
+    let mut noise = shot.noise;
+    if !is_spin_measured {
+        // A measurement that says nothing.
+        noise[(3, 3)] = 1e9;
+    }
+    let gain = prior * (prior + noise).try_inverse()?;
+    let mut values = nalgebra::Vector4::from(shot.values);
+    if !is_spin_measured {
+        values[3] = mean[3];
+    }
+    let posterior = mean + gain * (values - mean);
+    let covariance = prior - gain * prior;
+    Some((
+        posterior.into(),
+        (covariance + covariance.transpose()) * 0.5,
+    ))
+}
+
+/// A factor of a covariance that may be singular.
+pub(super) fn factor_of(covariance: &Covariance) -> Covariance {
+    let eigen = covariance.symmetric_eigen();
+    let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
+    eigen.eigenvectors * Covariance::from_diagonal(&roots)
+}
+
+/// Standard normals that every shot shares.
+pub(super) fn common_normals(count: u32, seed: u64) -> Vec<Values> {
+    let scramble = Sobol::new().scrambled(ScrambleKey { seed, replicate: 0 });
+    (0..count)
+        .map(|index| std::array::from_fn(|k| quantile(scramble.point(index, k))))
+        .collect()
+}
+
+/// The chances of measured shots for the typical draw. `profiles` are those of the places.
+#[must_use]
+pub fn expected_makes(
+    profiles: &[Profile],
+    shots: &[MeasuredRelease],
+    typical: &Draw,
+    is_spin_measured: bool,
+) -> ExpectedMakes {
+    let normals = common_normals(RELEASES, 1);
+    let shots: Vec<ShotChance> = shots
+        .par_iter()
+        .filter_map(|shot| {
+            let (mean, covariance) = release_given(shot, typical, is_spin_measured)?;
+            let factor = factor_of(&covariance);
+            let profile = &profiles[shot.place];
+            let (mut made, mut swishes) = (0, 0);
+            for z in &normals {
+                let values = nalgebra::Vector4::from(mean) + factor * nalgebra::Vector4::from(*z);
+                let release = profile.release(&nominal_of(&values.into()));
+                if let Ok(outcome) = profile.simulator().simulate(&release) {
+                    made += u32::from(outcome.verdict.made);
+                    swishes += u32::from(outcome.kind == OutcomeKind::Swish);
+                }
+            }
+            let aim = nalgebra::Vector4::from(typical.means[shot.place]);
+            let whitened = typical.factors[shot.place]
+                .solve_lower_triangular(&(nalgebra::Vector4::from(mean) - aim))?;
+            Some(ShotChance {
+                row: shot.row,
+                release: mean,
+                release_sd: std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt()),
+                chance: f64::from(made) / f64::from(RELEASES),
+                swish_chance: f64::from(swishes) / f64::from(RELEASES),
+                distance: whitened.norm(),
+                made: shot.made,
+            })
+        })
+        .collect();
+    summary(shots)
+}
+
+fn summary(shots: Vec<ShotChance>) -> ExpectedMakes {
+    let mut labelled: Vec<(f64, bool)> = shots
+        .iter()
+        .filter_map(|shot| Some((shot.chance, shot.made?)))
+        .collect();
+    let count = labelled.len().max(1) as f64;
+    let expected: f64 = labelled.iter().map(|(chance, _)| chance).sum();
+    let variance: f64 = labelled.iter().map(|(p, _)| p * (1.0 - p)).sum();
+    let made = labelled.iter().filter(|(_, made)| *made).count();
+    let brier = labelled
+        .iter()
+        .map(|(p, made)| {
+            let error = p - f64::from(u8::from(*made));
+            error * error
+        })
+        .sum::<f64>()
+        / count;
+    // A chance from few simulated releases is not 0 or 1.
+    let least = 0.5 / f64::from(RELEASES);
+    let log_loss = labelled
+        .iter()
+        .map(|(p, made)| {
+            let p = p.clamp(least, 1.0 - least);
+            -libm::log(if *made { p } else { 1.0 - p })
+        })
+        .sum::<f64>()
+        / count;
+    let swish = |shot: &&ShotChance| shot.swish_chance >= PREDICTED && shot.made.is_some();
+    let swishes = shots.iter().filter(swish).count();
+    let swishes_made = shots
+        .iter()
+        .filter(swish)
+        .filter(|s| s.made == Some(true))
+        .count();
+    labelled.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let bins = (labelled.len() / LEAST_IN_BIN).min(MOST_BINS);
+    ExpectedMakes {
+        labelled: labelled.len(),
+        expected,
+        expected_sd: variance.sqrt(),
+        made,
+        share: wilson_interval(made, labelled.len()),
+        brier,
+        log_loss,
+        area_under_curve: area_under_curve(&labelled),
+        swishes: (swishes, swishes_made),
+        bins: (0..bins)
+            .map(|bin| {
+                let range = bin * labelled.len() / bins..(bin + 1) * labelled.len() / bins;
+                let in_bin = &labelled[range];
+                let made = in_bin.iter().filter(|(_, made)| *made).count();
+                ReliabilityBin {
+                    predicted: in_bin.iter().map(|(p, _)| p).sum::<f64>() / in_bin.len() as f64,
+                    observed: wilson_interval(made, in_bin.len()),
+                    shots: in_bin.len(),
+                }
+            })
+            .collect(),
+        shots,
+    }
+}
+
+/// Of chances in ascending order: ties count half.
+fn area_under_curve(labelled: &[(f64, bool)]) -> Option<f64> {
+    let made = labelled.iter().filter(|(_, made)| *made).count();
+    let missed = labelled.len() - made;
+    if made == 0 || missed == 0 {
+        return None;
+    }
+    let mut sum = 0.0;
+    let mut start = 0;
+    let mut missed_below = 0.0;
+    while start < labelled.len() {
+        let chance = labelled[start].0;
+        let tied = labelled[start..].iter().take_while(|(p, _)| *p == chance);
+        let tied: Vec<bool> = tied.map(|(_, made)| *made).collect();
+        let made_here = tied.iter().filter(|made| **made).count() as f64;
+        let missed_here = tied.len() as f64 - made_here;
+        sum += made_here * (missed_below + 0.5 * missed_here);
+        missed_below += missed_here;
+        start += tied.len();
+    }
+    Some(sum / (made as f64 * missed as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Authority: Wilson's interval of 8 in 10 (Agresti and Coull 1998: 0.490 to 0.943).
+    #[test]
+    fn val_wilson_interval() {
+        let wilson = wilson_interval(8, 10);
+        assert!((wilson.low - 0.490).abs() < 5e-4, "{wilson:?}");
+        assert!((wilson.high - 0.943).abs() < 5e-4, "{wilson:?}");
+        assert_eq!(wilson_interval(0, 10).low, 0.0);
+    }
+
+    /// By hand: of the four pairs of a made and a missed shot, three are in order and one is tied.
+    #[test]
+    fn val_area_under_curve() {
+        let labelled = [(0.2, false), (0.5, false), (0.5, true), (0.9, true)];
+        assert_eq!(area_under_curve(&labelled), Some(3.5 / 4.0));
+        assert_eq!(area_under_curve(&[(0.5, true)]), None);
+    }
+}

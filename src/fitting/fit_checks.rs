@@ -1,0 +1,389 @@
+//! Checks of measured shots: before a fit, whether it makes sense; after it, whether the model holds.
+
+use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
+use super::posterior::{Draw, SpinSource};
+use crate::math::normal_distribution::cdf;
+use crate::model::Physics;
+use nalgebra::{SMatrix, SVector};
+
+/// Why shots cannot be fitted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TestError {
+    /// Fewer shots than unknowns.
+    #[error(
+        "has {shots} usable shots at {places} places; the fit has {unknowns} unknowns and needs at least {needed} shots"
+    )]
+    TooFewShots {
+        /// Usable shots.
+        shots: usize,
+        /// Places.
+        places: usize,
+        /// Unknowns of the model.
+        unknowns: usize,
+        /// Shots that are needed.
+        needed: usize,
+    },
+    /// A value is the same in every shot.
+    #[error(
+        "{0}: every shot at one place has the same value; a shooter scatters. Is it a nominal value, or rounded?"
+    )]
+    NoSpread(&'static str),
+    /// Speeds in another unit.
+    #[error(
+        "speed: {given:.1} {unit} (the median) cannot be a shot from there, which needs about {needed:.1} {unit}; the column looks like {likely}"
+    )]
+    WrongUnit {
+        /// The median.
+        given: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// A speed that reaches the hoop.
+        needed: f64,
+        /// What it looks like.
+        likely: &'static str,
+    },
+}
+
+/// What a fit should be told to a user.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FitWarning {
+    /// The tracker's error is as large as the scatter: value, share of the variance.
+    NoisyTracker(&'static str, f64),
+    /// The population tells more than the shots: value, weight.
+    MostlyPopulation(&'static str, f64),
+    /// The tracker seems to err more, or less, than stated: the ratio of seen to stated variance.
+    OtherNoise(f64),
+    /// The shots are not normal: the p-values of Mardia's skewness and kurtosis.
+    NotNormal(f64, f64),
+    /// The aim drifts: value, p-value.
+    Drift(&'static str, f64),
+    /// Neighbouring shots are alike: value, p-value.
+    SerialCorrelation(&'static str, f64),
+}
+
+impl std::fmt::Display for FitWarning {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::NoisyTracker(name, share) => write!(
+                out,
+                "{name}: {:.0} % of the variance of the measurements is the tracker's error; the shooter's own scatter is what is left of it, and uncertain",
+                100.0 * share
+            ),
+            Self::MostlyPopulation(name, weight) => write!(
+                out,
+                "{name}: {:.0} % of what is known of its scatter comes from the population of shooters, not from these shots",
+                100.0 * weight
+            ),
+            Self::OtherNoise(ratio) => write!(
+                out,
+                "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE",
+                ratio.sqrt()
+            ),
+            Self::NotNormal(skewness, kurtosis) => write!(
+                out,
+                "the releases are not normal (Mardia: skewness p = {skewness:.4}, kurtosis p = {kurtosis:.4}); look for outliers, or for shots of two kinds"
+            ),
+            Self::Drift(name, p) => write!(out, "{name} drifts over the session (p = {p:.4})"),
+            Self::SerialCorrelation(name, p) => write!(
+                out,
+                "{name}: a shot is like the one before it (p = {p:.4}); intervals are then too narrow"
+            ),
+        }
+    }
+}
+
+/// Shots for each unknown.
+const LEAST_SHOTS: usize = 10;
+/// A test warns below this p-value: one session in two hundred without reason.
+const WARNING_LEVEL: f64 = 0.005;
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let count = values.len();
+    if count == 0 {
+        f64::NAN
+    } else {
+        0.5 * (values[(count - 1) / 2] + values[count / 2])
+    }
+}
+
+/// The least speed at which a ball reaches the hoop in a vacuum, m/s.
+fn least_speed_m_s(physics: &Physics, place: &Place) -> f64 {
+    let rise = physics.hoop_plane_height_m() - place.release_height_m;
+    let reach = libm::hypot(rise, place.location.distance_m);
+    (physics.gravity_m_s2 * (rise + reach)).max(0.0).sqrt()
+}
+
+/// Refuses shots that no fit can make sense of. `speed_unit` is that of the file and its size in m/s.
+///
+/// # Errors
+/// The first reason.
+pub fn check_releases(
+    physics: &Physics,
+    places: &[Place],
+    shots: &[MeasuredRelease],
+    spin: SpinSource,
+    speed_unit: (&'static str, f64),
+) -> Result<(), TestError> {
+    let values = if spin == SpinSource::Measured { 4 } else { 3 };
+    let unknowns = values * places.len() + values + values * (values - 1) / 2;
+    let needed = unknowns.max(LEAST_SHOTS);
+    if shots.len() < needed {
+        return Err(TestError::TooFewShots {
+            shots: shots.len(),
+            places: places.len(),
+            unknowns,
+            needed,
+        });
+    }
+    check_speed_unit(physics, places, shots, speed_unit)?;
+    for index in 0..places.len() {
+        let of_place = || shots.iter().filter(move |shot| shot.place == index);
+        for (i, name) in VALUE_NAMES.iter().enumerate().take(values) {
+            let first = of_place().next().map_or(0.0, |shot| shot.values[i]);
+            let differs = of_place().any(|shot| (shot.values[i] - first).abs() > 1e-9);
+            if !differs && of_place().count() > 1 {
+                return Err(TestError::NoSpread(name));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses speeds that look like another unit. `speed_unit` is that of the file and its size in m/s.
+///
+/// # Errors
+/// The median speed at a place cannot be a shot from there.
+pub fn check_speed_unit(
+    physics: &Physics,
+    places: &[Place],
+    shots: &[MeasuredRelease],
+    speed_unit: (&'static str, f64),
+) -> Result<(), TestError> {
+    for (index, place) in places.iter().enumerate() {
+        let of_place = || shots.iter().filter(move |shot| shot.place == index);
+        let speed = median(of_place().map(|shot| shot.values[0]).collect());
+        let least = least_speed_m_s(physics, place);
+        if speed < 0.9 * least || speed > 2.5 * least {
+            const UNITS: [(&str, f64); 4] = [
+                ("m/s", 1.0),
+                ("ft/s", 0.3048),
+                ("mph", 0.447_04),
+                ("km/h", 1.0 / 3.6),
+            ];
+            let (unit, size) = speed_unit;
+            let typical = 1.08 * least;
+            let likely = UNITS
+                .iter()
+                .filter(|(name, _)| *name != unit)
+                .min_by(|a, b| {
+                    let miss =
+                        |(_, other): &&(&str, f64)| libm::log(speed / size * other / typical).abs();
+                    miss(a).total_cmp(&miss(b))
+                });
+            return Err(TestError::WrongUnit {
+                given: speed / size,
+                unit,
+                needed: typical / size,
+                likely: likely.map_or("another quantity", |(name, _)| name),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Shots that are far from the others at their place: farther than `most` robust standard deviations (from the median
+/// absolute deviation) in any value.
+#[must_use]
+pub fn far_shots(shots: &[MeasuredRelease], places: usize, values: usize, most: f64) -> Vec<bool> {
+    let mut is_far = vec![false; shots.len()];
+    for place in 0..places {
+        let of_place: Vec<usize> = (0..shots.len())
+            .filter(|&i| shots[i].place == place)
+            .collect();
+        for k in 0..values {
+            let column = |i: &usize| shots[*i].values[k];
+            let centre = median(of_place.iter().map(column).collect());
+            let deviations = of_place
+                .iter()
+                .map(|i| (column(i) - centre).abs())
+                .collect();
+            let sd = 1.4826 * median(deviations);
+            for &i in &of_place {
+                if sd > 0.0 && (shots[i].values[k] - centre).abs() > most * sd {
+                    is_far[i] = true;
+                }
+            }
+        }
+    }
+    is_far
+}
+
+/// Mardia's tests of normality.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeTest {
+    /// p-value of the skewness.
+    pub skewness_p: f64,
+    /// p-value of the kurtosis.
+    pub kurtosis_p: f64,
+}
+
+/// Mardia's tests (Biometrika 57 (1970) 519) of speed, pitch and polar angle, with the normal approximations of both
+/// statistics. Each shot is taken from its own place's mean.
+#[must_use]
+pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
+    const D: f64 = 3.0;
+    let count = shots.len() as f64;
+    let mut means = vec![SVector::<f64, 3>::zeros(); places];
+    let mut counts = vec![0.0; places];
+    let value = |shot: &MeasuredRelease| SVector::<f64, 3>::from_fn(|i, _| shot.values[i]);
+    for shot in shots {
+        means[shot.place] += value(shot);
+        counts[shot.place] += 1.0;
+    }
+    for (mean, count) in means.iter_mut().zip(&counts) {
+        *mean /= *count;
+    }
+    let deviations: Vec<SVector<f64, 3>> = shots
+        .iter()
+        .map(|shot| value(shot) - means[shot.place])
+        .collect();
+    let covariance: SMatrix<f64, 3, 3> = deviations
+        .iter()
+        .map(|d| d * d.transpose())
+        .sum::<SMatrix<f64, 3, 3>>()
+        / count;
+    let Some(inverse) = covariance.try_inverse() else {
+        return ShapeTest {
+            skewness_p: 1.0,
+            kurtosis_p: 1.0,
+        };
+    };
+    let (mut skewness, mut kurtosis) = (0.0, 0.0);
+    for a in &deviations {
+        let along = inverse * a;
+        for b in &deviations {
+            let product = along.dot(b);
+            skewness += product * product * product;
+        }
+        let square = along.dot(a);
+        kurtosis += square * square;
+    }
+    // n b1/6 is about chi-square with d (d + 1) (d + 2)/6 = 10 degrees of freedom (Wilson and Hilferty's cube root), with
+    // Mardia's correction for few shots.
+    let correction =
+        (D + 1.0) * (count + 1.0) * (count + 3.0) / (count * ((count + 1.0) * (D + 1.0) - 6.0));
+    let chi_square = correction * skewness / (6.0 * count);
+    let freedom = 10.0;
+    let spread = 2.0 / (9.0 * freedom);
+    let z = (libm::cbrt(chi_square / freedom) - (1.0 - spread)) / spread.sqrt();
+    let expected = D * (D + 2.0) * (count - 1.0) / (count + 1.0);
+    let sd = (8.0 * D * (D + 2.0) / count).sqrt();
+    let kurtosis_z = (kurtosis / count - expected) / sd;
+    ShapeTest {
+        skewness_p: 1.0 - cdf(z),
+        kurtosis_p: 2.0 * (1.0 - cdf(kurtosis_z.abs())),
+    }
+}
+
+/// How one value runs over a session.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SessionTrend {
+    /// The value.
+    pub name: &'static str,
+    /// Change from the first to the last shot, SI units.
+    pub drift: f64,
+    /// p-value of the drift (normal approximation of the correlation with the order).
+    pub drift_p: f64,
+    /// Correlation of a shot with the one before it.
+    pub serial_correlation: f64,
+    /// p-value of it.
+    pub serial_p: f64,
+}
+
+/// The trends of some values in the order of the shots.
+#[must_use]
+pub fn trends(shots: &[MeasuredRelease], means: &[Values], values: usize) -> Vec<SessionTrend> {
+    let count = shots.len() as f64;
+    (0..values)
+        .map(|i| {
+            let deviations: Vec<f64> = shots
+                .iter()
+                .map(|shot| shot.values[i] - means[shot.place][i])
+                .collect();
+            let mean = deviations.iter().sum::<f64>() / count;
+            let middle = 0.5 * (count - 1.0);
+            let (mut product, mut squares, mut order) = (0.0, 0.0, 0.0);
+            for (k, deviation) in deviations.iter().enumerate() {
+                let (t, x) = (k as f64 - middle, deviation - mean);
+                product += t * x;
+                squares += x * x;
+                order += t * t;
+            }
+            let correlation = product / (squares * order).sqrt().max(f64::MIN_POSITIVE);
+            let lagged: f64 = deviations
+                .windows(2)
+                .map(|pair| (pair[0] - mean) * (pair[1] - mean))
+                .sum();
+            let serial = lagged / squares.max(f64::MIN_POSITIVE);
+            let p_of = |correlation: f64| 2.0 * (1.0 - cdf(correlation.abs() * count.sqrt()));
+            SessionTrend {
+                name: VALUE_NAMES[i],
+                drift: product / order.max(f64::MIN_POSITIVE) * (count - 1.0),
+                drift_p: p_of(correlation),
+                serial_correlation: serial,
+                serial_p: p_of(serial),
+            }
+        })
+        .collect()
+}
+
+/// What should be said of a fit.
+#[must_use]
+pub fn warnings(
+    shots: &[MeasuredRelease],
+    typical: &Draw,
+    prior_weights: &Values,
+    values: usize,
+) -> Vec<FitWarning> {
+    /// From this share of the variance on, a user is told.
+    const NOISY: f64 = 0.4;
+    let mut warnings = Vec::new();
+    let places = typical.means.len();
+    for (i, name) in VALUE_NAMES.iter().enumerate().take(values) {
+        let noise = shots.iter().map(|shot| shot.noise[(i, i)]).sum::<f64>() / shots.len() as f64;
+        let own = typical.sds[i] * typical.sds[i];
+        let share = noise / (noise + own);
+        if share > NOISY {
+            warnings.push(FitWarning::NoisyTracker(name, share));
+        }
+        if prior_weights[i] > 0.25 {
+            warnings.push(FitWarning::MostlyPopulation(name, prior_weights[i]));
+        }
+    }
+    let shape = shape_test(shots, places);
+    if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
+        warnings.push(FitWarning::NotNormal(shape.skewness_p, shape.kurtosis_p));
+    }
+    for trend in trends(shots, &typical.means, values) {
+        if trend.drift_p < WARNING_LEVEL {
+            warnings.push(FitWarning::Drift(trend.name, trend.drift_p));
+        }
+        if trend.serial_p < WARNING_LEVEL {
+            warnings.push(FitWarning::SerialCorrelation(trend.name, trend.serial_p));
+        }
+    }
+    warnings
+}
+
+/// A warning where tracked flights fit worse, or better, than the tracker's noise says: the sums of the squared
+/// residuals and of their expectations.
+#[must_use]
+pub fn noise_warning(chi_squares: &[(f64, f64)]) -> Option<FitWarning> {
+    let seen: f64 = chi_squares.iter().map(|(seen, _)| seen).sum();
+    let expected: f64 = chi_squares.iter().map(|(_, expected)| expected).sum();
+    let ratio = seen / expected.max(1.0);
+    // Five standard deviations of a chi-square, and a fifth, since outliers are weighed down.
+    let tolerance = 0.2 + 5.0 * (2.0 / expected.max(1.0)).sqrt();
+    ((ratio - 1.0).abs() > tolerance).then_some(FitWarning::OtherNoise(ratio))
+}

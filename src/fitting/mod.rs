@@ -1,0 +1,52 @@
+//! The shooter's test: from measured shots to the distribution of the releases, and how sure it is.
+//!
+//! A measured release is the true one plus the error of the tracker, `y = x + e`; the true ones of a shooter at a place
+//! are normal about the shooter's aim there, `x ~ N(mu, Sigma)`, and the covariance of `e` is known for each shot. The
+//! answer is a sample of the posterior distribution of `mu` and `Sigma` ([`Posterior`]); every probability that follows
+//! from it is computed for each draw ([`DrawProbabilities`]), so it has an interval.
+//!
+//! The values of a release are `[speed, pitch, polar angle, backspin]`, m/s, rad, rad, rad/s ([`Values`]).
+//! `docs/shooters_test.md` has the model, its prior and how it was checked.
+
+mod advice;
+mod chain_diagnostics;
+mod dispersion_posterior;
+mod draw_probabilities;
+mod expected_makes;
+mod fit_checks;
+mod fitted_profile;
+mod flight_fit;
+mod landing;
+mod measured_release;
+mod population;
+mod posterior;
+mod session_comparison;
+mod shooter_fit;
+mod test_design;
+mod tracker;
+mod unseen_parameter;
+
+pub use advice::{
+    Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
+};
+pub use draw_probabilities::{DrawProbabilities, Interval, WeightedShots};
+pub use expected_makes::{
+    ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,
+};
+pub use fit_checks::{
+    FitWarning, SessionTrend, ShapeTest, TestError, check_releases, check_speed_unit, far_shots,
+    noise_warning, shape_test, trends, warnings,
+};
+pub use fitted_profile::fitted_profile;
+pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};
+pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_landing};
+pub use measured_release::{
+    Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,
+};
+pub use population::{PopulationPrior, Spread};
+pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit, pair_name};
+pub use session_comparison::{SessionComparison, compare_probabilities, compare_sessions};
+pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
+pub use test_design::{DesignRow, design, simulated_test};
+pub use tracker::{Tracker, TrackerNoise};
+pub use unseen_parameter::{LikelihoodCurve, UnseenParameter, likelihood_curve};

@@ -1,0 +1,500 @@
+//! Draws of a shooter's aim and dispersion.
+
+use super::chain_diagnostics::ParameterChains;
+use super::dispersion_posterior::{Dispersion, DispersionPosterior};
+use super::draw_probabilities::Interval;
+use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
+use super::population::{PopulationPrior, Spread};
+use crate::math::normal_distribution::quantile;
+use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};
+use hammer_and_sample::{MinChainLen, Move, Params, Serial, Stretch, sample};
+use nalgebra::SMatrix;
+use rand::rngs::ChaCha12Rng;
+use rand::{Rng, RngExt, SeedableRng};
+use rayon::prelude::*;
+
+/// Ensembles, which are sampled one apart from the other.
+const CHAINS: usize = 4;
+/// Least walkers of an ensemble.
+const LEAST_WALKERS: usize = 16;
+/// Steps that are forgotten, and steps that are kept at first.
+const BURN_IN: usize = 150;
+const FIRST_STEPS: usize = 250;
+/// How often the kept steps are doubled before the sampler gives up.
+const DOUBLINGS: u32 = 5;
+/// What a converged sample has.
+const LARGEST_R_HAT: f64 = 1.02;
+const LEAST_EFFECTIVE_SIZE: f64 = 400.0;
+
+/// The speed's standard deviation at a place is at least this share of that at the reference speed.
+const LEAST_SD_SHARE: f64 = 0.05;
+
+/// Where the backspin comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpinSource {
+    /// Measured with each shot.
+    Measured,
+    /// Its mean was given; its scatter is that of the population.
+    Given,
+    /// Mean and scatter are those of the population.
+    Assumed,
+}
+
+impl SpinSource {
+    /// The word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Given => "given",
+            Self::Assumed => "assumed",
+        }
+    }
+}
+
+/// What a fit is told.
+#[derive(Clone, Copy, Debug)]
+pub struct FitOptions {
+    /// What is known of shooters.
+    pub prior: PopulationPrior,
+    /// Whether each release has a measured backspin.
+    pub spin: SpinSource,
+    /// The number of draws that are kept.
+    pub draws: usize,
+    /// Seed of the random numbers. The same seed gives the same bits for any number of threads.
+    pub seed: u64,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            prior: PopulationPrior::MEASURED,
+            spin: SpinSource::Assumed,
+            draws: 1000,
+            seed: 1,
+        }
+    }
+}
+
+/// One draw from the posterior.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// The aim at each place.
+    pub means: Vec<Values>,
+    /// The standard deviations at the reference speed.
+    pub sds: Values,
+    /// The correlations of the values.
+    pub correlation: SMatrix<f64, 4, 4>,
+    /// `c10`, `c11`, `c12` of Eq. 28 (SI units).
+    pub speed_coefficients: [f64; 3],
+    /// The Cholesky factor of the covariance of the releases at each place.
+    pub(super) factors: Vec<SMatrix<f64, 4, 4>>,
+}
+
+impl Draw {
+    /// A draw of these aims, standard deviations, correlations, and `c10`, `c11`, `c12` (SI units).
+    #[must_use]
+    pub fn new(
+        means: Vec<Values>,
+        sds: Values,
+        correlation: SMatrix<f64, 4, 4>,
+        speed_coefficients: [f64; 3],
+    ) -> Self {
+        let lower = correlation
+            .cholesky()
+            .map_or_else(SMatrix::identity, |cholesky| cholesky.l());
+        let [c10, c11, c12] = speed_coefficients;
+        let factors = means
+            .iter()
+            .map(|mean| {
+                let mut at_place = sds;
+                at_place[0] = (c10 + mean[0] * (c11 + mean[0] * c12)).max(LEAST_SD_SHARE * sds[0]);
+                SMatrix::from_diagonal(&at_place.into()) * lower
+            })
+            .collect();
+        Self {
+            means,
+            sds,
+            correlation,
+            speed_coefficients,
+            factors,
+        }
+    }
+
+    /// The standard deviations at a place.
+    #[must_use]
+    pub fn sds_at(&self, place: usize) -> Values {
+        let factor = &self.factors[place];
+        std::array::from_fn(|i| factor.row(i).norm())
+    }
+
+    /// The Cholesky factor of the covariance of the releases at a place.
+    #[must_use]
+    pub fn factor_at(&self, place: usize) -> SMatrix<f64, 4, 4> {
+        self.factors[place]
+    }
+
+    /// The dispersion of this draw.
+    #[must_use]
+    pub fn dispersion(&self) -> ReleaseDispersion {
+        let [c10_m_s, c11, c12_s_m] = self.speed_coefficients;
+        ReleaseDispersion {
+            c10_m_s,
+            c11,
+            c12_s_m,
+            c20_rad: self.sds[1],
+            c30_rad: self.sds[2],
+            c40_rad_s: self.sds[3],
+            correlation: correlation_of(&self.correlation),
+            ..ReleaseDispersion::NONE
+        }
+    }
+}
+
+/// The correlations of a profile.
+pub(super) fn correlation_of(matrix: &SMatrix<f64, 4, 4>) -> Correlation {
+    const VARIABLES: [ReleaseVariable; 4] = [
+        ReleaseVariable::Speed,
+        ReleaseVariable::Pitch,
+        ReleaseVariable::Polar,
+        ReleaseVariable::Backspin,
+    ];
+    let mut pairs = Vec::new();
+    for i in 0..4 {
+        for j in 0..i {
+            if matrix[(i, j)] != 0.0 {
+                pairs.push((VARIABLES[j], VARIABLES[i], matrix[(i, j)]));
+            }
+        }
+    }
+    Correlation::new(&pairs).unwrap_or(Correlation::NONE)
+}
+
+/// A sample of the posterior distribution.
+#[derive(Clone, Debug)]
+pub struct Posterior {
+    /// The draws.
+    pub draws: Vec<Draw>,
+    /// Where the backspin comes from.
+    pub spin: SpinSource,
+    /// The greatest split R-hat of the parameters.
+    pub r_hat: f64,
+    /// The least effective sample size of the parameters.
+    pub effective_sample_size: f64,
+    /// The share of the information on each standard deviation that comes from the population.
+    pub prior_weights: Values,
+    /// Terms of the growth of the speed's scatter that the places tell apart: 0, 1 (c11) or 2 (c11, c12).
+    pub growth_terms: usize,
+    /// The number of shots.
+    pub shots: usize,
+}
+
+impl Posterior {
+    /// A summary of a function of the draws.
+    pub fn summary(&self, value: impl Fn(&Draw) -> f64) -> Interval {
+        Interval::of(self.draws.iter().map(value).collect())
+    }
+
+    /// The draw in the middle: means, and root mean squares of the standard deviations, so that its releases have the
+    /// covariance of all draws' releases.
+    #[must_use]
+    pub fn typical(&self) -> Draw {
+        let count = self.draws.len() as f64;
+        let mean = |value: &dyn Fn(&Draw) -> f64| self.draws.iter().map(value).sum::<f64>() / count;
+        let places = self.draws[0].means.len();
+        let root_mean = |value: &dyn Fn(&Draw) -> f64| mean(&|d| value(d) * value(d)).sqrt();
+        let sds: Values = std::array::from_fn(|i| root_mean(&|d| d.sds[i]));
+        let correlation = SMatrix::from_fn(|i, j| mean(&|d| d.correlation[(i, j)]));
+        let scale = {
+            let typical = mean(&|d| d.sds[0]);
+            if typical > 0.0 { sds[0] / typical } else { 1.0 }
+        };
+        Draw {
+            means: (0..places)
+                .map(|p| std::array::from_fn(|i| mean(&|d| d.means[p][i])))
+                .collect(),
+            sds,
+            correlation,
+            speed_coefficients: std::array::from_fn(|k| mean(&|d| d.speed_coefficients[k]) * scale),
+            factors: (0..places)
+                .map(|p| {
+                    let covariance: SMatrix<f64, 4, 4> = self
+                        .draws
+                        .iter()
+                        .map(|d| d.factors[p] * d.factors[p].transpose() / count)
+                        .sum();
+                    covariance.cholesky().map_or_else(SMatrix::zeros, |c| c.l())
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Why there is no posterior.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// The chains disagree.
+    #[error(
+        "the posterior did not converge: R-hat {r_hat:.3} (at most {LARGEST_R_HAT} is wanted), effective sample size {effective:.0} (at least {LEAST_EFFECTIVE_SIZE}); look at the shots for outliers or mixed shooters, or give another --seed"
+    )]
+    NotConverged {
+        /// The greatest R-hat.
+        r_hat: f64,
+        /// The least effective sample size.
+        effective: f64,
+    },
+    /// The covariance of the measurements is not positive definite.
+    #[error("the shots have no scatter that could be fitted: they are identical or lie on a line")]
+    NoScatter,
+}
+
+/// Steps along the difference of two walkers (ter Braak, Stat. Comput. 16 (2006) 239), and every fourth time a stretch.
+struct DifferenceOrStretch {
+    scale: f64,
+    stretch: Stretch,
+}
+
+impl Move<Vec<f64>> for DifferenceOrStretch {
+    fn propose<'a, O, R>(&self, this: &'a Vec<f64>, mut other: O, random: &mut R) -> (Vec<f64>, f64)
+    where
+        O: FnMut(&mut R) -> &'a Vec<f64>,
+        R: Rng,
+    {
+        let uniform: f64 = random.random();
+        if uniform < 0.25 {
+            return self.stretch.propose(this, other, random);
+        }
+        let (first, second) = (other(random), other(random));
+        let jitter: f64 = random.random();
+        let factor = self.scale * (0.5 + jitter);
+        let moved = this
+            .values()
+            .zip(first.values().zip(second.values()))
+            .map(|(x, (a, b))| x + factor * (a - b))
+            .collect();
+        (moved, 0.0)
+    }
+}
+
+/// Fits a shooter's releases. `places` is the number of places, each with at least one shot.
+///
+/// # Errors
+/// The chains did not converge, or there is no scatter.
+pub fn fit(
+    shots: &[MeasuredRelease],
+    places: usize,
+    options: &FitOptions,
+) -> Result<Posterior, FitError> {
+    match options.spin {
+        SpinSource::Measured => fit_values::<4>(shots, places, options),
+        SpinSource::Given | SpinSource::Assumed => fit_values::<3>(shots, places, options),
+    }
+}
+
+/// A standard normal number.
+fn normal(random: &mut impl Rng) -> f64 {
+    loop {
+        let uniform: f64 = random.random();
+        if uniform > 0.0 {
+            return quantile(uniform);
+        }
+    }
+}
+
+fn fit_values<const D: usize>(
+    shots: &[MeasuredRelease],
+    places: usize,
+    options: &FitOptions,
+) -> Result<Posterior, FitError> {
+    let model = DispersionPosterior::<D>::new(shots, places, options.prior);
+    let priors = model.priors();
+    let dimension = model.dimension();
+    let walkers = LEAST_WALKERS.max(2 * dimension).next_multiple_of(2);
+    let starts = starting_point(&model, shots, &priors);
+    let mut steps = FIRST_STEPS;
+    for _ in 0..=DOUBLINGS {
+        let burn_in = BURN_IN.max(steps / 4);
+        let chains: Vec<Vec<Vec<f64>>> = (0..CHAINS)
+            .into_par_iter()
+            .map(|chain| {
+                let walker = |number: usize| {
+                    let mut random = ChaCha12Rng::seed_from_u64(options.seed);
+                    random.set_stream((chain * walkers + number) as u64);
+                    let start = starts
+                        .iter()
+                        .map(|start| start.mean + start.sd * normal(&mut random))
+                        .collect::<Vec<f64>>();
+                    (start, random)
+                };
+                let proposal = DifferenceOrStretch {
+                    scale: 2.38 / (2.0 * dimension as f64).sqrt(),
+                    stretch: Stretch::default(),
+                };
+                let length = MinChainLen((burn_in + steps) * walkers);
+                let all = (0..walkers).map(walker);
+                let (mut chain, _) = sample(&model, &proposal, all, length, Serial);
+                chain.drain(..burn_in * walkers);
+                chain
+            })
+            .collect();
+        let (mut r_hat, mut effective) = (1.0_f64, f64::INFINITY);
+        let parameters = 0..dimension;
+        for parameter in parameters {
+            let value = |chain: usize, step: usize, walker: usize| {
+                chains[chain][step * walkers + walker][parameter]
+            };
+            let of_parameter = ParameterChains {
+                value: &value,
+                chains: CHAINS,
+                steps,
+                walkers,
+            };
+            r_hat = r_hat.max(of_parameter.split_r_hat());
+            effective = effective.min(of_parameter.effective_sample_size());
+        }
+        if !r_hat.is_finite() {
+            return Err(FitError::NoScatter);
+        }
+        if r_hat <= LARGEST_R_HAT && effective >= LEAST_EFFECTIVE_SIZE {
+            let points: Vec<&Vec<f64>> = chains.iter().flatten().collect();
+            let draws = draws_of(&model, &points, options)?;
+            let weights = prior_weights::<D>(&points, &priors);
+            return Ok(Posterior {
+                draws,
+                spin: options.spin,
+                r_hat,
+                effective_sample_size: effective,
+                prior_weights: weights,
+                growth_terms: model.growth_terms,
+                shots: shots.len(),
+            });
+        }
+        if steps >= FIRST_STEPS << DOUBLINGS {
+            return Err(FitError::NotConverged { r_hat, effective });
+        }
+        steps *= 2;
+    }
+    unreachable!("the last pass returns")
+}
+
+/// About the standard deviations of the shots, and the prior for the rest.
+fn starting_point<const D: usize>(
+    model: &DispersionPosterior<D>,
+    shots: &[MeasuredRelease],
+    priors: &[Spread],
+) -> Vec<Spread> {
+    let places = model.places();
+    let mut starts = priors.to_vec();
+    for (i, start) in starts.iter_mut().enumerate().take(D) {
+        let (mut squares, mut freedom, mut noise) = (0.0, 0.0, 0.0);
+        for place in 0..places {
+            let values: Vec<&MeasuredRelease> =
+                shots.iter().filter(|shot| shot.place == place).collect();
+            let count = values.len() as f64;
+            let mean = values.iter().map(|shot| shot.values[i]).sum::<f64>() / count;
+            for shot in &values {
+                squares += (shot.values[i] - mean) * (shot.values[i] - mean);
+                noise += shot.noise[(i, i)] / shots.len() as f64;
+            }
+            freedom += count - 1.0;
+        }
+        let least = 0.05 * libm::exp(priors[i].mean);
+        let variance = (squares / freedom.max(1.0) - noise).max(least * least);
+        // As far from the prior as the data, but where its density does not vanish.
+        let logarithm = 0.5 * libm::log(variance);
+        let (low, high) = (
+            priors[i].mean - 8.0 * priors[i].sd,
+            priors[i].mean + 8.0 * priors[i].sd,
+        );
+        *start = Spread {
+            mean: logarithm.clamp(low, high),
+            sd: 0.1,
+        };
+    }
+    for start in &mut starts[D..] {
+        start.sd *= 0.3;
+    }
+    starts
+}
+
+/// Of each standard deviation, the variance of its logarithm over that of the prior.
+fn prior_weights<const D: usize>(points: &[&Vec<f64>], priors: &[Spread]) -> Values {
+    let count = points.len() as f64;
+    std::array::from_fn(|i| {
+        if i >= D {
+            return 1.0;
+        }
+        let mean = points.iter().map(|point| point[i]).sum::<f64>() / count;
+        let squares: f64 = points.iter().map(|p| (p[i] - mean) * (p[i] - mean)).sum();
+        (squares / count / (priors[i].sd * priors[i].sd)).min(1.0)
+    })
+}
+
+fn draws_of<const D: usize>(
+    model: &DispersionPosterior<D>,
+    points: &[&Vec<f64>],
+    options: &FitOptions,
+) -> Result<Vec<Draw>, FitError> {
+    let mut random = ChaCha12Rng::seed_from_u64(options.seed);
+    random.set_stream(u64::MAX);
+    (0..options.draws)
+        .map(|k| {
+            let point = points[k * points.len() / options.draws];
+            let dispersion = model.dispersion(point);
+            let means = model
+                .means(&dispersion, || normal(&mut random))
+                .ok_or(FitError::NoScatter)?;
+            let unseen = [normal(&mut random), normal(&mut random)];
+            Ok(draw_of(model, &dispersion, &means, unseen, options))
+        })
+        .collect()
+}
+
+/// A draw; `unseen` are standard normals for the mean and the scatter of a backspin that was not measured.
+fn draw_of<const D: usize>(
+    model: &DispersionPosterior<D>,
+    dispersion: &Dispersion<D>,
+    means: &[nalgebra::SVector<f64, D>],
+    unseen: [f64; 2],
+    options: &FitOptions,
+) -> Draw {
+    let prior = &options.prior;
+    let unseen_mean = match options.spin {
+        SpinSource::Given => prior.backspin.mean,
+        SpinSource::Assumed | SpinSource::Measured => {
+            (prior.backspin.mean + prior.backspin.sd * unseen[0]).max(0.0)
+        }
+    };
+    let unseen_sd = prior.median_sd[3] * libm::exp(prior.log_sd * unseen[1]);
+    let sds: Values = std::array::from_fn(|i| if i < D { dispersion.sds[i] } else { unseen_sd });
+    let mut correlation = SMatrix::<f64, 4, 4>::identity();
+    let coefficients = dispersion.correlation_factor * dispersion.correlation_factor.transpose();
+    for i in 0..D {
+        for j in 0..i {
+            correlation[(i, j)] = coefficients[(i, j)];
+            correlation[(j, i)] = coefficients[(i, j)];
+        }
+    }
+    // sd (1 + g (v/v0 - 1) + h (v/v0 - 1)^2) as a polynomial in v.
+    let (sd, v0) = (sds[0], model.reference_speed);
+    let [g, h] = dispersion.growth;
+    let of_place = |mean: &nalgebra::SVector<f64, D>| {
+        std::array::from_fn(|i| if i < D { mean[i] } else { unseen_mean })
+    };
+    Draw::new(
+        means.iter().map(of_place).collect(),
+        sds,
+        correlation,
+        [
+            sd * (1.0 - g + h),
+            sd * (g - 2.0 * h) / v0,
+            sd * h / (v0 * v0),
+        ],
+    )
+}
+
+/// The names of two values that are correlated, as in `speed_pitch`.
+#[must_use]
+pub fn pair_name(i: usize, j: usize) -> String {
+    format!("{}_{}", VALUE_NAMES[i], VALUE_NAMES[j])
+}

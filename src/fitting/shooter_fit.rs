@@ -1,0 +1,107 @@
+//! Everything that is fitted to one shooter's shots.
+
+use super::advice::usual_probabilities;
+use super::draw_probabilities::DrawProbabilities;
+use super::expected_makes::{ExpectedMakes, expected_makes};
+use super::fit_checks::{FitWarning, TestError, check_releases, noise_warning, warnings};
+use super::fitted_profile::fitted_profile;
+use super::measured_release::{MeasuredRelease, Place};
+use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
+use crate::model::Physics;
+use crate::shooter::{Profile, ProfileError};
+
+/// Shots of the sample that P is computed with.
+const SHOTS: usize = 65_536;
+
+/// A fitted shooter.
+#[derive(Clone, Debug)]
+pub struct ShooterFit {
+    /// Their name.
+    pub name: String,
+    /// Where they shot from.
+    pub places: Vec<Place>,
+    /// The posterior.
+    pub posterior: Posterior,
+    /// Its middle.
+    pub typical: Draw,
+    /// The profile at each place.
+    pub profiles: Vec<Profile>,
+    /// P of the usual shot at each place.
+    pub probabilities: Vec<DrawProbabilities>,
+    /// Predicted against observed.
+    pub makes: ExpectedMakes,
+    /// What should be said.
+    pub warnings: Vec<FitWarning>,
+}
+
+/// Why a shooter was not fitted.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ShooterFitError {
+    /// The shots make no sense.
+    #[error(transparent)]
+    Test(#[from] TestError),
+    /// The posterior did not converge, or has no scatter.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+    /// The fitted values make no profile.
+    #[error("the fitted values make no profile: {0}")]
+    Profile(#[from] ProfileError),
+}
+
+/// The measured shots of one shooter.
+#[derive(Clone, Copy, Debug)]
+pub struct ShooterTest<'a> {
+    /// Their name.
+    pub name: &'a str,
+    /// Where they shot from.
+    pub places: &'a [Place],
+    /// The shots.
+    pub shots: &'a [MeasuredRelease],
+    /// Unit of the speeds in the file, and its size in m/s.
+    pub speed_unit: (&'static str, f64),
+    /// Squared residuals of tracked flights, and what is expected of them.
+    pub chi_squares: &'a [(f64, f64)],
+}
+
+/// Fits a shooter.
+///
+/// # Errors
+/// The shots make no sense, the posterior did not converge, or its values make no profile.
+pub fn fit_shooter(
+    test: &ShooterTest<'_>,
+    physics: &Physics,
+    options: &FitOptions,
+) -> Result<ShooterFit, ShooterFitError> {
+    check_releases(
+        physics,
+        test.places,
+        test.shots,
+        options.spin,
+        test.speed_unit,
+    )?;
+    let posterior = fit(test.shots, test.places.len(), options)?;
+    let typical = posterior.typical();
+    let profiles = test
+        .places
+        .iter()
+        .map(|place| fitted_profile(test.name, physics, &typical, place))
+        .collect::<Result<Vec<_>, _>>()?;
+    let probabilities = (0..test.places.len())
+        .map(|place| usual_probabilities(&profiles[place], &posterior, place, SHOTS))
+        .collect();
+    let is_measured = options.spin == SpinSource::Measured;
+    let makes = expected_makes(&profiles, test.shots, &typical, is_measured);
+    let values = if is_measured { 4 } else { 3 };
+    let mut warnings = warnings(test.shots, &typical, &posterior.prior_weights, values);
+    warnings.extend(noise_warning(test.chi_squares));
+    Ok(ShooterFit {
+        name: test.name.to_owned(),
+        places: test.places.to_vec(),
+        posterior,
+        typical,
+        profiles,
+        probabilities,
+        makes,
+        warnings,
+    })
+}

@@ -1,0 +1,148 @@
+//! What a test of some size will tell, before anyone shoots.
+
+use super::advice::usual_probabilities;
+use super::fitted_profile::fitted_profile;
+use super::measured_release::{Covariance, MeasuredRelease, Place, Values};
+use super::posterior::{FitError, FitOptions, SpinSource, fit};
+use crate::math::normal_distribution::quantile;
+use crate::probability::{Progress, Sampler};
+use crate::shooter::{Nominal, Profile, ReleaseDistribution};
+use nalgebra::Vector4;
+use rand::rngs::ChaCha12Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+
+/// Shots of the sample that the probabilities of a simulated test are computed with.
+const SHOTS: usize = 8_192;
+
+/// What a test of one size tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DesignRow {
+    /// Shots of the test.
+    pub shots: usize,
+    /// Relative standard deviations of the three standard deviations (speed, pitch, polar angle).
+    pub sd_errors: [f64; 3],
+    /// Standard deviation of P from the fitted profile.
+    pub probability_error: f64,
+    /// Standard deviation of P from counting makes.
+    pub counting_error: f64,
+}
+
+/// A simulated test: shots of a profile with a tracker's errors.
+///
+/// `spin` says whether the backspin is measured.
+pub fn simulated_test(
+    profile: &Profile,
+    nominal: &Nominal,
+    noise: &Covariance,
+    shots: usize,
+    seed: u64,
+) -> Vec<MeasuredRelease> {
+    let distribution = ReleaseDistribution::new(profile, nominal);
+    let mut random = ChaCha12Rng::seed_from_u64(seed);
+    let noise_factor = super::expected_makes::factor_of(noise);
+    (0..shots)
+        .map(|row| {
+            let mut normal = || loop {
+                let uniform: f64 = random.random();
+                if uniform > 0.0 {
+                    return quantile(uniform);
+                }
+            };
+            let release = distribution.from_normal(std::array::from_fn(|_| normal()));
+            let made = profile
+                .simulator()
+                .simulate(&release)
+                .is_ok_and(|outcome| outcome.verdict.made);
+            let truth = Vector4::new(
+                release.speed_m_s,
+                release.pitch_rad,
+                release.polar_rad,
+                release.backspin_rad_s,
+            );
+            let error = noise_factor * Vector4::from_fn(|_, _| normal());
+            MeasuredRelease {
+                row: row as u64 + 1,
+                place: 0,
+                values: Values::from(truth + error),
+                noise: *noise,
+                made: Some(made),
+            }
+        })
+        .collect()
+}
+
+/// Simulates `repetitions` tests of each size, and fits them.
+///
+/// # Errors
+/// A fit did not converge.
+pub fn design(
+    profile: &Profile,
+    nominal: &Nominal,
+    noise: &Covariance,
+    sizes: &[usize],
+    repetitions: u64,
+    progress: &dyn Progress,
+) -> Result<Vec<DesignRow>, FitError> {
+    let probability = Sampler::new(profile)
+        .estimate(
+            nominal,
+            0.002,
+            profile.search().seed,
+            &crate::probability::Silent,
+        )
+        .probability;
+    let place = Place {
+        location: profile.location(),
+        release_height_m: profile.shooter().release_height_m,
+    };
+    let mut prior = super::population::PopulationPrior::MEASURED;
+    prior.backspin.mean = nominal.backspin_rad_s;
+    progress.begin("simulating tests", sizes.len() as u64 * repetitions);
+    let rows = sizes.iter().map(|&shots| {
+        let variances: Vec<Result<[f64; 4], FitError>> = (0..repetitions)
+            .into_par_iter()
+            .map(|repetition| {
+                let seed = profile.search().seed ^ (repetition << 20 | shots as u64);
+                let test = simulated_test(profile, nominal, noise, shots, seed);
+                let options = FitOptions {
+                    prior,
+                    spin: SpinSource::Given,
+                    draws: 400,
+                    seed,
+                };
+                let posterior = fit(&test, 1, &options)?;
+                let relative = |i: usize| {
+                    let sd = posterior.summary(|draw| draw.sds[i]);
+                    sd.sd / sd.mean
+                };
+                let typical = posterior.typical();
+                let p = fitted_profile("design", profile.physics(), &typical, &place)
+                    .map(|fitted| {
+                        usual_probabilities(&fitted, &posterior, 0, SHOTS)
+                            .interval()
+                            .sd
+                    })
+                    .unwrap_or(f64::NAN);
+                progress.advance(1);
+                Ok([relative(0), relative(1), relative(2), p].map(|x| x * x))
+            })
+            .collect();
+        let mut sums = [0.0; 4];
+        for variance in variances {
+            for (sum, value) in sums.iter_mut().zip(variance?) {
+                *sum += value;
+            }
+        }
+        let [speed, pitch, polar, p] = sums.map(|sum| (sum / repetitions as f64).sqrt());
+        Ok(DesignRow {
+            shots,
+            sd_errors: [speed, pitch, polar],
+            probability_error: p,
+            counting_error: (probability * (1.0 - probability) / shots as f64).sqrt(),
+        })
+    });
+    let rows = rows.collect();
+    progress.end();
+    rows
+}

@@ -1,0 +1,401 @@
+//! The columns of a file of measured shots: what they mean, and their units.
+//!
+//! A column is `QUANTITY_UNIT`, such as `speed_ft_s`; columns of other names are named with `--map`.
+
+use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
+
+/// A unit: its suffix and its size in SI units.
+type Unit = (&'static str, f64);
+
+const SPEED_UNITS: &[Unit] = &[
+    ("ft_s", FOOT_M),
+    ("m_s", 1.0),
+    ("mph", 0.447_04),
+    ("km_h", 1.0 / 3.6),
+];
+const ANGLE_UNITS: &[Unit] = &[("deg", DEGREE_RAD), ("rad", 1.0)];
+const SPIN_UNITS: &[Unit] = &[("rev_s", REV_RAD), ("rpm", REV_RAD / 60.0), ("rad_s", 1.0)];
+const LENGTH_UNITS: &[Unit] = &[
+    ("ft", FOOT_M),
+    ("in", INCH_M),
+    ("m", 1.0),
+    ("cm", 0.01),
+    ("mm", 0.001),
+];
+const TIME_UNITS: &[Unit] = &[("s", 1.0), ("ms", 0.001)];
+
+/// A quantity of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Speed of the release.
+    Speed,
+    /// Its angle above the horizontal.
+    Pitch,
+    /// Its direction on the floor, from the court's long axis.
+    Polar,
+    /// Its direction from the line to the hoop's centre.
+    Aim,
+    /// Backspin.
+    Backspin,
+    /// Distance of the place from the hoop's centre.
+    Distance,
+    /// Angle of the place on the court.
+    CourtAngle,
+    /// Height of the release above the floor.
+    ReleaseHeight,
+    /// Angle below the horizontal at the height of the hoop.
+    EntryAngle,
+    /// Depth from the front of the ring at the height of the hoop.
+    Depth,
+    /// To the right of the shot's own line there.
+    LeftRight,
+    /// Time of a tracked point.
+    Time,
+    /// Its coordinates.
+    X,
+    /// See `X`.
+    Y,
+    /// Height above the floor.
+    Z,
+}
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 15] = [
+        Self::Speed,
+        Self::Pitch,
+        Self::Polar,
+        Self::Aim,
+        Self::Backspin,
+        Self::Distance,
+        Self::CourtAngle,
+        Self::ReleaseHeight,
+        Self::EntryAngle,
+        Self::Depth,
+        Self::LeftRight,
+        Self::Time,
+        Self::X,
+        Self::Y,
+        Self::Z,
+    ];
+
+    /// The name of its column without the unit.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Pitch => "pitch",
+            Self::Polar => "polar",
+            Self::Aim => "aim",
+            Self::Backspin => "backspin",
+            Self::Distance => "distance",
+            Self::CourtAngle => "court_angle",
+            Self::ReleaseHeight => "release_height",
+            Self::EntryAngle => "entry_angle",
+            Self::Depth => "depth",
+            Self::LeftRight => "left_right",
+            Self::Time => "time",
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
+
+    fn units(self) -> &'static [Unit] {
+        match self {
+            Self::Speed => SPEED_UNITS,
+            Self::Pitch | Self::Polar | Self::Aim | Self::CourtAngle | Self::EntryAngle => {
+                ANGLE_UNITS
+            }
+            Self::Backspin => SPIN_UNITS,
+            Self::Time => TIME_UNITS,
+            _ => LENGTH_UNITS,
+        }
+    }
+}
+
+/// A text of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Label {
+    /// Whether the shot went in.
+    Made,
+    /// Who shot.
+    Shooter,
+    /// When.
+    Session,
+    /// Which shot a tracked point belongs to.
+    Shot,
+}
+
+const LABELS: [(&str, Label); 4] = [
+    ("made", Label::Made),
+    ("shooter", Label::Shooter),
+    ("session", Label::Session),
+    ("shot", Label::Shot),
+];
+
+/// A column with its meaning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuantityColumn {
+    /// Index in the file.
+    pub index: usize,
+    /// Suffix of its unit, and its size in SI units.
+    pub unit: Unit,
+}
+
+/// The known columns of a file.
+#[derive(Clone, Debug, Default)]
+pub struct Columns {
+    quantities: Vec<(Quantity, QuantityColumn)>,
+    labels: Vec<(Label, usize)>,
+    /// The names of the columns, as in the file.
+    names: Vec<String>,
+}
+
+/// What a mapped or file column is taken as.
+enum Meaning {
+    Quantity(Quantity, Unit),
+    Label(Label),
+}
+
+/// The meaning of a name: a label, or a quantity with or without its unit.
+fn meaning(name: &str, unit: Option<&str>) -> Result<Option<Meaning>, String> {
+    if let Some((_, label)) = LABELS.iter().find(|(label, _)| *label == name) {
+        return Ok(Some(Meaning::Label(*label)));
+    }
+    for quantity in Quantity::ALL {
+        let Some(rest) = name.strip_prefix(quantity.name()) else {
+            continue;
+        };
+        let own = rest.strip_prefix('_');
+        if !rest.is_empty() && own.is_none() {
+            continue;
+        }
+        let units = quantity.units();
+        let known = |suffix: &str| units.iter().find(|(name, _)| *name == suffix).copied();
+        // `x` is no prefix of a longer name.
+        let own = match own {
+            Some(suffix) => match known(suffix) {
+                Some(unit) => Some(unit),
+                None => continue,
+            },
+            None => None,
+        };
+        let chosen = match (unit, own) {
+            (Some(given), _) => known(given).ok_or_else(|| {
+                let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
+                format!(
+                    "{}: {given} is not one of its units ({})",
+                    quantity.name(),
+                    names.join(", ")
+                )
+            })?,
+            (None, Some(own)) => own,
+            (None, None) => return Ok(None),
+        };
+        return Ok(Some(Meaning::Quantity(quantity, chosen)));
+    }
+    Ok(None)
+}
+
+impl Columns {
+    /// The columns of a header. `maps` are of the form `speed_ft_s=ReleaseSpeed:mph`: the quantity, the name of the
+    /// column, and its unit where that is not the suffix of the quantity.
+    ///
+    /// # Errors
+    /// A map that cannot be followed, or a quantity given twice.
+    pub fn new(header: &[String], maps: &[String]) -> Result<Self, Vec<String>> {
+        let mut columns = Self {
+            names: header.to_vec(),
+            ..Self::default()
+        };
+        let mut errors = Vec::new();
+        let mut is_mapped = vec![false; header.len()];
+        for map in maps {
+            if let Err(error) = columns.add_map(map, header, &mut is_mapped) {
+                errors.push(format!("--map '{map}': {error}"));
+            }
+        }
+        for (index, name) in header.iter().enumerate() {
+            if is_mapped[index] {
+                continue;
+            }
+            match meaning(name.trim(), None) {
+                Ok(Some(meaning)) => {
+                    if let Err(error) = columns.add(meaning, index) {
+                        errors.push(error);
+                    }
+                }
+                Ok(None) => {}
+                Err(error) => errors.push(error),
+            }
+        }
+        if errors.is_empty() {
+            Ok(columns)
+        } else {
+            Err(errors)
+        }
+    }
+
+    fn add_map(
+        &mut self,
+        map: &str,
+        header: &[String],
+        is_mapped: &mut [bool],
+    ) -> Result<(), String> {
+        let (target, source) = map
+            .split_once('=')
+            .ok_or("must be QUANTITY=COLUMN or QUANTITY=COLUMN:UNIT")?;
+        let find = |name: &str| {
+            header
+                .iter()
+                .position(|column| column.trim() == name.trim())
+        };
+        // A column's own name may have a colon.
+        let (index, unit) = match find(source) {
+            Some(index) => (index, None),
+            None => {
+                let (name, unit) = source.rsplit_once(':').unwrap_or((source, ""));
+                let index = find(name).ok_or_else(|| {
+                    format!(
+                        "there is no column {}; the file has {}",
+                        name.trim(),
+                        header.join(", ")
+                    )
+                })?;
+                (index, Some(unit.trim()))
+            }
+        };
+        let meaning = meaning(target.trim(), unit)?.ok_or_else(|| {
+            let mut names: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
+            names.extend(LABELS.iter().map(|(name, _)| *name));
+            format!(
+                "{} is not a quantity with its unit, such as speed_ft_s; the quantities are {}",
+                target.trim(),
+                names.join(", ")
+            )
+        })?;
+        is_mapped[index] = true;
+        self.add(meaning, index)
+    }
+
+    fn add(&mut self, meaning: Meaning, index: usize) -> Result<(), String> {
+        match meaning {
+            Meaning::Label(label) => self.labels.push((label, index)),
+            Meaning::Quantity(quantity, unit) => {
+                if let Some(other) = self.quantity(quantity) {
+                    return Err(format!(
+                        "columns {} and {} both give the {}; keep one",
+                        self.names[other.index],
+                        self.names[index],
+                        quantity.name()
+                    ));
+                }
+                self.quantities
+                    .push((quantity, QuantityColumn { index, unit }));
+            }
+        }
+        Ok(())
+    }
+
+    /// The column of a quantity.
+    #[must_use]
+    pub fn quantity(&self, quantity: Quantity) -> Option<QuantityColumn> {
+        let found = self.quantities.iter().find(|(q, _)| *q == quantity);
+        found.map(|(_, column)| *column)
+    }
+
+    /// The column of a label.
+    #[must_use]
+    pub fn label(&self, label: Label) -> Option<usize> {
+        let found = self.labels.iter().find(|(l, _)| *l == label);
+        found.map(|(_, index)| *index)
+    }
+
+    /// The name of a column.
+    #[must_use]
+    pub fn name(&self, index: usize) -> &str {
+        &self.names[index]
+    }
+
+    /// The columns that nothing is taken from.
+    #[must_use]
+    pub fn unused(&self) -> Vec<&str> {
+        let is_used = |index: usize| {
+            self.quantities
+                .iter()
+                .any(|(_, column)| column.index == index)
+                || self.labels.iter().any(|(_, label)| *label == index)
+        };
+        let unused = (0..self.names.len()).filter(|&index| !is_used(index));
+        unused.map(|index| self.names[index].as_str()).collect()
+    }
+}
+
+/// Whether a cell says made or missed; `None` where it says nothing.
+///
+/// # Errors
+/// The cell says something else.
+pub fn parse_made(cell: &str) -> Result<Option<bool>, String> {
+    match cell.trim().to_ascii_lowercase().as_str() {
+        "" | "na" | "nan" => Ok(None),
+        "1" | "true" | "yes" | "y" | "made" | "make" | "hit" | "in" => Ok(Some(true)),
+        "0" | "false" | "no" | "n" | "missed" | "miss" | "out" => Ok(Some(false)),
+        other => Err(format!(
+            "made: \"{}\" is neither made (1, true, yes, made) nor missed (0, false, no, missed)",
+            other.chars().take(20).collect::<String>()
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header(names: &[&str]) -> Vec<String> {
+        names.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    #[test]
+    fn contract_columns_have_units_and_maps() {
+        let names = header(&[
+            "Player",
+            "ReleaseSpeed",
+            "pitch_deg",
+            "time",
+            "x_ft",
+            "made",
+            "note",
+        ]);
+        let maps = [
+            "speed_ft_s=ReleaseSpeed:mph".to_owned(),
+            "shooter=Player".to_owned(),
+        ];
+        let columns = Columns::new(&names, &maps).unwrap();
+        let speed = columns.quantity(Quantity::Speed).unwrap();
+        assert_eq!((speed.index, speed.unit.1), (1, 0.447_04));
+        assert_eq!(columns.quantity(Quantity::Pitch).unwrap().index, 2);
+        assert_eq!(columns.quantity(Quantity::X).unwrap().unit.0, "ft");
+        assert_eq!(columns.label(Label::Shooter), Some(0));
+        // A quantity without its unit is not taken.
+        assert_eq!(columns.unused(), ["time", "note"]);
+    }
+
+    #[test]
+    fn contract_faulty_maps_and_doubled_columns_are_refused() {
+        let names = header(&["a", "speed_ft_s", "speed_m_s"]);
+        let refused = |maps: &[&str], part: &str| {
+            let maps: Vec<String> = maps.iter().map(|map| (*map).to_owned()).collect();
+            let errors = Columns::new(&names, &maps).unwrap_err().join("\n");
+            assert!(errors.contains(part), "{errors}");
+        };
+        refused(&[], "both give the speed");
+        refused(&["pitch=a"], "not a quantity with its unit");
+        refused(&["pitch_deg=b"], "there is no column b");
+        refused(&["pitch_deg=a:mph"], "not one of its units (deg, rad)");
+        refused(&["pitch_deg"], "must be QUANTITY=COLUMN");
+        assert_eq!(parse_made("Missed"), Ok(Some(false)));
+        assert_eq!(parse_made(" "), Ok(None));
+        assert!(parse_made("2").is_err());
+    }
+}

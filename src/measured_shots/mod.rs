@@ -1,0 +1,6 @@
+//! Files of measured shots: releases, landings or trajectories, with the columns of whoever wrote them.
+
+pub mod columns;
+pub mod court_frame;
+pub mod read;
+pub mod table;

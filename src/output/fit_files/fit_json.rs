@@ -1,0 +1,164 @@
+//! `fit.json`: a fit for programs.
+
+use super::parameters::parameters;
+use crate::fitting::{DrawProbabilities, Interval, ShooterFit, Wilson};
+use crate::output::json_object::{Record, number, object, provenance};
+use crate::units::{DEGREE_RAD, UnitSystem};
+use serde_json::Value;
+
+/// What a fit was made from.
+#[derive(Clone, Debug)]
+pub struct FitSource<'a> {
+    /// `releases`, `landings` or `trajectories`.
+    pub kind: &'a str,
+    /// The file.
+    pub file: String,
+    /// BLAKE3 of its bytes.
+    pub file_blake3: String,
+    /// The tracker, and whether its noise was measured or is assumed.
+    pub tracker: (String, String),
+    /// The physics.
+    pub physics: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Rows kept out, and why.
+    pub rejected: &'a [(u64, String)],
+}
+
+fn named(name: &str, value: Value) -> (String, Value) {
+    (name.to_owned(), value)
+}
+
+/// An interval as an object.
+#[must_use]
+pub fn interval_json(interval: &Interval) -> Record {
+    vec![
+        named("mean", number(interval.mean)),
+        named("sd", number(interval.sd)),
+        named("low", number(interval.low)),
+        named("high", number(interval.high)),
+    ]
+}
+
+/// P over the draws.
+#[must_use]
+pub fn probability_json(probabilities: &DrawProbabilities) -> Value {
+    let mut record = interval_json(&probabilities.interval());
+    record.push(named(
+        "numerical_standard_error",
+        number(probabilities.numerical_standard_error()),
+    ));
+    object(record)
+}
+
+fn wilson_json(wilson: &Wilson) -> Value {
+    object(vec![
+        named("share", number(wilson.share)),
+        named("low", number(wilson.low)),
+        named("high", number(wilson.high)),
+    ])
+}
+
+/// The whole fit.
+#[must_use]
+pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> Value {
+    let posterior = &fit.posterior;
+    let (long, metre) = units.length();
+    let listed = parameters(posterior, units).into_iter().map(|parameter| {
+        let mut record = vec![
+            named("name", parameter.name.into()),
+            named("unit", parameter.unit.into()),
+        ];
+        record.extend(interval_json(&parameter.interval));
+        record.push(named("source", parameter.source.into()));
+        object(record)
+    });
+    let places = fit.places.iter().zip(&fit.probabilities).map(|(place, p)| {
+        object(vec![
+            named(
+                &format!("distance_{long}"),
+                number(place.location.distance_m / metre),
+            ),
+            named(
+                "court_angle_deg",
+                number(place.location.angle_rad / DEGREE_RAD),
+            ),
+            named(
+                &format!("release_height_{long}"),
+                number(place.release_height_m / metre),
+            ),
+            named("probability", probability_json(p)),
+        ])
+    });
+    let makes = &fit.makes;
+    let observed = object(vec![
+        named("shots", makes.labelled.into()),
+        named("made", makes.made.into()),
+        named("share", wilson_json(&makes.share)),
+    ]);
+    let prediction = object(vec![
+        named("expected_makes", number(makes.expected)),
+        named("expected_makes_sd", number(makes.expected_sd)),
+        named("brier", number(makes.brier)),
+        named("log_loss", number(makes.log_loss)),
+        named(
+            "area_under_curve",
+            makes.area_under_curve.map_or(Value::Null, number),
+        ),
+        named("predicted_swishes", makes.swishes.0.into()),
+        named("predicted_swishes_made", makes.swishes.1.into()),
+    ]);
+    let rejected = source.rejected.iter().map(|(row, reason)| {
+        object(vec![
+            named("row", (*row).into()),
+            named("reason", reason.clone().into()),
+        ])
+    });
+    let weights = ["speed_sd", "pitch_sd", "polar_sd", "backspin_sd"]
+        .iter()
+        .zip(posterior.prior_weights)
+        .map(|(name, weight)| named(name, number(weight)));
+    let mut record = vec![
+        named("shooter", fit.name.clone().into()),
+        named("parameters", listed.collect()),
+        named("probability", probability_json(&fit.probabilities[0])),
+        named("observed", observed),
+        named("prediction", prediction),
+        named("places", places.collect()),
+        named("shots", posterior.shots.into()),
+        named("rejected", rejected.collect()),
+        named(
+            "warnings",
+            fit.warnings
+                .iter()
+                .map(|w| Value::from(w.to_string()))
+                .collect(),
+        ),
+        named(
+            "sampler",
+            object(vec![
+                named("draws", posterior.draws.len().into()),
+                named("r_hat", number(posterior.r_hat)),
+                named(
+                    "effective_sample_size",
+                    number(posterior.effective_sample_size),
+                ),
+                named("seed", source.seed.into()),
+            ]),
+        ),
+        named("weight_of_the_population", object(weights.collect())),
+        named(
+            "source",
+            object(vec![
+                named("kind", source.kind.into()),
+                named("file", source.file.clone().into()),
+                named("file_blake3", source.file_blake3.clone().into()),
+                named("tracker", source.tracker.0.clone().into()),
+                named("tracker_noise", source.tracker.1.clone().into()),
+                named("physics", source.physics.clone().into()),
+            ]),
+        ),
+    ];
+    record.extend(provenance(fit.profiles[0].hash()));
+    object(record)
+}

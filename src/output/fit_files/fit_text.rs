@@ -1,0 +1,108 @@
+//! The answer of `fit` for people.
+
+use super::fit_json::FitSource;
+use super::parameters::parameters;
+use crate::fitting::{DrawProbabilities, ShooterFit};
+use crate::units::UnitSystem;
+
+/// A probability as a percentage.
+#[must_use]
+pub fn percent(p: f64) -> String {
+    format!("{:.1} %", 100.0 * p)
+}
+
+/// `P 65.2 %, 95 % 59.3 to 71.1 % (numerics ± 0.1)`.
+#[must_use]
+pub fn probability_text(probabilities: &DrawProbabilities) -> String {
+    let p = probabilities.interval();
+    format!(
+        "P {}, 95 %: {:.1} to {:.1} % (numerics ± {:.2})",
+        percent(p.mean),
+        100.0 * p.low,
+        100.0 * p.high,
+        100.0 * probabilities.numerical_standard_error()
+    )
+}
+
+/// The answer.
+#[must_use]
+pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let posterior = &fit.posterior;
+    let name = if fit.name.is_empty() {
+        "the shooter"
+    } else {
+        &fit.name
+    };
+    let mut text = format!(
+        "{name}: {} {}, tracker {} ({}), physics {}\n",
+        posterior.shots, source.kind, source.tracker.0, source.tracker.1, source.physics
+    );
+    for (index, (place, p)) in fit.places.iter().zip(&fit.probabilities).enumerate() {
+        let number = if fit.places.len() > 1 {
+            format!("place {}, ", index + 1)
+        } else {
+            String::new()
+        };
+        text += &format!(
+            "{number}{:.2} {long} at {:.1} deg: the usual shot has {}\n",
+            place.location.distance_m / metre,
+            place.location.angle_rad.to_degrees(),
+            probability_text(p)
+        );
+    }
+    let makes = &fit.makes;
+    if makes.labelled > 0 {
+        let share = &makes.share;
+        text += &format!(
+            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected of these very shots: {:.1} ± {:.1}\n",
+            makes.made,
+            makes.labelled,
+            percent(share.share),
+            100.0 * share.low,
+            100.0 * share.high,
+            makes.expected,
+            makes.expected_sd
+        );
+        let auc = makes
+            .area_under_curve
+            .map_or_else(|| "-".to_owned(), |auc| format!("{auc:.2}"));
+        let swishes = match makes.swishes {
+            (0, _) => "no shot was predicted to be a swish".to_owned(),
+            (all, made) => format!("{made} of {all} predicted swishes went in"),
+        };
+        text += &format!(
+            "chances Brier {:.3}, log loss {:.3}, area under the curve {auc}; {swishes}\n",
+            makes.brier, makes.log_loss
+        );
+    }
+    text += &format!(
+        "\n{:<28} {:>9} {:>9} {:>9}  {:<6} {}\n",
+        "", "mean", "2.5 %", "97.5 %", "unit", "source"
+    );
+    for parameter in parameters(posterior, units) {
+        let interval = &parameter.interval;
+        text += &format!(
+            "{:<28} {:>9.3} {:>9.3} {:>9.3}  {:<6} {}\n",
+            parameter.name,
+            interval.mean,
+            interval.low,
+            interval.high,
+            parameter.unit,
+            parameter.source
+        );
+    }
+    text += &format!(
+        "\n{} draws, R-hat {:.3}, effective sample size {:.0}; weight of the population: {:.0} % (speed), {:.0} % (pitch), {:.0} % (polar)\n",
+        posterior.draws.len(),
+        posterior.r_hat,
+        posterior.effective_sample_size,
+        100.0 * posterior.prior_weights[0],
+        100.0 * posterior.prior_weights[1],
+        100.0 * posterior.prior_weights[2]
+    );
+    for warning in &fit.warnings {
+        text += &format!("warning: {warning}\n");
+    }
+    text
+}

@@ -1,0 +1,9 @@
+//! The files and texts of a fitted shooter.
+
+pub mod advice_text;
+pub mod draws_table;
+pub mod fit_json;
+pub mod fit_text;
+pub mod fitted_profile_toml;
+pub mod parameters;
+pub mod shots_table;

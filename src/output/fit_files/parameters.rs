@@ -1,0 +1,113 @@
+//! The parameters of a fit, by name, in the units of results.
+
+use crate::fitting::{Draw, Interval, Posterior, SpinSource, VALUE_NAMES, pair_name};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+
+/// One parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name, such as `speed_sd`.
+    pub name: String,
+    /// Its unit; empty for none.
+    pub unit: &'static str,
+    /// Its distribution, in that unit.
+    pub interval: Interval,
+    /// `measured`, `given` or `assumed`.
+    pub source: &'static str,
+}
+
+/// Unit and its size in SI units of each of the values.
+#[must_use]
+pub fn value_units(units: UnitSystem) -> [(&'static str, f64); 4] {
+    let (_, metre) = units.length();
+    let speed = match units {
+        UnitSystem::Imperial => "ft/s",
+        UnitSystem::Metric => "m/s",
+    };
+    [
+        (speed, metre),
+        ("deg", DEGREE_RAD),
+        ("deg", DEGREE_RAD),
+        ("rev/s", REV_RAD),
+    ]
+}
+
+/// All parameters of a posterior: means (of further places with the number of the place), standard deviations,
+/// correlations, and the coefficients of the speed's standard deviation where there are several.
+#[must_use]
+pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
+    let of_value = value_units(units);
+    let measured = if posterior.spin == SpinSource::Measured {
+        4
+    } else {
+        3
+    };
+    let source = |value: usize| {
+        if value < measured {
+            "measured"
+        } else {
+            posterior.spin.name()
+        }
+    };
+    let mut parameters = Vec::new();
+    let mut add =
+        |name: String, (unit, size): (&'static str, f64), source, value: &dyn Fn(&Draw) -> f64| {
+            parameters.push(Parameter {
+                name,
+                unit,
+                interval: posterior.summary(value).scaled(1.0 / size),
+                source,
+            });
+        };
+    for place in 0..posterior.draws[0].means.len() {
+        for (i, name) in VALUE_NAMES.iter().enumerate() {
+            let name = if place == 0 {
+                format!("{name}_mean")
+            } else {
+                format!("place_{}_{name}_mean", place + 1)
+            };
+            add(name, of_value[i], source(i), &|draw| draw.means[place][i]);
+        }
+    }
+    for (i, name) in VALUE_NAMES.iter().enumerate() {
+        // The scatter of a spin that was not measured is the population's, also where its mean was given.
+        let source = if i < measured { "measured" } else { "assumed" };
+        add(format!("{name}_sd"), of_value[i], source, &|draw| {
+            draw.sds[i]
+        });
+    }
+    for j in 1..measured {
+        for i in 0..j {
+            let name = format!("corr_{}", pair_name(i, j));
+            add(name, ("", 1.0), "measured", &|draw| {
+                draw.correlation[(i, j)]
+            });
+        }
+    }
+    let metre = units.length().1;
+    let coefficients = [
+        ("c10", of_value[0].0, metre),
+        ("c11", "", 1.0),
+        (
+            "c12",
+            if units == UnitSystem::Metric {
+                "s/m"
+            } else {
+                "s/ft"
+            },
+            1.0 / metre,
+        ),
+    ];
+    if posterior.growth_terms > 0 {
+        for (k, (name, unit, size)) in coefficients
+            .into_iter()
+            .enumerate()
+            .take(posterior.growth_terms + 1)
+        {
+            add(name.to_owned(), (unit, size), "measured", &|draw| {
+                draw.speed_coefficients[k]
+            });
+        }
+    }
+    parameters
+}

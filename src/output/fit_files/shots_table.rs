@@ -1,0 +1,42 @@
+//! `shots.csv`: each measured shot, its release, its chance, and what is odd about it.
+
+use super::parameters::value_units;
+use crate::fitting::{ShooterFit, VALUE_NAMES};
+use crate::units::UnitSystem;
+
+/// The bytes of the table. `rejected` are the rows kept out.
+#[must_use]
+pub fn shots_csv(fit: &ShooterFit, rejected: &[(u64, String)], units: UnitSystem) -> Vec<u8> {
+    let of_value = value_units(units);
+    let mut out = String::from("row");
+    for (name, (unit, _)) in VALUE_NAMES.iter().zip(of_value) {
+        let unit = unit.replace('/', "_");
+        out += &format!(",{name}_{unit},{name}_error_{unit}");
+    }
+    out += ",chance,swish_chance,made,distance_from_aim_sd,flag\n";
+    for shot in &fit.makes.shots {
+        out += &shot.row.to_string();
+        for (i, (_, size)) in of_value.iter().enumerate() {
+            out += &format!(
+                ",{:.4},{:.4}",
+                shot.release[i] / size,
+                shot.release_sd[i] / size
+            );
+        }
+        let made = shot.made.map_or("", |made| if made { "1" } else { "0" });
+        // Beyond this distance are 1 in 1000 shots of a normal shooter (chi with 4 degrees of freedom).
+        let flag = if shot.distance > 4.3 { "far" } else { "" };
+        out += &format!(
+            ",{:.3},{:.3},{made},{:.2},{flag}\n",
+            shot.chance, shot.swish_chance, shot.distance
+        );
+    }
+    for (row, reason) in rejected {
+        out += &format!(
+            "{row}{},\"kept out: {}\"\n",
+            ",".repeat(12),
+            reason.replace('"', "'")
+        );
+    }
+    out.into_bytes()
+}

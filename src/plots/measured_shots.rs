@@ -1,0 +1,475 @@
+//! Plots of measured shots and of what was fitted to them.
+
+use super::axes::Axes;
+use super::svg::{Anchor, FAINT, INK, Plot, Svg};
+use crate::fitting::{
+    CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, Values, landing_of, nominal_of,
+    release_of_landing,
+};
+use crate::units::{DEGREE_RAD, UnitSystem};
+use rayon::prelude::*;
+
+const MADE: &str = "#0072b2";
+const MISSED: &str = "#d55e00";
+const UNKNOWN: &str = "#666666";
+const ZONE: [u8; 4] = [190, 225, 190, 255];
+const OUTSIDE: [u8; 4] = [250, 250, 250, 255];
+/// Cells of the make zone along depth and across.
+const ZONE_CELLS: (usize, usize) = (72, 72);
+/// Two-dimensional normal: 95 % are within this many standard deviations.
+const RADIUS_95: f64 = 2.447_747;
+/// Points of an ellipse.
+const ELLIPSE_POINTS: usize = 96;
+
+/// All plots of a fit at its first place.
+#[must_use]
+pub fn all(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Vec<Plot> {
+    let mut plots = vec![
+        release_scatter(fit, shots, units),
+        make_zone(fit, shots, units),
+        drift(fit, shots, units),
+        intervals(fit, units),
+    ];
+    if !fit.makes.bins.is_empty() {
+        plots.push(reliability(fit));
+    }
+    plots
+}
+
+fn named(fit: &ShooterFit, name: &str, what: &str, svg: Svg) -> Plot {
+    let shooter = if fit.name.is_empty() {
+        "shooter"
+    } else {
+        &fit.name
+    };
+    let title = format!("{shooter}: {what}");
+    Plot {
+        name: name.to_owned(),
+        caption: title.clone(),
+        svg: svg.finish(&title),
+    }
+}
+
+/// The marker of a shot.
+fn mark(svg: &mut Svg, at: (f64, f64), made: Option<bool>) {
+    match made {
+        Some(true) => svg.circle(at, 3.5, &format!("fill=\"{MADE}\" fill-opacity=\"0.75\"")),
+        Some(false) => {
+            let style = format!("stroke=\"{MISSED}\" stroke-width=\"1.8\" fill=\"none\"");
+            let ((x, y), d) = (at, 3.5);
+            svg.polyline([(x - d, y - d), (x + d, y + d)], &style);
+            svg.polyline([(x - d, y + d), (x + d, y - d)], &style);
+        }
+        None => svg.circle(at, 3.0, &format!("fill=\"{UNKNOWN}\" fill-opacity=\"0.7\"")),
+    }
+}
+
+fn key(svg: &mut Svg, (x, y): (f64, f64), shots: &[MeasuredRelease], last: &str) {
+    let mut at = x;
+    let kinds = [
+        (Some(true), "made"),
+        (Some(false), "missed"),
+        (None, "result unknown"),
+    ];
+    for (made, name) in kinds {
+        if shots.iter().any(|shot| shot.made == made) {
+            mark(svg, (at, y - 4.0), made);
+            svg.text((at + 9.0, y), 11.0, Anchor::Start, name);
+            at += 30.0 + 7.0 * name.len() as f64;
+        }
+    }
+    svg.polyline(
+        [(at, y - 4.0), (at + 22.0, y - 4.0)],
+        &format!("stroke=\"{INK}\" fill=\"none\""),
+    );
+    svg.text((at + 28.0, y), 11.0, Anchor::Start, last);
+}
+
+fn shots_here(shots: &[MeasuredRelease]) -> Vec<&MeasuredRelease> {
+    shots.iter().filter(|shot| shot.place == 0).collect()
+}
+
+/// A range of values with a margin.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    let margin = 0.08 * (high - low).max(1e-3);
+    (low - margin, high + margin)
+}
+
+/// The 95 % ellipse of two of the values.
+fn ellipse(fit: &ShooterFit, (i, j): (usize, usize)) -> Vec<(f64, f64)> {
+    let draw = &fit.typical;
+    let sds = draw.sds_at(0);
+    let correlation = draw.correlation[(i, j)];
+    let (mean, other) = (draw.means[0][i], draw.means[0][j]);
+    let root = (1.0 - correlation * correlation).max(0.0).sqrt();
+    (0..=ELLIPSE_POINTS)
+        .map(|k| {
+            let angle = std::f64::consts::TAU * k as f64 / ELLIPSE_POINTS as f64;
+            let (sin, cos) = libm::sincos(angle);
+            let (a, b) = (
+                RADIUS_95 * cos,
+                RADIUS_95 * (correlation * cos + root * sin),
+            );
+            (mean + sds[i] * a, other + sds[j] * b)
+        })
+        .collect()
+}
+
+fn release_scatter(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot {
+    let (long, metre) = units.length();
+    let angle = fit.places[0].location.angle_rad;
+    let shots = shots_here(shots);
+    let mut svg = Svg::new(980.0, 470.0);
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, "Measured releases");
+    let display = |k: usize, value: f64| match k {
+        0 => value / metre,
+        2 => (value - angle) / DEGREE_RAD,
+        _ => value / DEGREE_RAD,
+    };
+    let speed_label = format!("speed ({long}/s)");
+    let labels = [
+        &speed_label,
+        "pitch angle (deg)",
+        "aim from the line to the hoop (deg, + left)",
+    ];
+    for (panel, (i, j)) in [(0, 1), (2, 0)].into_iter().enumerate() {
+        let curve = ellipse(fit, (i, j));
+        let axes = Axes {
+            corner: (80.0 + 480.0 * panel as f64, 70.0),
+            size: (380.0, 320.0),
+            x: range(
+                shots
+                    .iter()
+                    .map(|s| display(i, s.values[i]))
+                    .chain(curve.iter().map(|p| display(i, p.0))),
+            ),
+            y: range(
+                shots
+                    .iter()
+                    .map(|s| display(j, s.values[j]))
+                    .chain(curve.iter().map(|p| display(j, p.1))),
+            ),
+        };
+        axes.draw_grid(&mut svg);
+        for shot in &shots {
+            let at = axes.pixel((display(i, shot.values[i]), display(j, shot.values[j])));
+            mark(&mut svg, at, shot.made);
+        }
+        let line = curve
+            .iter()
+            .map(|p| axes.pixel((display(i, p.0), display(j, p.1))));
+        svg.polyline(
+            line,
+            &format!("stroke=\"{INK}\" stroke-width=\"1.5\" fill=\"none\""),
+        );
+        axes.draw(&mut svg, "", labels[i], labels[j]);
+    }
+    let own: Vec<MeasuredRelease> = shots.into_iter().cloned().collect();
+    key(
+        &mut svg,
+        (80.0, 452.0),
+        &own,
+        "95 % of the shooter's releases, without the tracker's error",
+    );
+    named(fit, "releases", "measured releases", svg)
+}
+
+/// The landing of a shot in short lengths: depth and right.
+fn landing(fit: &ShooterFit, values: &Values, inch: f64) -> Option<(f64, f64)> {
+    let simulator = fit.profiles[0].simulator();
+    let landing = landing_of(simulator, &fit.places[0], values)?;
+    Some((landing.right_m / inch, landing.depth_m / inch))
+}
+
+fn make_zone(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot {
+    let (short, inch) = units.short_length();
+    let shots = shots_here(shots);
+    let place = &fit.places[0];
+    let profile = &fit.profiles[0];
+    let simulator = profile.simulator();
+    let usual = &fit.typical.means[0];
+    let entry = landing_of(simulator, place, usual).map_or(0.75, |landing| landing.entry_angle_rad);
+    let landings: Vec<((f64, f64), Option<bool>)> = shots
+        .iter()
+        .filter_map(|shot| Some((landing(fit, &shot.values, inch)?, shot.made)))
+        .collect();
+    let half = 16.0 * 0.0254 / inch;
+    let centre = CENTRE_DEPTH_M / inch;
+    let mut svg = Svg::new(640.0, 660.0);
+    svg.heading(
+        (20.0, 26.0),
+        16.0,
+        Anchor::Start,
+        "Where shots fall, and the make zone",
+    );
+    let axes = Axes {
+        corner: (80.0, 70.0),
+        size: (500.0, 500.0),
+        x: (-half, half),
+        y: (centre - half, centre + half),
+    };
+    let (columns, rows) = ZONE_CELLS;
+    let colours: Vec<[u8; 4]> = (0..columns * rows)
+        .into_par_iter()
+        .map(|cell| {
+            let (row, column) = (cell / columns, cell % columns);
+            let x = axes.x.0 + (axes.x.1 - axes.x.0) * (column as f64 + 0.5) / columns as f64;
+            let y = axes.y.1 - (axes.y.1 - axes.y.0) * (row as f64 + 0.5) / rows as f64;
+            let landing = Landing {
+                depth_m: y * inch,
+                right_m: x * inch,
+                entry_angle_rad: entry,
+            };
+            let is_made = release_of_landing(simulator, place, &landing, &[0.0; 3], usual[3])
+                .ok()
+                .and_then(|(values, _)| {
+                    simulator
+                        .simulate(&profile.release(&nominal_of(&values)))
+                        .ok()
+                })
+                .is_some_and(|outcome| outcome.verdict.made);
+            if is_made { ZONE } else { OUTSIDE }
+        })
+        .collect();
+    svg.pixels(axes.corner, axes.size, ZONE_CELLS, &colours);
+    let ring = profile.physics().ring_radius_m / inch;
+    let circle = axes.pixel((0.0, centre));
+    svg.circle(
+        circle,
+        axes.pixels_of_length(ring),
+        &format!("fill=\"none\" stroke=\"{FAINT}\" stroke-width=\"2\""),
+    );
+    // The ellipse of the landings, by the derivatives of the landing at the usual release.
+    let curve = landing_ellipse(fit, inch);
+    svg.clipped(axes.corner, axes.size, |svg| {
+        for (at, made) in &landings {
+            mark(svg, axes.pixel(*at), *made);
+        }
+        let line = curve.iter().map(|p| axes.pixel(*p));
+        svg.polyline(
+            line,
+            &format!("stroke=\"{INK}\" stroke-width=\"1.5\" fill=\"none\""),
+        );
+    });
+    axes.draw(
+        &mut svg,
+        "",
+        &format!("left and right of the shot's line ({short})"),
+        &format!("depth from the front of the ring ({short})"),
+    );
+    let own: Vec<MeasuredRelease> = shots.into_iter().cloned().collect();
+    key(&mut svg, (80.0, 626.0), &own, "95 % of the shooter's shots");
+    svg.footnote(
+        (80.0, 646.0),
+        &format!(
+            "Green: made at the usual entry angle ({:.0} deg) and backspin, without other errors. Circle: the ring.",
+            entry / DEGREE_RAD
+        ),
+    );
+    named(fit, "make_zone", "where shots fall, and the make zone", svg)
+}
+
+/// The 95 % ellipse of right and depth.
+fn landing_ellipse(fit: &ShooterFit, inch: f64) -> Vec<(f64, f64)> {
+    let usual = &fit.typical.means[0];
+    let sds = fit.typical.sds_at(0);
+    let Some(centre) = landing(fit, usual, inch) else {
+        return Vec::new();
+    };
+    let mut slopes = [(0.0, 0.0); 3];
+    for (i, slope) in slopes.iter_mut().enumerate() {
+        let step = 0.05 * sds[i];
+        let at = |sign: f64| {
+            let mut moved = *usual;
+            moved[i] += sign * step;
+            landing(fit, &moved, inch)
+        };
+        if let (Some(up), Some(down)) = (at(1.0), at(-1.0)) {
+            *slope = ((up.0 - down.0) / 0.1, (up.1 - down.1) / 0.1);
+        }
+    }
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for i in 0..3 {
+        for j in 0..3 {
+            let c = fit.typical.correlation[(i, j)];
+            xx += c * slopes[i].0 * slopes[j].0;
+            xy += c * slopes[i].0 * slopes[j].1;
+            yy += c * slopes[i].1 * slopes[j].1;
+        }
+    }
+    let (sx, sy) = (xx.max(0.0).sqrt(), yy.max(0.0).sqrt());
+    let r = if sx * sy > 0.0 { xy / (sx * sy) } else { 0.0 };
+    let root = (1.0 - r * r).max(0.0).sqrt();
+    (0..=ELLIPSE_POINTS)
+        .map(|k| {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / ELLIPSE_POINTS as f64);
+            (
+                centre.0 + RADIUS_95 * sx * cos,
+                centre.1 + RADIUS_95 * sy * (r * cos + root * sin),
+            )
+        })
+        .collect()
+}
+
+fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot {
+    let (long, metre) = units.length();
+    let speed = format!("speed ({long}/s)");
+    let rows = [
+        (0, speed.as_str(), metre),
+        (1, "pitch (deg)", DEGREE_RAD),
+        (2, "aim (deg)", DEGREE_RAD),
+    ];
+    let mut svg = Svg::new(860.0, 640.0);
+    svg.heading(
+        (20.0, 26.0),
+        16.0,
+        Anchor::Start,
+        "Over the session: each shot less the mean of its place",
+    );
+    let window = (shots.len() / 8).clamp(5, 50);
+    for (panel, (i, label, unit)) in rows.into_iter().enumerate() {
+        let deviations: Vec<f64> = shots
+            .iter()
+            .map(|shot| (shot.values[i] - fit.typical.means[shot.place][i]) / unit)
+            .collect();
+        let axes = Axes {
+            corner: (80.0, 60.0 + 180.0 * panel as f64),
+            size: (740.0, 140.0),
+            x: (0.0, shots.len() as f64 + 1.0),
+            y: range(deviations.iter().copied()),
+        };
+        axes.draw_grid(&mut svg);
+        for (k, (deviation, shot)) in deviations.iter().zip(shots).enumerate() {
+            mark(
+                &mut svg,
+                axes.pixel((k as f64 + 1.0, *deviation)),
+                shot.made,
+            );
+        }
+        let smooth = (0..deviations.len()).map(|k| {
+            let from = k.saturating_sub(window / 2);
+            let part = &deviations[from..(k + window / 2 + 1).min(deviations.len())];
+            axes.pixel((k as f64 + 1.0, part.iter().sum::<f64>() / part.len() as f64))
+        });
+        svg.polyline(
+            smooth,
+            &format!("stroke=\"{INK}\" stroke-width=\"1.5\" fill=\"none\""),
+        );
+        axes.draw(&mut svg, "", if panel == 2 { "shot" } else { "" }, label);
+    }
+    key(
+        &mut svg,
+        (80.0, 626.0),
+        shots,
+        &format!("mean of {window} shots"),
+    );
+    named(fit, "drift", "the shots in their order", svg)
+}
+
+fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
+    let (long, metre) = units.length();
+    let posterior = &fit.posterior;
+    let of_sd = |i: usize, unit: f64| posterior.summary(|draw| draw.sds[i]).scaled(1.0 / unit);
+    let p = fit.probabilities[0].interval().scaled(100.0);
+    let mut rows: Vec<(String, Interval)> = vec![
+        ("P of the usual shot (%)".to_owned(), p),
+        (format!("scatter of speed ({long}/s)"), of_sd(0, metre)),
+        ("scatter of pitch (deg)".to_owned(), of_sd(1, DEGREE_RAD)),
+        ("scatter of aim (deg)".to_owned(), of_sd(2, DEGREE_RAD)),
+    ];
+    if fit.makes.labelled > 0 {
+        let share = &fit.makes.share;
+        let counted = Interval {
+            mean: 100.0 * share.share,
+            sd: 0.0,
+            low: 100.0 * share.low,
+            high: 100.0 * share.high,
+        };
+        rows.insert(1, ("share of makes, counted (%)".to_owned(), counted));
+    }
+    let mut svg = Svg::new(860.0, 70.0 + 90.0 * rows.len() as f64);
+    svg.heading(
+        (20.0, 26.0),
+        16.0,
+        Anchor::Start,
+        "What these shots tell: means and 95 % intervals",
+    );
+    for (k, (label, interval)) in rows.iter().enumerate() {
+        let is_percent = label.ends_with("(%)");
+        let axes = Axes {
+            corner: (260.0, 60.0 + 90.0 * k as f64),
+            size: (560.0, 26.0),
+            x: if is_percent {
+                (0.0, 100.0)
+            } else {
+                (0.0, 1.3 * interval.high)
+            },
+            y: (0.0, 1.0),
+        };
+        let (low, y) = axes.pixel((interval.low, 0.5));
+        let (high, _) = axes.pixel((interval.high, 0.5));
+        let (middle, _) = axes.pixel((interval.mean, 0.5));
+        svg.polyline(
+            [(low, y), (high, y)],
+            &format!("stroke=\"{MADE}\" stroke-width=\"5\" fill=\"none\""),
+        );
+        svg.circle((middle, y), 6.0, &format!("fill=\"{MADE}\""));
+        svg.text((245.0, y + 4.0), 12.0, Anchor::End, label);
+        let bottom = axes.lower_right().1;
+        let style = format!("stroke=\"{INK}\" fill=\"none\"");
+        svg.polyline(
+            [(axes.corner.0, bottom), (axes.lower_right().0, bottom)],
+            &style,
+        );
+        for value in super::axes::ticks(axes.x) {
+            let (x, _) = axes.pixel((value, 0.0));
+            svg.polyline([(x, bottom), (x, bottom + 4.0)], &style);
+            svg.text(
+                (x, bottom + 16.0),
+                11.0,
+                Anchor::Middle,
+                &super::axes::format_tick(value),
+            );
+        }
+    }
+    named(fit, "intervals", "means and 95 % intervals", svg)
+}
+
+fn reliability(fit: &ShooterFit) -> Plot {
+    let mut svg = Svg::new(560.0, 560.0);
+    svg.heading(
+        (20.0, 26.0),
+        16.0,
+        Anchor::Start,
+        "Predicted against observed",
+    );
+    let axes = Axes {
+        corner: (80.0, 60.0),
+        size: (420.0, 420.0),
+        x: (0.0, 100.0),
+        y: (0.0, 100.0),
+    };
+    axes.draw_grid(&mut svg);
+    let style = format!("stroke=\"{FAINT}\" stroke-dasharray=\"5 4\" fill=\"none\"");
+    svg.polyline([axes.pixel((0.0, 0.0)), axes.pixel((100.0, 100.0))], &style);
+    for bin in &fit.makes.bins {
+        let at = |share: f64| axes.pixel((100.0 * bin.predicted, 100.0 * share));
+        let style = format!("stroke=\"{MADE}\" stroke-width=\"2\" fill=\"none\"");
+        svg.polyline([at(bin.observed.low), at(bin.observed.high)], &style);
+        svg.circle(at(bin.observed.share), 5.0, &format!("fill=\"{MADE}\""));
+    }
+    axes.draw(
+        &mut svg,
+        "",
+        "chance as measured (%)",
+        "went in (%, 95 % interval)",
+    );
+    svg.footnote(
+        (80.0, 545.0),
+        "Each point: a group of shots of similar chance. On the dashed line the chances are right.",
+    );
+    named(fit, "reliability", "predicted against observed", svg)
+}

@@ -1,0 +1,442 @@
+//! The shooter's test: do intervals cover what they promise?
+//!
+//! Simulation-based calibration (Talts et al. 2018, arXiv 1804.06788): truths are drawn from the prior, shots are simulated
+//! and fitted; the 95 % intervals must cover the truth in 95 % of the repetitions, and its rank among the draws must be
+//! uniform.
+
+use bankshot::dynamics::Simulator;
+use bankshot::fitting::{
+    Covariance, Draw, FitOptions, Interval, MeasuredRelease, Place, PopulationPrior, Posterior,
+    SpinSource, Tracker, Values, WeightedShots, fit, fitted_profile, landing_of,
+    release_of_landing,
+};
+use bankshot::math::normal_distribution::quantile;
+use bankshot::model::Preset;
+use bankshot::shooter::Location;
+use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+use nalgebra::{SMatrix, Vector4};
+use rand::rngs::ChaCha12Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+
+const PRIOR: PopulationPrior = PopulationPrior::MEASURED;
+/// Shots of the sample that P is computed with.
+const P_SHOTS: usize = 8_192;
+
+/// The errors of a tracker.
+#[derive(Clone, Copy, Debug)]
+enum Noise {
+    None,
+    Noah,
+    Optical,
+    /// As large as the median shooter's scatter.
+    AsScatter,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    shots: usize,
+    noise: Noise,
+    places: usize,
+    /// Degrees of freedom of a Student t with the same covariance; normal without.
+    tails: Option<f64>,
+}
+
+fn normal(random: &mut ChaCha12Rng) -> f64 {
+    quantile(random.random::<f64>().max(1e-300))
+}
+
+/// Places in front of the hoop and to its side, with the speed of a usual shot from there.
+fn place(index: usize) -> (Place, f64) {
+    let (distance, angle, speed) =
+        [(13.75, 0.0, 24.3), (17.0, 0.6, 26.3), (21.0, -0.5, 28.7)][index];
+    let location = Location {
+        distance_m: distance * FOOT_M,
+        angle_rad: angle,
+    };
+    let place = Place {
+        location,
+        release_height_m: 7.0 * FOOT_M,
+    };
+    (place, speed * FOOT_M)
+}
+
+fn noise_of(noise: Noise, simulator: &Simulator, place: &Place, values: &Values) -> Covariance {
+    let diagonal = |sds: [f64; 4]| Covariance::from_diagonal(&Vector4::from(sds).map(|sd| sd * sd));
+    match noise {
+        Noise::None => Covariance::zeros(),
+        Noise::Optical => Tracker::named("optical_25hz")
+            .unwrap()
+            .noise
+            .release_covariance(),
+        Noise::AsScatter => diagonal(PRIOR.median_sd),
+        Noise::Noah => {
+            let landing = landing_of(simulator, place, values).unwrap();
+            let noise = Tracker::named("noah").unwrap().noise.landing;
+            release_of_landing(simulator, place, &landing, &noise, values[3])
+                .unwrap()
+                .1
+        }
+    }
+}
+
+/// A shooter of the population.
+fn shooter_of_population(places: usize, random: &mut ChaCha12Rng) -> Draw {
+    let sds: Values =
+        std::array::from_fn(|i| PRIOR.median_sd[i] * libm::exp(PRIOR.log_sd * normal(random)));
+    let mut partial = [0.0; 3];
+    for (k, z) in partial.iter_mut().enumerate() {
+        let spread = if k == 0 {
+            PRIOR.speed_pitch
+        } else {
+            PRIOR.other_correlations
+        };
+        *z = libm::tanh(spread.mean + spread.sd * normal(random));
+    }
+    let growth = if places > 1 {
+        PRIOR.growth.sd * normal(random)
+    } else {
+        0.0
+    };
+    let square = if places > 2 {
+        PRIOR.growth.sd * normal(random)
+    } else {
+        0.0
+    };
+    shooter(places, sds, partial, [growth, square], random)
+}
+
+fn shooter(
+    places: usize,
+    sds: Values,
+    partial: [f64; 3],
+    [g, h]: [f64; 2],
+    random: &mut ChaCha12Rng,
+) -> Draw {
+    let [a, b, c] = partial;
+    // Correlations from partial ones.
+    let second = c * ((1.0 - a * a) * (1.0 - b * b)).sqrt() + a * b;
+    let mut correlation = SMatrix::<f64, 4, 4>::identity();
+    for (i, j, r) in [(0, 1, a), (0, 2, b), (1, 2, second)] {
+        correlation[(i, j)] = r;
+        correlation[(j, i)] = r;
+    }
+    let spin = PRIOR.backspin.mean + PRIOR.backspin.sd * normal(random);
+    let means: Vec<Values> = (0..places)
+        .map(|index| {
+            let (place, speed) = place(index);
+            [
+                speed + 0.2 * FOOT_M * normal(random),
+                (51.0 + 1.5 * normal(random)) * DEGREE_RAD,
+                place.location.angle_rad + 0.5 * DEGREE_RAD * normal(random),
+                spin,
+            ]
+        })
+        .collect();
+    let v0 = means.iter().map(|mean| mean[0]).sum::<f64>() / places as f64;
+    let coefficients = [
+        sds[0] * (1.0 - g + h),
+        sds[0] * (g - 2.0 * h) / v0,
+        sds[0] * h / (v0 * v0),
+    ];
+    Draw::new(means, sds, correlation, coefficients)
+}
+
+/// The shots of a test, the same number from each place.
+fn shots(
+    cell: &Cell,
+    truth: &Draw,
+    simulator: &Simulator,
+    random: &mut ChaCha12Rng,
+) -> Vec<MeasuredRelease> {
+    let noises: Vec<Covariance> = (0..cell.places)
+        .map(|index| noise_of(cell.noise, simulator, &place(index).0, &truth.means[index]))
+        .collect();
+    (0..cell.shots)
+        .map(|row| {
+            let place = row % cell.places;
+            let factor = (truth.correlation.cholesky().unwrap()).l();
+            let sds = truth.sds_at(place);
+            // A chi-square of whole degrees of freedom.
+            let scale = cell.tails.map_or(1.0, |freedom| {
+                let square: f64 = (0..freedom as u32)
+                    .map(|_| normal(random))
+                    .map(|z| z * z)
+                    .sum();
+                ((freedom - 2.0) / square).sqrt()
+            });
+            let z = factor * Vector4::from_fn(|_, _| scale * normal(random));
+            let noise = noises[place];
+            let errors: Vector4<f64> = match noise.fixed_view::<3, 3>(0, 0).into_owned().cholesky()
+            {
+                Some(cholesky) => {
+                    let error = cholesky.l() * nalgebra::Vector3::from_fn(|_, _| normal(random));
+                    Vector4::new(error.x, error.y, error.z, 0.0)
+                }
+                None => Vector4::zeros(),
+            };
+            MeasuredRelease {
+                row: row as u64 + 1,
+                place,
+                values: std::array::from_fn(|i| truth.means[place][i] + sds[i] * z[i] + errors[i]),
+                noise,
+                made: None,
+            }
+        })
+        .collect()
+}
+
+/// What is looked at: names and functions of a draw.
+fn quantities() -> Vec<(&'static str, fn(&Draw) -> f64)> {
+    vec![
+        ("speed_sd", |draw| draw.sds_at(0)[0]),
+        ("pitch_sd", |draw| draw.sds[1]),
+        ("polar_sd", |draw| draw.sds[2]),
+        ("corr_speed_pitch", |draw| draw.correlation[(0, 1)]),
+        ("corr_speed_polar", |draw| draw.correlation[(0, 2)]),
+        ("corr_pitch_polar", |draw| draw.correlation[(1, 2)]),
+        ("speed_mean", |draw| draw.means[0][0]),
+        ("pitch_mean", |draw| draw.means[0][1]),
+        ("polar_mean", |draw| draw.means[0][2]),
+    ]
+}
+
+/// P of a draw at the first place, and of the draws of a posterior.
+fn probabilities(posterior: &Posterior, truth: &Draw, seed: u64) -> (f64, Vec<f64>) {
+    let physics = Preset::named("ncaa").unwrap().physics();
+    let (place, _) = place(0);
+    let of = |draws: &[Draw], typical: &Draw, shots: usize| {
+        let profile = fitted_profile("test", &physics, typical, &place).unwrap();
+        let means: Vec<Values> = draws.iter().map(|draw| draw.means[0]).collect();
+        let shots = WeightedShots::simulate(&profile, (typical, 0), &means, shots, seed);
+        shots
+            .probabilities(draws, |draw| draw.means[0], |draw| draw.factor_at(0))
+            .of_draws
+    };
+    let own = of(std::slice::from_ref(truth), truth, 2 * P_SHOTS)[0];
+    (own, of(&posterior.draws, &posterior.typical(), P_SHOTS))
+}
+
+/// Of each quantity and of P: whether the interval covers the truth, its rank among 100 draws (0 to 1), and the
+/// error of the mean in widths of the interval.
+fn repetition(
+    cell: &Cell,
+    truth: &Draw,
+    with_p: bool,
+    seed: u64,
+    random: &mut ChaCha12Rng,
+) -> Vec<(bool, f64, f64)> {
+    let simulator = Simulator::new(&Preset::named("ncaa").unwrap().physics()).unwrap();
+    let shots = shots(cell, truth, &simulator, random);
+    let options = FitOptions {
+        prior: PRIOR,
+        spin: SpinSource::Assumed,
+        draws: 400,
+        seed,
+    };
+    let posterior = fit(&shots, cell.places, &options).unwrap();
+    let mut judged: Vec<(f64, Vec<f64>)> = quantities()
+        .into_iter()
+        .map(|(_, value)| (value(truth), posterior.draws.iter().map(value).collect()))
+        .collect();
+    if with_p {
+        judged.push(probabilities(&posterior, truth, seed));
+    }
+    judged
+        .into_iter()
+        .map(|(truth, draws)| {
+            let below = draws.iter().filter(|draw| **draw < truth).count() as f64;
+            let rank = below / draws.len() as f64;
+            let interval = Interval::of(draws);
+            let covers = interval.low <= truth && truth <= interval.high;
+            (
+                covers,
+                rank,
+                (interval.mean - truth) / (interval.high - interval.low),
+            )
+        })
+        .collect()
+}
+
+/// Coverages, p-values of the uniformity of the ranks (chi-square of 10 bins), and mean errors in widths of the interval.
+fn cell_results(
+    cell: &Cell,
+    repetitions: u64,
+    truth: &(dyn Fn(&mut ChaCha12Rng) -> Draw + Sync),
+    with_p: bool,
+) -> Vec<(f64, f64, f64)> {
+    let all: Vec<Vec<(bool, f64, f64)>> = (0..repetitions)
+        .into_par_iter()
+        .map(|repetition_number| {
+            let mut random = ChaCha12Rng::seed_from_u64(1000 + repetition_number);
+            let truth = truth(&mut random);
+            repetition(cell, &truth, with_p, repetition_number, &mut random)
+        })
+        .collect();
+    (0..all[0].len())
+        .map(|k| {
+            let n = repetitions as f64;
+            let coverage = all.iter().filter(|one| one[k].0).count() as f64 / n;
+            let mut bins = [0.0; 10];
+            for one in &all {
+                bins[((one[k].1 * 10.0) as usize).min(9)] += 1.0;
+            }
+            let chi_square: f64 = bins
+                .iter()
+                .map(|count| (count - n / 10.0) * (count - n / 10.0) / (n / 10.0))
+                .sum();
+            // Wilson and Hilferty's cube root, 9 degrees of freedom.
+            let spread = 2.0 / (9.0 * 9.0);
+            let z = (libm::cbrt(chi_square / 9.0) - (1.0 - spread)) / f64::sqrt(spread);
+            let p = 1.0 - bankshot::math::normal_distribution::cdf(z);
+            let bias = all.iter().map(|one| one[k].2).sum::<f64>() / n;
+            (coverage, p, bias)
+        })
+        .collect()
+}
+
+const fn cell(shots: usize, noise: Noise, places: usize) -> Cell {
+    Cell {
+        shots,
+        noise,
+        places,
+        tails: None,
+    }
+}
+
+/// Sixty repetitions of one cell: a coverage below 85 % of any of nine quantities has a probability of 0.002 each if
+/// the true one is 95 %. The random numbers are fixed.
+#[test]
+fn val_intervals_of_a_small_test_cover_their_truths() {
+    let cell = cell(60, Noise::Noah, 1);
+    let truth = |random: &mut ChaCha12Rng| shooter_of_population(1, random);
+    let results = cell_results(&cell, 60, &truth, false);
+    for ((name, _), (coverage, _, _)) in quantities().iter().zip(results) {
+        assert!(coverage >= 0.85, "{name}: {coverage}");
+    }
+}
+
+#[test]
+#[ignore = "half an hour: cargo test --test validation campaign_shooters_test -- --ignored --nocapture"]
+fn campaign_shooters_test_covers() {
+    let repetitions: u64 =
+        std::env::var("BANKSHOT_REPETITIONS").map_or(400, |n| n.parse().unwrap());
+    let mut names: Vec<&str> = quantities().iter().map(|(name, _)| *name).collect();
+    names.push("P");
+    println!(
+        "| shooters | shots | noise | places | {} | least rank p |",
+        names.join(" | ")
+    );
+    let mut worst_rank = 1.0_f64;
+    let mut failures = Vec::new();
+    for shots in [30, 100, 400] {
+        for noise in [Noise::None, Noise::Noah, Noise::Optical, Noise::AsScatter] {
+            for places in [1, 3] {
+                let cell = cell(shots, noise, places);
+                let truth = move |random: &mut ChaCha12Rng| shooter_of_population(places, random);
+                let results = cell_results(&cell, repetitions, &truth, true);
+                let shown: Vec<String> = results
+                    .iter()
+                    .map(|r| format!("{:.1}", 100.0 * r.0))
+                    .collect();
+                let least = results.iter().map(|r| r.1).fold(1.0, f64::min);
+                worst_rank = worst_rank.min(least);
+                println!(
+                    "| population | {shots} | {noise:?} | {places} | {} | {least:.4} |",
+                    shown.join(" | ")
+                );
+                for (name, result) in names.iter().zip(&results) {
+                    // 3.3 binomial standard errors about 95 % (1.1 % of 400 repetitions).
+                    if !(0.914..=0.986).contains(&result.0) {
+                        failures.push(format!("{cell:?} {name}: {:.3}", result.0));
+                    }
+                }
+            }
+        }
+    }
+    // Fixed truths: the typical shooter and two at the edge of the population.
+    for (label, factors, r) in [
+        ("typical", [1.0, 1.0, 1.0], 0.1),
+        ("steady", [0.58, 0.61, 0.73], -0.25),
+        ("wild", [1.73, 1.65, 1.36], 0.5),
+    ] {
+        for shots in [30, 100, 400] {
+            for noise in [Noise::None, Noise::Noah, Noise::Optical, Noise::AsScatter] {
+                let cell = cell(shots, noise, 1);
+                let truth = move |random: &mut ChaCha12Rng| {
+                    let mut sds = PRIOR.median_sd;
+                    for (sd, factor) in sds.iter_mut().zip(factors) {
+                        *sd *= factor;
+                    }
+                    shooter(1, sds, [r, 0.0, 0.0], [0.0; 2], random)
+                };
+                let results = cell_results(&cell, repetitions, &truth, true);
+                let shown: Vec<String> = results
+                    .iter()
+                    .map(|r| format!("{:.1}", 100.0 * r.0))
+                    .collect();
+                let bias = results.iter().map(|r| r.2.abs()).fold(0.0, f64::max);
+                println!(
+                    "| {label} | {shots} | {noise:?} | 1 | {} | bias {bias:.3} |",
+                    shown.join(" | ")
+                );
+                let least = if shots >= 100 && matches!(noise, Noise::Noah | Noise::Optical) {
+                    0.92
+                } else {
+                    0.90
+                };
+                for (name, result) in names.iter().zip(&results) {
+                    // Two binomial standard errors below.
+                    if result.0 < least - 0.03 {
+                        failures.push(format!("{label} {cell:?} {name}: {:.3}", result.0));
+                    }
+                    if shots >= 100 && result.2.abs() > 0.1 {
+                        failures.push(format!("{label} {cell:?} {name}: bias {:.3}", result.2));
+                    }
+                }
+            }
+        }
+    }
+    for noise in [Noise::None, Noise::Noah] {
+        let cell = Cell {
+            tails: Some(5.0),
+            ..cell(100, noise, 1)
+        };
+        let truth = |random: &mut ChaCha12Rng| shooter_of_population(1, random);
+        let results = cell_results(&cell, repetitions, &truth, true);
+        let shown: Vec<String> = results
+            .iter()
+            .map(|r| format!("{:.1}", 100.0 * r.0))
+            .collect();
+        println!(
+            "| population, t with 5 degrees | 100 | {noise:?} | 1 | {} | |",
+            shown.join(" | ")
+        );
+    }
+    println!("{} misses:\n{}", failures.len(), failures.join("\n"));
+    // 240 tests of uniformity: the least p-value is below 1e-5 in one run of 400 if all are right.
+    assert!(worst_rank > 1e-5, "{worst_rank}");
+    assert!(failures.is_empty());
+}
+
+/// The typical posterior spin is the population's.
+#[test]
+fn contract_an_unseen_spin_is_that_of_the_population() {
+    let mut random = ChaCha12Rng::seed_from_u64(1);
+    let truth = shooter_of_population(1, &mut random);
+    let cell = cell(40, Noise::None, 1);
+    let simulator = Simulator::new(&Preset::named("ncaa").unwrap().physics()).unwrap();
+    let shots = shots(&cell, &truth, &simulator, &mut random);
+    let fit_with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| fit(&shots, 1, &FitOptions::default()).unwrap())
+    };
+    let posterior = fit_with(1);
+    let spin = posterior.summary(|draw| draw.means[0][3]);
+    assert!((spin.mean / REV_RAD - 2.5).abs() < 0.05, "{spin:?}");
+    // Threads change no bit.
+    assert_eq!(posterior.draws, fit_with(3).draws);
+}
