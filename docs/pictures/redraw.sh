@@ -17,5 +17,9 @@ if [ $# -eq 0 ]; then
   cp "$figures"/*.svg docs/pictures
   rm -r "$figures"
 fi
-draw tutorial_before '24.18 ft/s' '51.1 deg' '2.05 rev/s'
-draw tutorial_after '24.45 ft/s' '54.4 deg' '2.6 rev/s'
+draw tutorial_before '24.15 ft/s' '51.1 deg' '2.5 rev/s'
+draw tutorial_after '24.54 ft/s' '56.2 deg' '3.0 rev/s'
+fit=$(mktemp -d)
+"$bankshot" fit docs/data/gym_sensor.csv --out "$fit" --quiet >/dev/null
+cp "$fit/plots/make_zone.svg" "$fit/plots/reliability.svg" "$folder"
+rm -r "$fit"

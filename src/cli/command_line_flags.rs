@@ -125,6 +125,9 @@ pub(crate) struct BestOptions {
     /// Folder in which the folder of the run is made [default: the profile's, else results].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the scatter.
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of the table.
     #[arg(long)]
     pub(crate) json: bool,
@@ -241,6 +244,9 @@ pub(crate) struct ProbabilityOptions {
     /// Units of the answer [default: the profile's, else imperial].
     #[arg(long)]
     pub(crate) units: Option<UnitsArg>,
+    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the scatter.
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub(crate) json: bool,

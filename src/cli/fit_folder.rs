@@ -3,9 +3,10 @@
 use super::config_files::{load_profile, read_text};
 use super::failure::{Failure, code};
 use super::value_parsers::PhysicsArg;
-use bankshot::fitting::{Posterior, SpinSource};
+use bankshot::fitting::{Place, Posterior, SpinSource, WeightedShots, fitted_profile, values_of};
 use bankshot::output::fit_files::draws_table::read_draws;
-use bankshot::shooter::Profile;
+use bankshot::output::fit_files::fit_text::probability_text;
+use bankshot::shooter::{Nominal, Profile};
 use std::fs::File;
 use std::path::Path;
 
@@ -50,10 +51,42 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
         File::open(&draws_path).map_err(|error| Failure::io(draws_path.display(), &error))?;
     let shots = json["shots"].as_u64().unwrap_or(0) as usize;
     let posterior = read_draws(file, spin, shots).map_err(|error| damaged(&draws_path, error))?;
-    let profile = load_profile(&folder.join("profile.toml"), &PhysicsArg::default(), true)?;
+    let written = load_profile(&folder.join("profile.toml"), &PhysicsArg::default(), true)?;
+    let place = Place {
+        location: written.location(),
+        release_height_m: written.shooter().release_height_m,
+    };
+    // The file has rounded numbers; the draws have all digits.
+    let name = &written.shooter().name;
+    let profile = fitted_profile(name, written.physics(), &posterior.typical(), &place)?;
     Ok(FitFolder {
         profile,
         posterior,
         observed: (count("made"), count("shots")),
     })
+}
+
+/// Shots of the sample that P of the draws is computed with.
+const SHOTS: usize = 65_536;
+
+/// P of a nominal shot over the draws of a fit, in words.
+pub(crate) fn text_over_draws(
+    folder: &Path,
+    profile: &Profile,
+    nominal: &Nominal,
+) -> Result<String, Failure> {
+    let fit = read(folder)?;
+    let (draws, values) = (&fit.posterior.draws, values_of(nominal));
+    let seed = profile.search().seed;
+    let p = WeightedShots::simulate(profile, (draws, 0), &[values], SHOTS, seed).probabilities(
+        draws,
+        |_| values,
+        |draw| draw.factor_at(0),
+    );
+    Ok(format!(
+        "over {} draws of the scatter in {}: {}\n",
+        draws.len(),
+        folder.display(),
+        probability_text(&p)
+    ))
 }

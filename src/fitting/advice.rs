@@ -97,7 +97,6 @@ pub fn usual_probabilities(
     place: usize,
     shots: usize,
 ) -> DrawProbabilities {
-    let typical = posterior.typical();
     let means: Vec<Values> = posterior
         .draws
         .iter()
@@ -105,7 +104,7 @@ pub fn usual_probabilities(
         .collect();
     WeightedShots::simulate(
         profile,
-        (&typical, place),
+        (&posterior.draws, place),
         &means,
         shots,
         profile.search().seed,
@@ -132,7 +131,7 @@ pub fn advise(
     let draws: Vec<Draw> = posterior.draws.iter().step_by(step).cloned().collect();
     let seed = profile.search().seed;
     let simulate = |means: &[Values], shots: usize| {
-        WeightedShots::simulate(profile, (&typical, place), means, shots, seed)
+        WeightedShots::simulate(profile, (&draws, place), means, shots, seed)
     };
     let factor = |draw: &Draw| draw.factors[place];
     let usual_means: Vec<Values> = draws.iter().map(|draw| draw.means[place]).collect();

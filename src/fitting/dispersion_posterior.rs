@@ -46,6 +46,23 @@ pub(super) struct DispersionPosterior<const D: usize> {
 const LEAST_SPEED_STEP: f64 = 0.03;
 /// A standard deviation shrinks to this share of that at the reference speed at most.
 const LEAST_FACTOR: f64 = 0.05;
+/// The greatest speed of a profile, m/s.
+const MAX_SPEED_M_S: f64 = 40.0;
+
+/// The least factor `1 + x (g + h x)` of the speed's standard deviation, with `x = v/v0 - 1`, of all speeds up to the
+/// greatest one.
+#[must_use]
+pub fn least_speed_factor([linear, quadratic]: [f64; 2], reference_speed_m_s: f64) -> f64 {
+    let factor = |x: f64| 1.0 + x * (linear + x * quadratic);
+    let last = MAX_SPEED_M_S / reference_speed_m_s - 1.0;
+    let least = factor(-1.0).min(factor(last));
+    let vertex = -0.5 * linear / quadratic;
+    if quadratic > 0.0 && vertex > -1.0 && vertex < last {
+        least.min(factor(vertex))
+    } else {
+        least
+    }
+}
 
 impl<const D: usize> DispersionPosterior<D> {
     pub(super) fn new(shots: &[MeasuredRelease], places: usize, prior: PopulationPrior) -> Self {
@@ -245,9 +262,8 @@ impl<const D: usize> Model for DispersionPosterior<D> {
             return f64::NEG_INFINITY;
         }
         let dispersion = self.dispersion(point);
-        let is_plausible =
-            (0..self.places()).all(|place| self.speed_factor(&dispersion, place) > LEAST_FACTOR);
-        if !is_plausible {
+        // A profile holds for every speed, not for the measured ones alone.
+        if least_speed_factor(dispersion.growth, self.reference_speed) < LEAST_FACTOR {
             return f64::NEG_INFINITY;
         }
         match self.likelihood(&dispersion) {

@@ -15,8 +15,8 @@ use rayon::prelude::*;
 
 /// Scrambles of the sample. Their spread is the numerical error.
 const REPLICATES: usize = 8;
-/// How much wider the scatter of the sample is than that of the typical draw.
-const WIDENING: f64 = 1.25;
+/// How much wider the scatter of the sample is than that of a draw with a wide one.
+const WIDENING: f64 = 1.1;
 
 /// Mean, standard deviation and the middle 95 % of some values.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,23 +129,25 @@ impl DrawProbabilities {
 }
 
 impl WeightedShots {
-    /// Simulates about `shots` shots from the profile's location about the aims `means`, with the scatter of
-    /// `typical` at a place and that of the aims together.
+    /// Simulates about `shots` shots from the profile's location about the aims `means`, with the scatter of the widest
+    /// draws at a place and that of the aims together.
     #[must_use]
     pub fn simulate(
         profile: &Profile,
-        (typical, place): (&Draw, usize),
+        (draws, place): (&[Draw], usize),
         means: &[Values],
         shots: usize,
         seed: u64,
     ) -> Self {
-        let sds = typical.sds_at(place);
+        let sds: Vec<Values> = draws.iter().map(|draw| draw.sds_at(place)).collect();
         let mut centre = [0.0; 4];
         let mut scales = [0.0; 4];
         for i in 0..4 {
             let of_means = Interval::of(means.iter().map(|mean| mean[i]).collect());
             centre[i] = of_means.mean;
-            scales[i] = WIDENING * (sds[i] * sds[i] + of_means.sd * of_means.sd).sqrt();
+            // A sample narrower than a draw has few shots, with great weights, where that draw has many.
+            let wide = Interval::of(sds.iter().map(|sds| sds[i]).collect()).high;
+            scales[i] = WIDENING * (wide * wide + of_means.sd * of_means.sd).sqrt();
         }
         let points = (shots / REPLICATES).max(1).next_power_of_two() as u32;
         let sobol = Sobol::new();

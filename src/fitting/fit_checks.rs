@@ -57,6 +57,8 @@ pub enum FitWarning {
     NotNormal(f64, f64),
     /// The aim drifts: value, p-value.
     Drift(&'static str, f64),
+    /// The number of makes is not what these shots give: seen, expected, its standard deviation.
+    OtherMakes(usize, f64, f64),
     /// Neighbouring shots are alike: value, p-value.
     SerialCorrelation(&'static str, f64),
 }
@@ -82,6 +84,10 @@ impl std::fmt::Display for FitWarning {
             Self::NotNormal(skewness, kurtosis) => write!(
                 out,
                 "the releases are not normal (Mardia: skewness p = {skewness:.4}, kurtosis p = {kurtosis:.4}); look for outliers, or for shots of two kinds"
+            ),
+            Self::OtherMakes(made, expected, sd) => write!(
+                out,
+                "{made} shots went in where {expected:.1} give or take {sd:.1} were expected of the measured releases; look at the column made, the physics (this ring may be softer or harder) and the tracker"
             ),
             Self::Drift(name, p) => write!(out, "{name} drifts over the session (p = {p:.4})"),
             Self::SerialCorrelation(name, p) => write!(

@@ -37,6 +37,8 @@ pub struct FlightFit {
     pub points: std::ops::Range<usize>,
     /// Among them, those that are far from it.
     pub outliers: usize,
+    /// Where free flight begins, about: height above the floor, m.
+    pub begins_at_m: f64,
     /// The sum of the squared normalised residuals, and the number that is expected of it.
     pub chi_square: (f64, f64),
 }
@@ -439,6 +441,15 @@ pub fn fit_flight(
     let solution = track
         .solve(&indices, solution.parameters)
         .ok_or(FlightFitError::NotAFlight)?;
+    // In the middle of the points that may be of the hand.
+    let unseen = if began {
+        0.5 * track.margin() as f64
+    } else {
+        0.0
+    };
+    let begins_s = points[indices[0]].time_s - track.reference_s - unseen / noise.frames_per_s;
+    let first = simulator.undisturbed_state(&track.state(&solution.parameters), begins_s);
+    let begins_at_m = first.position_m.z + simulator.physics().hoop_plane_height_m();
     let height_m = release_height_m - simulator.physics().hoop_plane_height_m();
     let at = |parameters: &Parameters| track.release(parameters, height_m);
     let found = at(&solution.parameters).ok_or(FlightFitError::NoRelease)?;
@@ -477,6 +488,7 @@ pub fn fit_flight(
         aim_covariance: select([0, 1, 3]),
         points: indices[0]..indices[indices.len() - 1] + 1,
         outliers: solution.outliers,
+        begins_at_m,
         chi_square: (solution.chi_square, (3 * indices.len()) as f64 - 6.0),
     })
 }

@@ -29,6 +29,7 @@ mod unseen_parameter;
 pub use advice::{
     Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
 };
+pub use dispersion_posterior::least_speed_factor;
 pub use draw_probabilities::{DrawProbabilities, Interval, WeightedShots};
 pub use expected_makes::{
     ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,

@@ -13,6 +13,9 @@ use crate::shooter::{Profile, ProfileError};
 /// Shots of the sample that P is computed with.
 const SHOTS: usize = 65_536;
 
+/// Makes farther from what is expected, in standard deviations, are worth a word.
+const FAR_MAKES: f64 = 3.0;
+
 /// A fitted shooter.
 #[derive(Clone, Debug)]
 pub struct ShooterFit {
@@ -94,6 +97,11 @@ pub fn fit_shooter(
     let values = if is_measured { 4 } else { 3 };
     let mut warnings = warnings(test.shots, &typical, &posterior.prior_weights, values);
     warnings.extend(noise_warning(test.chi_squares));
+    // Half a shot for the simulated chances themselves.
+    let sd = libm::hypot(makes.expected_sd, 0.5);
+    if (makes.made as f64 - makes.expected).abs() > FAR_MAKES * sd && makes.labelled > 0 {
+        warnings.push(FitWarning::OtherMakes(makes.made, makes.expected, sd));
+    }
     Ok(ShooterFit {
         name: test.name.to_owned(),
         places: test.places.to_vec(),

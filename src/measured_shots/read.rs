@@ -138,6 +138,8 @@ const FARTHEST_LANDING_M: f64 = 1.5;
 const DEPTHS_M: (f64, f64) = (-9.0 * INCH_M, 27.0 * INCH_M);
 /// A shot farther than this from the others, in robust standard deviations, is doubtful.
 const DOUBTFUL: f64 = 6.0;
+/// A height that every shot rises through, m.
+const LOW_RELEASE_M: f64 = 1.5;
 /// Tracked releases nearer than this are from one place, m.
 const SAME_PLACE_M: f64 = 0.75;
 
@@ -446,19 +448,27 @@ impl Reader<'_> {
                 (first, session, self.track(rows, z0))
             })
             .collect();
-        let height = self
-            .options
-            .release_height_m
-            .or_else(|| lowest_common_height(&tracks, z0));
-        let height = height.unwrap_or(7.0 * FOOT_M);
         let noise = &self.options.noise;
         let backspin = self.options.backspin_rad_s.unwrap_or(0.0);
+        let height = self.options.release_height_m.unwrap_or_else(|| {
+            let begins = tracks.par_iter().filter_map(|(_, _, track)| {
+                let (points, _) = track.as_ref().ok()?;
+                let fit =
+                    fit_flight(self.simulator, points, noise, LOW_RELEASE_M, backspin).ok()?;
+                Some(fit.begins_at_m)
+            });
+            let mut begins: Vec<f64> = begins.collect();
+            begins.sort_by(f64::total_cmp);
+            begins
+                .get(begins.len() / 2)
+                .map_or(LOW_RELEASE_M, |height| height.max(LOW_RELEASE_M))
+        });
         let fits: Vec<Result<RawShot, (u64, String)>> = tracks
             .into_par_iter()
             .map(|(row, session, track)| {
                 let (points, made) = track.map_err(|reason| (row, reason))?;
                 let fit = fit_flight(self.simulator, &points, noise, height, backspin)
-                    .map_err(|error| (row, format!("the trajectory {error}")))?;
+                    .map_err(|error| (row, format!("trajectory: {error}")))?;
                 let used = points[fit.points.clone()].to_vec();
                 Ok(RawShot {
                     row,
@@ -744,23 +754,4 @@ fn retain_by<T>(list: &mut Vec<T>, keep: &[Result<(), String>]) {
             keep[index - 1].is_ok()
         });
     }
-}
-
-/// A height that every tracked ball rises through: of the first points of the shots, the height that nine in ten are below.
-fn lowest_common_height(
-    tracks: &[(
-        u64,
-        String,
-        Result<(Vec<TrackedPoint>, Option<bool>), String>,
-    )],
-    z0: f64,
-) -> Option<f64> {
-    let mut first: Vec<f64> = tracks
-        .iter()
-        .filter_map(|(_, _, track)| track.as_ref().ok())
-        .filter_map(|(points, _)| points.first().map(|point| point.position_m[2] + z0))
-        .collect();
-    first.sort_by(f64::total_cmp);
-    let at = first.len().checked_sub(1)? * 9 / 10;
-    Some(first[at].max(1.8))
 }

@@ -336,8 +336,8 @@ fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot
             .map(|shot| (shot.values[i] - fit.typical.means[shot.place][i]) / unit)
             .collect();
         let axes = Axes {
-            corner: (80.0, 60.0 + 180.0 * panel as f64),
-            size: (740.0, 140.0),
+            corner: (80.0, 64.0 + 182.0 * panel as f64),
+            size: (740.0, 132.0),
             x: (0.0, shots.len() as f64 + 1.0),
             y: range(deviations.iter().copied()),
         };
@@ -358,7 +358,7 @@ fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot
             smooth,
             &format!("stroke=\"{INK}\" stroke-width=\"1.5\" fill=\"none\""),
         );
-        axes.draw(&mut svg, "", if panel == 2 { "shot" } else { "" }, label);
+        axes.draw(&mut svg, label, if panel == 2 { "shot" } else { "" }, "");
     }
     key(
         &mut svg,
@@ -469,7 +469,7 @@ fn reliability(fit: &ShooterFit) -> Plot {
     );
     svg.footnote(
         (80.0, 545.0),
-        "Each point: a group of shots of similar chance. On the dashed line the chances are right.",
+        "Each point: shots of similar chance. On the dashed line, predicted is observed.",
     );
     named(fit, "reliability", "predicted against observed", svg)
 }

@@ -3,9 +3,11 @@
 
 mod best;
 mod check;
+mod fit;
 mod man;
 mod outputs;
 mod probability;
 mod simulate;
 mod support;
 mod trace;
+mod tutorial;

@@ -75,7 +75,12 @@ fn contract_the_plots_of_the_tutorial_are_up_to_date() {
         .status()
         .unwrap();
     assert!(status.success());
-    for name in ["tutorial_before", "tutorial_after"] {
+    for name in [
+        "tutorial_before",
+        "tutorial_after",
+        "make_zone",
+        "reliability",
+    ] {
         let drawn = fs::read_to_string(folder.path().join(format!("{name}.svg")));
         assert_up_to_date(name, &drawn.unwrap());
     }

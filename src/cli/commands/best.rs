@@ -3,6 +3,7 @@
 use crate::cli::command_line_flags::BestOptions;
 use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::Failure;
+use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_remark};
@@ -28,6 +29,14 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     } else {
         best_shots_table(&profile, &best, units) + &sensitivity_text(&profile, &best, units)
     })?;
+    if let Some(fit) = &options.draws {
+        for (kind, shot) in best.by_kind() {
+            if let Ok(shot) = shot {
+                let text = fit_folder::text_over_draws(fit, &profile, &shot.nominal)?;
+                print_answer(&format!("{}, {text}", kind.name()))?;
+            }
+        }
+    }
     if !quiet {
         print_remark(&format!("written to {}", folder.display()));
     }

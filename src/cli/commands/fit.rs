@@ -96,6 +96,9 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
             }
         };
         is_any_done = true;
+        if is_single {
+            check_free_of_shots(&options.free, shots, &fit)?;
+        }
         let folder = if is_single {
             out.clone()
         } else {
@@ -164,6 +167,29 @@ fn check_free(free: &[String]) -> Result<(), Failure> {
         if name != "drag_coefficient" && UnseenParameter::named(name).is_none() {
             return Err(Failure::usage(format!(
                 "--free {name}: must be backspin, hoop_restitution or drag_coefficient"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses to ask shots for what they cannot tell, before anything is written.
+fn check_free_of_shots(
+    free: &[String],
+    shots: &ShooterShots,
+    fit: &ShooterFit,
+) -> Result<(), Failure> {
+    let (made, labelled) = (fit.makes.made, fit.makes.labelled);
+    for name in free {
+        if name == "drag_coefficient" {
+            if shots.tracks.is_empty() {
+                return Err(Failure::usage(
+                    "--free drag_coefficient: only trajectories tell it",
+                ));
+            }
+        } else if labelled == 0 || made == 0 || made == labelled {
+            return Err(Failure::usage(format!(
+                "--free {name}: needs shots that were made and shots that were missed; {made} of {labelled} with a result were made"
             )));
         }
     }
@@ -286,11 +312,6 @@ fn free_parameter(
 ) -> Result<String, Failure> {
     let Some(parameter) = UnseenParameter::named(name) else {
         let tracks: Vec<_> = shots.tracks.iter().map(Vec::as_slice).collect();
-        if tracks.is_empty() {
-            return Err(Failure::usage(
-                "--free drag_coefficient: only trajectories tell it",
-            ));
-        }
         let backspin = file.backspin_rad_s.unwrap_or(0.0);
         let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
         return Ok(match found {
@@ -305,12 +326,7 @@ fn free_parameter(
             None => "drag_coefficient  these flights cannot tell\n".to_owned(),
         });
     };
-    let (made, labelled) = (fit.makes.made, fit.makes.labelled);
-    if labelled == 0 || made == 0 || made == labelled {
-        return Err(Failure::usage(format!(
-            "--free {name}: needs shots that were made and shots that were missed; {made} of {labelled} with a result were made"
-        )));
-    }
+    let labelled = fit.makes.labelled;
     let is_measured = shots.spin == SpinSource::Measured;
     let curve = likelihood_curve(
         parameter,

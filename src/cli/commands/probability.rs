@@ -4,6 +4,7 @@ use super::trace;
 use crate::cli::command_line_flags::{Method, ProbabilityOptions};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
@@ -63,6 +64,9 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     } else {
         answer_text(&answer)
     })?;
+    if let Some(folder) = &options.draws {
+        print_answer(&fit_folder::text_over_draws(folder, &profile, &nominal)?)?;
+    }
     if estimate.standard_error <= precision.target {
         return Ok(code::DONE);
     }

@@ -3,7 +3,7 @@
 use super::fit_json::FitSource;
 use super::parameters::parameters;
 use crate::fitting::{DrawProbabilities, ShooterFit};
-use crate::units::UnitSystem;
+use crate::units::{DEGREE_RAD, UnitSystem};
 
 /// A probability as a percentage.
 #[must_use]
@@ -45,9 +45,10 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             String::new()
         };
         text += &format!(
-            "{number}{:.2} {long} at {:.1} deg: the usual shot has {}\n",
+            "{number}{:.2} {long} from the hoop at {:.1} deg, released at {:.2} {long}: the usual shot has {}\n",
             place.location.distance_m / metre,
-            place.location.angle_rad.to_degrees(),
+            place.location.angle_rad / DEGREE_RAD,
+            place.release_height_m / metre,
             probability_text(p)
         );
     }

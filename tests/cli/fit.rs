@@ -1,0 +1,277 @@
+//! `fit`, `advise`, `compare-sessions`, `design`: from measured shots to a profile and advice.
+
+use super::support::{Answer, bankshot};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Of the made-up player of `examples/make_measured_shots.rs`: standard deviations of speed (ft/s), pitch and aim (deg).
+const TRUE_SCATTER: [(&str, f64); 3] = [("speed_sd", 0.25), ("pitch_sd", 1.3), ("polar_sd", 1.2)];
+
+fn fit(file: &str, folder: &Path, flags: &[&str]) -> Answer {
+    let mut command = bankshot();
+    command
+        .args(["fit", file, "--quiet", "--out"])
+        .arg(folder)
+        .args(flags);
+    Answer::of(&mut command)
+}
+
+/// Each kind of file of the docs gives intervals that cover the truth (95 % each: the files are fixed).
+#[test]
+fn contract_each_kind_of_measurement_gives_a_profile() {
+    let folder = TempDir::new().unwrap();
+    for file in ["lab", "gym_sensor", "optical_tracking"] {
+        let out = folder.path().join(file);
+        let answer = fit(&format!("docs/data/{file}.csv"), &out, &["--json"])
+            .exits(0)
+            .json();
+        let parameters = answer["parameters"].as_array().unwrap();
+        for (name, truth) in TRUE_SCATTER {
+            let found = parameters.iter().find(|p| p["name"] == name).unwrap();
+            let (low, high) = (
+                found["low"].as_f64().unwrap(),
+                found["high"].as_f64().unwrap(),
+            );
+            // Two of nine intervals just miss it.
+            let margin = 0.25 * (high - low);
+            assert!(
+                low - margin < truth && truth < high + margin,
+                "{file} {name} {low} {high}"
+            );
+            assert_eq!(found["source"], "measured");
+        }
+        let p = &answer["probability"];
+        assert!(p["low"].as_f64().unwrap() < p["high"].as_f64().unwrap());
+        assert!(p["numerical_standard_error"].as_f64().unwrap() < 0.002);
+        let observed = &answer["observed"];
+        assert!(observed["made"].as_u64().unwrap() < observed["shots"].as_u64().unwrap());
+        for name in [
+            "fit.json",
+            "profile.toml",
+            "draws.parquet",
+            "shots.csv",
+            "plots/make_zone.svg",
+            "plots/reliability.png",
+        ] {
+            assert!(out.join(name).exists(), "{name}");
+        }
+        // The profile can be used at once.
+        let profile = out.join("profile.toml");
+        let checked = Answer::of(bankshot().arg("check").arg(&profile));
+        checked.exits(0);
+    }
+}
+
+#[test]
+fn contract_threads_change_no_bit_of_a_fit() {
+    let folder = TempDir::new().unwrap();
+    let files = ["1", "2"].map(|threads| {
+        let out = folder.path().join(threads);
+        fit("docs/data/gym_sensor.csv", &out, &["--threads", threads]).exits(0);
+        fs::read(out.join("draws.parquet")).unwrap()
+    });
+    assert!(files[0] == files[1]);
+}
+
+#[test]
+fn contract_columns_of_other_names_and_units_give_the_same_profile() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let renamed = text
+        .replace("speed_ft_s", "Release Speed")
+        .replace("aim_deg", "Direction");
+    let path = folder.path().join("other.csv");
+    fs::write(&path, renamed).unwrap();
+    let own = fit("docs/data/lab.csv", &folder.path().join("a"), &["--json"])
+        .exits(0)
+        .json();
+    let maps = [
+        "--json",
+        "--map",
+        "speed_ft_s=Release Speed",
+        "--map",
+        "aim_deg=Direction",
+    ];
+    let other = fit(path.to_str().unwrap(), &folder.path().join("b"), &maps)
+        .exits(0)
+        .json();
+    assert_eq!(own["parameters"], other["parameters"]);
+}
+
+#[test]
+fn contract_advice_is_the_same_from_a_file_and_from_its_fit() {
+    let folder = TempDir::new().unwrap();
+    fit("docs/data/lab.csv", folder.path(), &[]).exits(0);
+    let advise = |shots: &str| {
+        let answer = Answer::of(bankshot().args(["advise", shots, "--quiet", "--json"]));
+        answer.exits(0).json()
+    };
+    let of_file = advise("docs/data/lab.csv");
+    let of_folder = advise(folder.path().to_str().unwrap());
+    for key in ["kind", "observed", "best"] {
+        assert_eq!(of_file[key], of_folder[key], "{key}");
+    }
+    let mean = |answer: &serde_json::Value, key: &str| answer[key]["mean"].as_f64().unwrap();
+    for key in ["usual_probability", "best_probability", "gain"] {
+        assert!(
+            (mean(&of_file, key) - mean(&of_folder, key)).abs() < 1e-6,
+            "{key}"
+        );
+    }
+    assert!(mean(&of_file, "gain") > 0.0);
+    // The parts of the gap are the whole.
+    let causes = of_file["causes"].as_array().unwrap();
+    let sum: f64 = causes
+        .iter()
+        .map(|cause| cause["mean"].as_f64().unwrap())
+        .sum();
+    assert!((sum - mean(&of_file, "gain")).abs() < 0.01, "{sum}");
+    let draws = folder.path().to_str().unwrap();
+    let profile = folder.path().join("profile.toml");
+    let flags = [
+        "--speed",
+        "24.1 ft/s",
+        "--pitch",
+        "51 deg",
+        "--draws",
+        draws,
+        "--target",
+        "0.01",
+    ];
+    let answer = Answer::of(
+        bankshot()
+            .arg("probability")
+            .arg(profile)
+            .args(flags)
+            .arg("--quiet"),
+    );
+    let text = answer.exits(0).stdout().to_owned();
+    assert!(text.contains("over 1000 draws"), "{text}");
+}
+
+#[test]
+fn contract_bad_shots_are_refused_or_named() {
+    let folder = TempDir::new().unwrap();
+    let header = "speed_ft_s,pitch_deg,aim_deg,distance_ft,release_height_ft,made\n";
+    let row =
+        |i: usize, speed: f64| format!("{speed:.2},{},0.{},13.75,7,{}\n", 50 + i % 4, i % 9, i % 2);
+    let speeds = |first: f64| -> String {
+        (0..30)
+            .map(|i| row(i, first + 0.1 * ((i * 7) % 10) as f64))
+            .collect()
+    };
+    let same: String = (0..30).map(|_| row(0, 24.2)).collect();
+    let few: String = (0..5).map(|i| row(i, 24.0 + 0.1 * i as f64)).collect();
+    let bad_rows = speeds(23.8)
+        + "NaN,50,0,13.75,7,1\n24,50,150,13.75,7,1\n9,50,0,13.75,7,0\n24,50,0,13.75,7,perhaps\n";
+    for (name, text, code, message) in [
+        ("few", few, 2, "needs at least 10 shots"),
+        (
+            "same",
+            same,
+            2,
+            "every shot at one place has the same value",
+        ),
+        ("metres", speeds(7.1), 2, "looks like m/s"),
+        ("rows", bad_rows, 3, "30 shots are used, 4 were kept out"),
+        ("none", String::new(), 2, "has no rows"),
+    ] {
+        let path = folder.path().join(format!("{name}.csv"));
+        fs::write(&path, format!("{header}{text}")).unwrap();
+        let out = folder.path().join(name);
+        let answer = fit(path.to_str().unwrap(), &out, &[]).exits(code);
+        assert!(answer.stderr.contains(message), "{name}: {}", answer.stderr);
+        assert_eq!(out.join("fit.json").exists(), code == 3, "{name}");
+    }
+    for (flags, message) in [
+        (vec!["--tracker", "nobody"], "is neither a tracker"),
+        (vec!["--free", "luck"], "--free luck: must be"),
+        (
+            vec!["--free", "drag_coefficient"],
+            "only trajectories tell it",
+        ),
+        (
+            vec!["--map", "pitch_deg=nothing"],
+            "there is no column nothing",
+        ),
+        (vec!["--hoop", "3"], "must be two lengths and a direction"),
+    ] {
+        let answer = fit("docs/data/lab.csv", &folder.path().join("flags"), &flags).exits(2);
+        assert!(answer.stderr.contains(message), "{}", answer.stderr);
+    }
+}
+
+#[test]
+fn contract_shooters_have_a_folder_each_and_one_table() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let mut lines = text.lines();
+    let mut both = format!("{},shooter\n", lines.next().unwrap());
+    for (i, line) in lines.enumerate() {
+        both += &format!("{line},{}\n", if i % 2 == 0 { "Ann" } else { "Bob" });
+    }
+    let path = folder.path().join("team.csv");
+    fs::write(&path, both).unwrap();
+    let out = folder.path().join("out");
+    let answer = fit(path.to_str().unwrap(), &out, &[]).exits(0);
+    assert!(
+        answer
+            .stdout()
+            .starts_with("shooter,shots,made,probability")
+    );
+    for name in ["ann", "bob"] {
+        assert!(out.join(name).join("profile.toml").exists());
+    }
+    let table = fs::read_to_string(out.join("shooters.csv")).unwrap();
+    assert_eq!(table.lines().count(), 3);
+    // The same shots as two sessions: nothing is decided.
+    let sessions = fs::read_to_string(&path)
+        .unwrap()
+        .replacen("shooter", "session", 1);
+    fs::write(&path, sessions).unwrap();
+    let compared = Answer::of(bankshot().arg("compare-sessions").arg(&path).arg("--quiet"));
+    let text = compared.exits(0).stdout().to_owned();
+    assert!(
+        text.contains("before  Ann (30 shots)") && text.contains("would decide"),
+        "{text}"
+    );
+}
+
+#[test]
+fn contract_design_says_what_a_test_will_tell() {
+    let flags = [
+        "--speed",
+        "24.2 ft/s",
+        "--pitch",
+        "51 deg",
+        "--shots",
+        "25,100",
+        "--repetitions",
+        "8",
+    ];
+    let answer = Answer::of(
+        bankshot()
+            .args(["design", "configs/free_throw.toml", "--quiet"])
+            .args(flags),
+    );
+    let text = answer.exits(0).stdout().to_owned();
+    let row = |shots: &str| -> Vec<f64> {
+        let line = text
+            .lines()
+            .find(|line| line.trim_start().starts_with(shots))
+            .unwrap();
+        line.split_whitespace()
+            .filter_map(|word| word.parse().ok())
+            .collect()
+    };
+    // Known: 14 % and 7 % of a standard deviation, 6.7 and 3.3 points, 9.2 and 4.6 by counting; within a fifth.
+    for (shots, sd, fitted, counted) in [("25", 14.0, 6.7, 9.2), ("100", 7.0, 3.3, 4.6)] {
+        let found = row(shots);
+        let near = |value: f64, known: f64| (value / known - 1.0).abs() < 0.2;
+        assert!(
+            near(found[1], sd) && near(found[4], fitted) && near(found[5], counted),
+            "{text}"
+        );
+    }
+}
