@@ -1,6 +1,7 @@
 //! What a shooter should change, and how sure that is.
 
-use super::draw_probabilities::{DrawProbabilities, Interval, WeightedShots};
+use super::draw_probabilities::{DrawProbabilities, WeightedShots};
+use super::interval::Interval;
 use super::measured_release::{VALUE_NAMES, Values, nominal_of, values_of};
 use super::posterior::{Draw, Posterior};
 use crate::analysis::sensitivity::SensitivityTopics;

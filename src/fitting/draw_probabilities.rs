@@ -4,6 +4,7 @@
 //! counts with the ratio of the densities (self-normalised importance sampling; Owen, *Monte Carlo theory, methods
 //! and examples*, 2013, chapter 9). All draws share the shots, so their differences hardly have a numerical error.
 
+use super::interval::Interval;
 use super::measured_release::{Values, nominal_of};
 use super::posterior::Draw;
 use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed};
@@ -17,53 +18,6 @@ use rayon::prelude::*;
 const REPLICATES: usize = 8;
 /// How much wider the scatter of the sample is than that of a draw with a wide one.
 const WIDENING: f64 = 1.1;
-
-/// Mean, standard deviation and the middle 95 % of some values.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// The mean.
-    pub mean: f64,
-    /// The standard deviation.
-    pub sd: f64,
-    /// The 2.5 % quantile.
-    pub low: f64,
-    /// The 97.5 % quantile.
-    pub high: f64,
-}
-
-impl Interval {
-    /// Of at least one value.
-    #[must_use]
-    pub fn of(mut values: Vec<f64>) -> Self {
-        let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
-        values.sort_by(f64::total_cmp);
-        let at = |p: f64| {
-            let place = p * (count - 1.0);
-            let below = place.floor() as usize;
-            let above = (below + 1).min(values.len() - 1);
-            values[below] + (place - place.floor()) * (values[above] - values[below])
-        };
-        Self {
-            mean,
-            sd: (squares / (count - 1.0).max(1.0)).sqrt(),
-            low: at(0.025),
-            high: at(0.975),
-        }
-    }
-
-    /// The same in another unit.
-    #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
-        Self {
-            mean: self.mean * factor,
-            sd: self.sd * factor,
-            low: self.low * factor,
-            high: self.high * factor,
-        }
-    }
-}
 
 /// Simulated shots that are weighted for the draws.
 pub struct WeightedShots {

@@ -16,6 +16,7 @@ mod expected_makes;
 mod fit_checks;
 mod fitted_profile;
 mod flight_fit;
+mod interval;
 mod landing;
 mod measured_release;
 mod population;
@@ -30,7 +31,7 @@ pub use advice::{
     Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
 };
 pub use dispersion_posterior::least_speed_factor;
-pub use draw_probabilities::{DrawProbabilities, Interval, WeightedShots};
+pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{
     ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,
 };
@@ -40,6 +41,7 @@ pub use fit_checks::{
 };
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};
+pub use interval::Interval;
 pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_landing};
 pub use measured_release::{
     Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,

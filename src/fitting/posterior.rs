@@ -2,7 +2,7 @@
 
 use super::chain_diagnostics::ParameterChains;
 use super::dispersion_posterior::{Dispersion, DispersionPosterior};
-use super::draw_probabilities::Interval;
+use super::interval::Interval;
 use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
 use super::population::{PopulationPrior, Spread};
 use crate::math::normal_distribution::quantile;

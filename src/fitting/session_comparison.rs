@@ -1,6 +1,7 @@
 //! Two sessions of one shooter compared.
 
-use super::draw_probabilities::{DrawProbabilities, Interval};
+use super::draw_probabilities::DrawProbabilities;
+use super::interval::Interval;
 use super::posterior::{Draw, Posterior};
 
 /// What changed in one quantity.
