@@ -3,27 +3,27 @@
 //! Gelman et al., *Bayesian Data Analysis* (3rd edition, 2013), section 11.4; the autocorrelation of an ensemble as in
 //! Foreman-Mackey et al., Publ. Astron. Soc. Pac. 125 (2013) 306.
 
-/// The values of one parameter: of each chain, of each of its steps, of each of its walkers.
-pub(super) struct ParameterChains<'a> {
-    /// A function of chain, step and walker.
-    pub(super) value: &'a dyn Fn(usize, usize, usize) -> f64,
+/// The values of one parameter.
+pub(super) struct ParameterChains {
+    /// Walk by walk: those of the first chain's first walker, of its second, and so on.
+    pub(super) values: Vec<f64>,
     pub(super) chains: usize,
     pub(super) steps: usize,
-    pub(super) walkers: usize,
 }
 
 /// Autocorrelations are summed up to this many times their sum.
 const WINDOW: f64 = 5.0;
 
-impl ParameterChains<'_> {
-    fn mean_and_variance(&self, chain: usize, steps: std::ops::Range<usize>) -> (f64, f64) {
-        let count = (steps.len() * self.walkers) as f64;
-        let values = || {
-            steps
-                .clone()
-                .flat_map(|step| (0..self.walkers).map(move |walker| (step, walker)))
-                .map(|(step, walker)| (self.value)(chain, step, walker))
-        };
+impl ParameterChains {
+    fn walkers(&self) -> usize {
+        self.values.len() / (self.chains * self.steps)
+    }
+
+    fn mean_and_variance(&self, chain: usize, steps: &std::ops::Range<usize>) -> (f64, f64) {
+        let of_chain = self.walkers() * self.steps;
+        let walks = self.values[chain * of_chain..(chain + 1) * of_chain].chunks(self.steps);
+        let count = (steps.len() * self.walkers()) as f64;
+        let values = || walks.clone().flat_map(|walk| &walk[steps.clone()]);
         let mean = values().sum::<f64>() / count;
         let squares: f64 = values().map(|x| (x - mean) * (x - mean)).sum();
         (mean, squares / (count - 1.0))
@@ -34,7 +34,7 @@ impl ParameterChains<'_> {
         let half = self.steps / 2;
         let parts: Vec<(f64, f64)> = (0..self.chains)
             .flat_map(|chain| [(chain, 0..half), (chain, half..2 * half)])
-            .map(|(chain, steps)| self.mean_and_variance(chain, steps))
+            .map(|(chain, steps)| self.mean_and_variance(chain, &steps))
             .collect();
         let count = parts.len() as f64;
         let mean = parts.iter().map(|(mean, _)| mean).sum::<f64>() / count;
@@ -55,22 +55,18 @@ impl ParameterChains<'_> {
     pub(super) fn effective_sample_size(&self) -> f64 {
         let (mut mean, mut variance) = (0.0, 0.0);
         for chain in 0..self.chains {
-            let (m, v) = self.mean_and_variance(chain, 0..self.steps);
+            let (m, v) = self.mean_and_variance(chain, &(0..self.steps));
             mean += m / self.chains as f64;
             variance += v / self.chains as f64;
         }
-        let walks = (self.chains * self.walkers) as f64;
+        let walks = (self.chains * self.walkers()) as f64;
+        let centred: Vec<f64> = self.values.iter().map(|x| x - mean).collect();
         let correlation = |lag: usize| {
-            let mut sum = 0.0;
-            for chain in 0..self.chains {
-                for step in lag..self.steps {
-                    for walker in 0..self.walkers {
-                        let now = (self.value)(chain, step, walker) - mean;
-                        sum += now * ((self.value)(chain, step - lag, walker) - mean);
-                    }
-                }
-            }
-            sum / (walks * (self.steps - lag) as f64 * variance)
+            let products = centred.chunks(self.steps).map(|walk| {
+                let pairs = walk[lag..].iter().zip(walk);
+                pairs.map(|(now, before)| now * before).sum::<f64>()
+            });
+            products.sum::<f64>() / (walks * (self.steps - lag) as f64 * variance)
         };
         let mut time = 1.0;
         for lag in 1..self.steps / 2 {
@@ -104,12 +100,10 @@ mod tests {
                     values[walk * steps + step] = x;
                 }
             }
-            let value = |chain, step, walker| values[(chain * walkers + walker) * steps + step];
             let parameter = ParameterChains {
-                value: &value,
+                values: values.clone(),
                 chains,
                 steps,
-                walkers,
             };
             let expected = (chains * steps * walkers) as f64 * (1.0 - a) / (1.0 + a);
             let found = parameter.effective_sample_size();
@@ -119,11 +113,11 @@ mod tests {
             );
             assert!(parameter.split_r_hat() < 1.01);
             // One chain elsewhere.
-            let shifted = |chain, step, walker| {
-                value(chain, step, walker) + if chain == 0 { 1.0 } else { 0.0 }
-            };
+            for value in &mut values[..steps * walkers] {
+                *value += 1.0;
+            }
             let parameter = ParameterChains {
-                value: &shifted,
+                values,
                 ..parameter
             };
             assert!(parameter.split_r_hat() > 1.1);

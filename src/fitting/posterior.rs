@@ -340,14 +340,19 @@ fn fit_values<const D: usize>(
         let (mut r_hat, mut effective) = (1.0_f64, f64::INFINITY);
         let parameters = 0..dimension;
         for parameter in parameters {
-            let value = |chain: usize, step: usize, walker: usize| {
-                chains[chain][step * walkers + walker][parameter]
+            let walk = |chain: &'_ Vec<Vec<f64>>, walker: usize| {
+                let of_walker = chain.iter().skip(walker).step_by(walkers);
+                of_walker
+                    .map(|point| point[parameter])
+                    .collect::<Vec<f64>>()
             };
+            let all = chains
+                .iter()
+                .flat_map(|chain| (0..walkers).flat_map(move |walker| walk(chain, walker)));
             let of_parameter = ParameterChains {
-                value: &value,
+                values: all.collect(),
                 chains: CHAINS,
                 steps,
-                walkers,
             };
             r_hat = r_hat.max(of_parameter.split_r_hat());
             effective = effective.min(of_parameter.effective_sample_size());

@@ -5,6 +5,7 @@
 pub mod best_shot_page;
 pub mod best_shot_run;
 mod best_shot_table;
+pub mod fit_page;
 mod html_table;
 pub mod page;
 mod page_data;

@@ -51,6 +51,7 @@ fn contract_each_kind_of_measurement_gives_a_profile() {
             "profile.toml",
             "draws.parquet",
             "shots.csv",
+            "report.html",
             "plots/make_zone.svg",
             "plots/reliability.png",
         ] {

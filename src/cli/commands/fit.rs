@@ -19,6 +19,7 @@ use bankshot::output::fit_files::fitted_profile_toml::fitted_profile_toml;
 use bankshot::output::fit_files::shots_table::shots_csv;
 use bankshot::plots::measured_shots;
 use bankshot::probability::Progress;
+use bankshot::report::fit_page::fit_page;
 use bankshot::units::REV_RAD;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ The file holds releases (speed, pitch, polar or aim), landings (entry_angle, dep
 time, x, y, z); each column has its unit in its name, as in speed_ft_s, depth_in, time_s. It can have made, shooter,
 session, and the place (distance, court_angle, release_height).
 
-Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv and plots; with several
+Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv, report.html and plots; with several
 shooters, one folder for each and shooters.csv.
 
 Examples:
@@ -263,10 +264,12 @@ fn write(
         let path = folder.join(name);
         atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
     }
-    plot_files::write(
-        &folder.join("plots"),
-        &measured_shots::all(fit, &shots.shots, units),
-    )
+    let plots = measured_shots::all(fit, &shots.shots, units);
+    plot_files::write(&folder.join("plots"), &plots)?;
+    let page = fit_page(fit, &source, plots, units);
+    let html = page.html()?;
+    let path = folder.join("report.html");
+    atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
 }
 
 fn answer(

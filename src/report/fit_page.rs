@@ -1,0 +1,111 @@
+//! The page of a fitted shooter.
+
+use super::html_table::{HtmlTable, format_cell};
+use super::page::Page;
+use super::page_data::Scene;
+use super::shot_in_words::{ReportShot, describe_location};
+use crate::fitting::{ShooterFit, nominal_of};
+use crate::model::league_courts::League;
+use crate::output::fit_files::fit_json::FitSource;
+use crate::output::fit_files::parameters::parameters;
+use crate::plots::shot_with_probability::PlottedShot;
+use crate::plots::svg::Plot;
+use crate::shooter::ShotKind;
+use crate::units::UnitSystem;
+
+/// Makes the page of a fit, with its plots.
+#[must_use]
+pub fn fit_page(
+    fit: &ShooterFit,
+    source: &FitSource<'_>,
+    plots: Vec<Plot>,
+    units: UnitSystem,
+) -> Page {
+    let profile = &fit.profiles[0];
+    let nominal = nominal_of(&fit.typical.means[0]);
+    let p = fit.probabilities[0].interval();
+    let usual = ReportShot {
+        place: 0,
+        location: profile.location(),
+        shot: PlottedShot {
+            kind: ShotKind::of(profile, &nominal),
+            nominal,
+            probability: p.mean,
+            standard_error: p.sd,
+        },
+        mirror_of: None,
+    };
+    Page {
+        title: profile.shooter().name.clone(),
+        answer: answer(fit, source, units),
+        shots: vec![usual],
+        first_place: 0,
+        scene: Scene {
+            simulator: profile.simulator().clone(),
+            court: League::Ncaa.court(),
+            height_above_hoop_m: profile.height_above_hoop_m(),
+            units,
+        },
+        tables: vec![parameter_table(fit, units)],
+        plots,
+        footer: format!(
+            "bankshot {} ({}), profile {}.",
+            env!("CARGO_PKG_VERSION"),
+            env!("BANKSHOT_COMMIT"),
+            &profile.hash()[..12]
+        ),
+    }
+}
+
+fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
+    let p = fit.probabilities[0].interval();
+    let makes = &fit.makes;
+    let seen = if makes.labelled > 0 {
+        format!(
+            " {} of {} went in; {:.1} \u{b1} {:.1} were expected of these very shots.",
+            makes.made, makes.labelled, makes.expected, makes.expected_sd
+        )
+    } else {
+        String::new()
+    };
+    let warnings: Vec<String> = fit
+        .warnings
+        .iter()
+        .map(|warning| format!(" Warning: {warning}."))
+        .collect();
+    format!(
+        "From {}, {:.1} % of the usual shots go in (95 %: {:.1} to {:.1} %), by {} {}.{seen}{}",
+        describe_location(&fit.places[0].location, units),
+        100.0 * p.mean,
+        100.0 * p.low,
+        100.0 * p.high,
+        fit.posterior.shots,
+        source.kind,
+        warnings.concat()
+    )
+}
+
+fn parameter_table(fit: &ShooterFit, units: UnitSystem) -> HtmlTable {
+    let columns = ["parameter", "unit", "mean", "2.5 %", "97.5 %", "source"];
+    HtmlTable {
+        caption: "What was fitted".to_owned(),
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: parameters(&fit.posterior, units)
+            .into_iter()
+            .map(|parameter| {
+                let interval = parameter.interval;
+                let [mean, low, high] =
+                    [interval.mean, interval.low, interval.high].map(|value| format_cell(value, 3));
+                let cells = [
+                    parameter.name,
+                    parameter.unit.to_owned(),
+                    mean,
+                    low,
+                    high,
+                    parameter.source.to_owned(),
+                ];
+                (None, cells.to_vec())
+            })
+            .collect(),
+    }
+}
