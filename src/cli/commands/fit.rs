@@ -22,6 +22,7 @@ use bankshot::probability::Progress;
 use bankshot::report::fit_page::fit_page;
 use bankshot::units::REV_RAD;
 use clap::Args;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -64,82 +65,116 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| default_folder(&options.shots));
-    let is_single = file.shooters.len() == 1;
-    let bars = ProgressBars::new(quiet);
-    if !is_single {
-        bars.begin("fitting shooters", file.shooters.len() as u64);
+    for shots in &file.shooters {
+        report_rejected(&file, shots, file.shooters.len() == 1);
+    }
+    let is_complete = file.shooters.iter().all(|shots| shots.rejected.is_empty());
+    let code = if is_complete {
+        code::DONE
+    } else {
+        code::INCOMPLETE
+    };
+    if let [shots] = &file.shooters[..] {
+        let fit = file
+            .fit(shots, &file.physics)
+            .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
+        check_free_of_shots(&options.free, shots, &fit)?;
+        write(&out, &file, shots, &fit, options)?;
+        answer(&file, shots, &fit, options, &out, quiet)?;
+        return Ok(code);
+    }
+    if !options.free.is_empty() {
+        return Err(Failure::usage("--free: give the shots of one shooter"));
+    }
+    fit_all(&file, &out, options, &ProgressBars::new(quiet)).map(|worst| worst.max(code))
+}
+
+/// Fits several shooters side by side: one folder for each, and one table.
+fn fit_all(
+    file: &MeasuredFile,
+    out: &Path,
+    options: &FitOptions,
+    bars: &ProgressBars,
+) -> Result<u8, Failure> {
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for shots in &file.shooters {
+        let name = run_folder::safe_name(&file.name_of(shots));
+        let mut folder = out.join(&name);
+        let mut number = 1;
+        // Different names can be the same as folders.
+        while folders.contains(&folder) {
+            number += 1;
+            folder = out.join(format!("{name}-{number}"));
+        }
+        folders.push(folder);
+    }
+    bars.begin("fitting shooters", file.shooters.len() as u64);
+    let rows = file
+        .shooters
+        .par_iter()
+        .zip(&folders)
+        .map(|(shots, folder)| {
+            let row = fit_one(file, shots, folder, options);
+            bars.advance(1);
+            row
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bars.end();
+    if rows.iter().all(|(_, error)| error.is_some()) {
+        return Err(Failure::usage(format!(
+            "{}: no shooter could be fitted",
+            options.shots.display()
+        )));
     }
     let mut table = String::from("shooter,shots,made,probability,low,high,folder,error\n");
     let mut worst = code::DONE;
-    let mut is_any_done = false;
-    for shots in &file.shooters {
-        let name = file.name_of(shots);
-        report_rejected(&file, shots, is_single);
-        if !shots.rejected.is_empty() {
-            worst = worst.max(code::INCOMPLETE);
+    for (row, error) in rows {
+        table += &row;
+        if let Some(error) = error {
+            print_remark(&error);
+            worst = code::INCOMPLETE;
         }
-        let fit = match file.fit(shots, &file.physics) {
-            Ok(fit) => fit,
-            Err(error) if is_single => {
-                return Err(failure(&format!("{}", options.shots.display()), &error));
-            }
-            Err(error) => {
-                print_remark(&format!("{name}: {error}"));
-                table += &format!(
-                    "{},{},,,,,,{}\n",
-                    cell(&name),
-                    shots.shots.len(),
-                    cell(&error.to_string())
-                );
-                worst = worst.max(code::INCOMPLETE);
-                bars.advance(1);
-                continue;
-            }
-        };
-        is_any_done = true;
-        if is_single {
-            check_free_of_shots(&options.free, shots, &fit)?;
-        }
-        let folder = if is_single {
-            out.clone()
-        } else {
-            out.join(run_folder::safe_name(&name))
-        };
-        write(&folder, &file, shots, &fit, options)?;
-        let p = fit.probabilities[0].interval();
-        table += &format!(
-            "{},{},{},{:.4},{:.4},{:.4},{},\n",
-            cell(&name),
-            fit.posterior.shots,
-            if fit.makes.labelled > 0 {
-                fit.makes.made.to_string()
-            } else {
-                String::new()
-            },
-            p.mean,
-            p.low,
-            p.high,
-            cell(&folder.display().to_string())
-        );
-        if is_single {
-            answer(&file, shots, &fit, options, &folder, quiet)?;
-        }
-        bars.advance(1);
     }
-    if !is_single {
-        bars.end();
-        if !is_any_done {
-            return Err(Failure::usage(format!(
-                "{}: no shooter could be fitted",
-                options.shots.display()
-            )));
-        }
-        let path = out.join("shooters.csv");
-        atomic_file::write(&path, table.as_bytes())
-            .map_err(|error| Failure::io(path.display(), &error))?;
-        print_answer(&table)?;
-    }
+    let path = out.join("shooters.csv");
+    atomic_file::write(&path, table.as_bytes())
+        .map_err(|error| Failure::io(path.display(), &error))?;
+    print_answer(&table)?;
     Ok(worst)
+}
+
+/// A shooter's row of the table, and why there is no fit.
+fn fit_one(
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    folder: &Path,
+    options: &FitOptions,
+) -> Result<(String, Option<String>), Failure> {
+    let name = file.name_of(shots);
+    let fit = match file.fit(shots, &file.physics) {
+        Ok(fit) => fit,
+        Err(error) => {
+            let (shooter, count) = (cell(&name), shots.shots.len());
+            let row = format!("{shooter},{count},,,,,,{}\n", cell(&error.to_string()));
+            return Ok((row, Some(format!("{name}: {error}"))));
+        }
+    };
+    write(folder, file, shots, &fit, options)?;
+    let p = fit.probabilities[0].interval();
+    let made = if fit.makes.labelled > 0 {
+        fit.makes.made.to_string()
+    } else {
+        String::new()
+    };
+    let row = format!(
+        "{},{},{made},{:.4},{:.4},{:.4},{},\n",
+        cell(&name),
+        fit.posterior.shots,
+        p.mean,
+        p.low,
+        p.high,
+        cell(&folder.display().to_string())
+    );
+    Ok((row, None))
 }
 
 /// A cell of a CSV table.
