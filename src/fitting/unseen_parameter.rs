@@ -80,11 +80,8 @@ pub fn likelihood_curve(
     is_spin_measured: bool,
 ) -> Result<LikelihoodCurve, ProfileError> {
     let normals = common_normals(RELEASES, 1);
-    let (low, high) = parameter.range();
     let labelled: Vec<&MeasuredRelease> = shots.iter().filter(|shot| shot.made.is_some()).collect();
-    let mut points = Vec::with_capacity(VALUES);
-    for k in 0..VALUES {
-        let value = low + (high - low) * k as f64 / (VALUES - 1) as f64;
+    let log_likelihood = |value: f64| -> Result<f64, ProfileError> {
         let mut draw = typical.clone();
         let mut changed = profiles.to_vec();
         match parameter {
@@ -130,9 +127,22 @@ pub fn likelihood_curve(
                 })
             })
             .collect();
-        points.push((value, logarithms.iter().sum::<f64>()));
-    }
-    Ok(curve(parameter, points))
+        Ok(logarithms.iter().sum::<f64>())
+    };
+    let tabulate = |low: f64, high: f64| {
+        let step = (high - low) / (VALUES - 1) as f64;
+        let values = (0..VALUES).map(|k| low + step * k as f64);
+        values
+            .map(|value| Ok((value, log_likelihood(value)?)))
+            .collect::<Result<Vec<_>, ProfileError>>()
+    };
+    // Over the whole range, and again where the likelihood is: steps as wide as the interval would make it too narrow.
+    let (low, high) = parameter.range();
+    let coarse = curve(parameter, tabulate(low, high)?);
+    let step = (high - low) / (VALUES - 1) as f64;
+    let [from, to] = coarse.interval;
+    let fine = tabulate((from - step).max(low), (to + step).min(high))?;
+    Ok(curve(parameter, fine))
 }
 
 /// Maximum and interval of tabulated logarithms of the likelihood.
