@@ -3,16 +3,20 @@
 use super::config_files::{load_profile, read_text};
 use super::failure::{Failure, code};
 use super::value_parsers::PhysicsArg;
-use bankshot::fitting::{Place, Posterior, SpinSource, WeightedShots, fitted_profile, values_of};
+use bankshot::fitting::{
+    Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile, values_of,
+};
 use bankshot::output::fit_files::draws_table::read_draws;
 use bankshot::output::fit_files::fit_text::probability_text;
-use bankshot::shooter::{Nominal, Profile};
+use bankshot::shooter::{Location, Nominal, Profile};
+use bankshot::units::{DEGREE_RAD, FOOT_M};
 use std::fs::File;
 use std::path::Path;
 
 /// A fit that was written to a folder.
 pub(crate) struct FitFolder {
-    pub(crate) profile: Profile,
+    /// The fitted profile at each place.
+    pub(crate) profiles: Vec<Profile>,
     pub(crate) posterior: Posterior,
     /// Made and all shots with a result.
     pub(crate) observed: (usize, usize),
@@ -52,22 +56,74 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     let shots = json["shots"].as_u64().unwrap_or(0) as usize;
     let posterior = read_draws(file, spin, shots).map_err(|error| damaged(&draws_path, error))?;
     let written = load_profile(&folder.join("profile.toml"), &PhysicsArg::default(), true)?;
-    let place = Place {
-        location: written.location(),
-        release_height_m: written.shooter().release_height_m,
-    };
-    // The file has rounded numbers; the draws have all digits.
-    let name = &written.shooter().name;
-    let profile = fitted_profile(name, written.physics(), &posterior.typical(), &place)?;
+    let places = places(&json).map_err(|error| damaged(&json_path, error))?;
+    if places.len() != posterior.draws[0].means.len() {
+        return Err(damaged(
+            &json_path,
+            "has other places than draws.parquet; fit again",
+        ));
+    }
+    // The profile has rounded numbers; the draws have all digits.
+    let (name, typical) = (&written.shooter().name, posterior.typical());
+    let profiles = places
+        .iter()
+        .map(|place| fitted_profile(name, written.physics(), &typical, place))
+        .collect::<Result<_, _>>()?;
     Ok(FitFolder {
-        profile,
+        profiles,
         posterior,
         observed: (count("made"), count("shots")),
     })
 }
 
+/// The places of `fit.json`, with lengths in the unit of their names.
+fn places(json: &serde_json::Value) -> Result<Vec<Place>, String> {
+    let listed = json["places"].as_array().ok_or("has no places")?;
+    let value = |place: &serde_json::Value, names: [(&str, f64); 2]| {
+        let found = names
+            .iter()
+            .find_map(|(name, size)| Some(place[*name].as_f64()? * size));
+        found.ok_or_else(|| format!("a place has no {}", names[0].0))
+    };
+    listed
+        .iter()
+        .map(|place| {
+            Ok(Place {
+                location: Location {
+                    distance_m: value(place, [("distance_ft", FOOT_M), ("distance_m", 1.0)])?,
+                    angle_rad: value(place, [("court_angle_deg", DEGREE_RAD); 2])?,
+                },
+                release_height_m: value(
+                    place,
+                    [("release_height_ft", FOOT_M), ("release_height_m", 1.0)],
+                )?,
+            })
+        })
+        .collect()
+}
+
 /// Shots of the sample that P of the draws is computed with.
 const SHOTS: usize = 65_536;
+
+/// P of a nominal shot from the profile's location over draws of the scatter.
+pub(crate) fn probability_over_draws(
+    draws: &[Draw],
+    profile: &Profile,
+    nominal: &Nominal,
+    shots: usize,
+) -> Result<DrawProbabilities, Failure> {
+    if nominal.rifle_spin_rad_s != 0.0 || nominal.side_spin_rad_s != 0.0 {
+        return Err(Failure::usage(
+            "--draws: a fit knows backspin alone; this shot has side spin or rifle spin",
+        ));
+    }
+    let values = values_of(nominal);
+    // The scatter of the speed is that at this speed.
+    let here: Vec<Draw> = draws.iter().map(|draw| draw.aimed_at(values)).collect();
+    let seed = profile.search().seed;
+    let sample = WeightedShots::simulate(profile, (&here, 0), &[values], shots, seed);
+    Ok(sample.probabilities(&here, |_| values, |draw| draw.factor_at(0)))
+}
 
 /// P of a nominal shot over the draws of a fit, in words.
 pub(crate) fn text_over_draws(
@@ -75,14 +131,8 @@ pub(crate) fn text_over_draws(
     profile: &Profile,
     nominal: &Nominal,
 ) -> Result<String, Failure> {
-    let fit = read(folder)?;
-    let (draws, values) = (&fit.posterior.draws, values_of(nominal));
-    let seed = profile.search().seed;
-    let p = WeightedShots::simulate(profile, (draws, 0), &[values], SHOTS, seed).probabilities(
-        draws,
-        |_| values,
-        |draw| draw.factor_at(0),
-    );
+    let draws = &read(folder)?.posterior.draws;
+    let p = probability_over_draws(draws, profile, nominal, SHOTS)?;
     Ok(format!(
         "over {} draws of the scatter in {}: {}\n",
         draws.len(),

@@ -5,8 +5,8 @@ use super::failure::Failure;
 use super::value_parsers::{PhysicsArg, UnitsArg};
 use bankshot::dynamics::Simulator;
 use bankshot::fitting::{
-    FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tracker, TrackerNoise,
-    fit_shooter,
+    FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tails, Tracker,
+    TrackerNoise, fit_shooter, tails_of,
 };
 use bankshot::measured_shots::columns::Columns;
 use bankshot::measured_shots::court_frame::CourtFrame;
@@ -49,12 +49,24 @@ pub(crate) struct MeasuredShotsOptions {
     /// Backspin, where it was not measured [default: that of the population, 2.5 rev/s give or take 0.25].
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
+    /// Distribution of the releases about the aim: normal, student (heavier tails, as heavy as the shots ask for), or auto
+    /// (student where the kurtosis of the shots is too great for normal ones).
+    #[arg(long, value_name = "NAME", default_value = "auto")]
+    pub(crate) tails: TailsArg,
     /// Seed of the posterior's draws.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Units of the results.
     #[arg(long, default_value = "imperial")]
     pub(crate) units: UnitsArg,
+}
+
+/// The values of `--tails`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum TailsArg {
+    Auto,
+    Normal,
+    Student,
 }
 
 /// A file of measured shots, read.
@@ -71,6 +83,7 @@ pub(crate) struct MeasuredFile {
     pub(crate) row_name: &'static str,
     pub(crate) unused: Vec<String>,
     pub(crate) seed: u64,
+    pub(crate) tails: TailsArg,
     pub(crate) backspin_rad_s: Option<f64>,
 }
 
@@ -135,6 +148,7 @@ impl MeasuredShotsOptions {
             row_name: table.row_name,
             unused: columns.unused().into_iter().map(str::to_owned).collect(),
             seed: self.seed,
+            tails: self.tails,
             backspin_rad_s,
         })
     }
@@ -292,6 +306,11 @@ impl MeasuredFile {
         FitOptions {
             prior,
             spin: shots.spin,
+            tails: match self.tails {
+                TailsArg::Auto => tails_of(&shots.shots, shots.places.len()),
+                TailsArg::Normal => Tails::Normal,
+                TailsArg::Student => Tails::Student,
+            },
             seed: self.seed,
             ..FitOptions::default()
         }

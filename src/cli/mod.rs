@@ -1,6 +1,6 @@
 //! The command line: parses options, calls the library, prints answers. Only this module prints.
 
-mod command_line_flags;
+mod command_line;
 mod commands;
 mod config_files;
 mod failure;
@@ -15,7 +15,7 @@ mod terminal;
 mod value_parsers;
 
 use clap::{CommandFactory, Parser};
-use command_line_flags::{Arguments, Command};
+use command_line::{Arguments, Command};
 use commands::{
     advise, best, check, compare, compare_sessions, design, figures, fit, physics, plan,
     probability, report, simulate, sweep, sweep_status, trace,

@@ -24,9 +24,52 @@ const FILES: [&str; 7] = [
     "provenance.json",
 ];
 
-/// `<name>-<hash>`.
-fn folder_name(name: &str, hash: &str) -> String {
-    format!("{}-{}", safe_name(name), &hash[..12])
+/// The link, beside the numbered folders of a name, to the one that was written last.
+const LATEST: &str = "latest";
+
+/// The numbered folder of a run in `parent/NAME`: the first one that holds this very configuration, or nothing yet. So the
+/// same run again finds its folder, and another configuration of the same name never overwrites it.
+fn numbered(parent: &Path, name: &str, hash: &str) -> PathBuf {
+    let of_name = parent.join(safe_name(name));
+    let mut number = 1;
+    loop {
+        let folder = of_name.join(number.to_string());
+        match configuration_hash(&folder) {
+            Some(other) if other != hash => number += 1,
+            _ => return folder,
+        }
+    }
+}
+
+/// The hash of the configuration whose results are in a folder.
+fn configuration_hash(folder: &Path) -> Option<String> {
+    [
+        ("configuration.json", "hash"),
+        ("provenance.json", "configuration_blake3"),
+    ]
+    .into_iter()
+    .find_map(|(file, key)| {
+        let text = std::fs::read_to_string(folder.join(file)).ok()?;
+        let json: serde_json::Value = serde_json::from_str(&text).ok()?;
+        Some(json.get(key)?.as_str()?.to_owned())
+    })
+}
+
+/// Points the link `latest` beside a numbered folder to it. A file system without links has none.
+pub(crate) fn link_latest(folder: &Path) {
+    let (Some(parent), Some(number)) = (folder.parent(), folder.file_name()) else {
+        return;
+    };
+    let new = parent.join(format!("{LATEST}.{}", std::process::id()));
+    #[cfg(unix)]
+    if std::os::unix::fs::symlink(number, &new).is_ok()
+        && std::fs::rename(&new, parent.join(LATEST)).is_err()
+    {
+        // The link is a help, no result.
+        let _ = std::fs::remove_file(&new);
+    }
+    #[cfg(not(unix))]
+    let _ = (number, new);
 }
 
 /// A name reduced to letters, digits and dashes, so that it never becomes a path.
@@ -50,16 +93,16 @@ pub(crate) fn safe_name(name: &str) -> String {
     name.to_owned()
 }
 
-/// The folder of a profile's run in `parent`, or else in the profile's output folder.
-pub(crate) fn of_profile(profile: &Profile, parent: Option<&Path>) -> PathBuf {
-    let parent = parent.unwrap_or(Path::new(&profile.output().folder));
-    parent.join(folder_name(&profile.shooter().name, profile.hash()))
+/// The usual folder of a profile's run, in the profile's output folder.
+pub(crate) fn of_profile(profile: &Profile) -> PathBuf {
+    let parent = Path::new(&profile.output().folder);
+    numbered(parent, &profile.shooter().name, profile.hash())
 }
 
-/// The default folder of a sweep.
+/// The usual folder of a sweep.
 pub(crate) fn of_sweep(config: &SweepConfig) -> Result<PathBuf, Failure> {
-    let parent = PathBuf::from(&config.settings.output.folder);
-    Ok(parent.join(folder_name(&config.name, &config.hash()?)))
+    let parent = Path::new(&config.settings.output.folder);
+    Ok(numbered(parent, &config.name, &config.hash()?))
 }
 
 /// Creates a folder and checks that it can be written to, before anything is computed.

@@ -31,6 +31,22 @@ pub(super) struct Dispersion<const D: usize> {
     pub(super) growth: [f64; 2],
 }
 
+/// A model of releases whose posterior density is sampled.
+pub(super) trait ReleaseModel<const D: usize>: Model<Params = Vec<f64>> + Sync {
+    /// The part that the dispersion and its prior are read with; its parameters come first.
+    fn normal(&self) -> &DispersionPosterior<D>;
+
+    /// The prior of each parameter.
+    fn priors(&self) -> Vec<Spread>;
+
+    /// One over the degrees of freedom of the releases; 0 where they are normal.
+    fn tail_weight(&self, point: &[f64]) -> f64;
+
+    /// The aim at each place; what the point leaves open is drawn with independent standard normals.
+    fn means(&self, point: &[f64], normal: &mut dyn FnMut() -> f64)
+    -> Option<Vec<SVector<f64, D>>>;
+}
+
 /// The posterior density.
 pub(super) struct DispersionPosterior<const D: usize> {
     groups: Vec<NoiseGroup<D>>,
@@ -48,20 +64,26 @@ const LEAST_SPEED_STEP: f64 = 0.03;
 const LEAST_FACTOR: f64 = 0.05;
 /// The greatest speed of a profile, m/s.
 const MAX_SPEED_M_S: f64 = 40.0;
+/// No standard deviation of the speed is greater than this at any speed, m/s. A profile may have 10 m/s; the middle of the
+/// draws is a little greater than their mean.
+const MAX_SPEED_SD_M_S: f64 = 8.0;
 
-/// The least factor `1 + x (g + h x)` of the speed's standard deviation, with `x = v/v0 - 1`, of all speeds up to the
-/// greatest one.
+/// Whether a scatter of the speed makes sense at every speed of a profile, not at the measured ones alone: the factor
+/// `1 + x (g + h x)` of its standard deviation, with `x = v/v0 - 1`, is positive, and the standard deviation not too great.
 #[must_use]
-pub fn least_speed_factor([linear, quadratic]: [f64; 2], reference_speed_m_s: f64) -> f64 {
+pub fn is_speed_scatter_possible(
+    sd_m_s: f64,
+    [linear, quadratic]: [f64; 2],
+    reference_speed_m_s: f64,
+) -> bool {
     let factor = |x: f64| 1.0 + x * (linear + x * quadratic);
     let last = MAX_SPEED_M_S / reference_speed_m_s - 1.0;
-    let least = factor(-1.0).min(factor(last));
-    let vertex = -0.5 * linear / quadratic;
-    if quadratic > 0.0 && vertex > -1.0 && vertex < last {
-        least.min(factor(vertex))
-    } else {
-        least
-    }
+    let vertex = (-0.5 * linear / quadratic).clamp(-1.0, last);
+    let vertex = if vertex.is_nan() { 0.0 } else { vertex };
+    [-1.0, vertex, last]
+        .into_iter()
+        .map(factor)
+        .all(|factor| factor >= LEAST_FACTOR && sd_m_s * factor <= MAX_SPEED_SD_M_S)
 }
 
 impl<const D: usize> DispersionPosterior<D> {
@@ -164,8 +186,8 @@ impl<const D: usize> DispersionPosterior<D> {
             factor[(i, i)] = left.sqrt();
         }
         let mut growth = [0.0; 2];
-        let given = &point[D + Self::correlations()..];
-        growth[..given.len()].copy_from_slice(given);
+        let given = &point[D + Self::correlations()..][..self.growth_terms];
+        growth[..self.growth_terms].copy_from_slice(given);
         Dispersion {
             sds,
             correlation_factor: factor,
@@ -232,19 +254,26 @@ impl<const D: usize> DispersionPosterior<D> {
         Some((sum, means))
     }
 
-    /// The aim at each place for independent standard normals, given a dispersion.
-    pub(super) fn means(
+    /// The logarithm of the prior density of a point, and its dispersion. `None` where the posterior density
+    /// vanishes.
+    pub(super) fn log_prior(
         &self,
-        dispersion: &Dispersion<D>,
-        mut normal: impl FnMut() -> f64,
-    ) -> Option<Vec<SVector<f64, D>>> {
-        let (_, means) = self.likelihood(dispersion)?;
-        let draw = |(mean, precision): (SVector<f64, D>, Cholesky<f64, Const<D>>)| {
-            let z = SVector::from_fn(|_, _| normal());
-            let deviation = precision.l().transpose().solve_upper_triangular(&z)?;
-            Some(mean + deviation)
-        };
-        means.into_iter().map(draw).collect()
+        point: &[f64],
+        priors: &[Spread],
+    ) -> Option<(f64, Dispersion<D>)> {
+        let mut log_prior = 0.0;
+        for (value, prior) in point.iter().zip(priors) {
+            let z = (value - prior.mean) / prior.sd;
+            log_prior -= 0.5 * z * z;
+        }
+        // Far outside, and where numbers would leave their range.
+        if !(log_prior > -500.0) {
+            return None;
+        }
+        let dispersion = self.dispersion(point);
+        let Dispersion { sds, growth, .. } = dispersion;
+        is_speed_scatter_possible(sds[0], growth, self.reference_speed)
+            .then_some((log_prior, dispersion))
     }
 }
 
@@ -252,23 +281,40 @@ impl<const D: usize> Model for DispersionPosterior<D> {
     type Params = Vec<f64>;
 
     fn log_prob(&self, point: &Vec<f64>) -> f64 {
-        let mut log_prior = 0.0;
-        for (value, prior) in point.iter().zip(self.priors()) {
-            let z = (value - prior.mean) / prior.sd;
-            log_prior -= 0.5 * z * z;
-        }
-        // Far outside, and where numbers would leave their range.
-        if !(log_prior > -500.0) {
+        let Some((log_prior, dispersion)) = self.log_prior(point, &self.priors()) else {
             return f64::NEG_INFINITY;
-        }
-        let dispersion = self.dispersion(point);
-        // A profile holds for every speed, not for the measured ones alone.
-        if least_speed_factor(dispersion.growth, self.reference_speed) < LEAST_FACTOR {
-            return f64::NEG_INFINITY;
-        }
+        };
         match self.likelihood(&dispersion) {
             Some((log_likelihood, _)) if log_likelihood.is_finite() => log_prior + log_likelihood,
             _ => f64::NEG_INFINITY,
         }
+    }
+}
+
+impl<const D: usize> ReleaseModel<D> for DispersionPosterior<D> {
+    fn normal(&self) -> &DispersionPosterior<D> {
+        self
+    }
+
+    fn priors(&self) -> Vec<Spread> {
+        DispersionPosterior::priors(self)
+    }
+
+    fn tail_weight(&self, _point: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn means(
+        &self,
+        point: &[f64],
+        normal: &mut dyn FnMut() -> f64,
+    ) -> Option<Vec<SVector<f64, D>>> {
+        let (_, means) = self.likelihood(&self.dispersion(point))?;
+        let mut draw = |(mean, precision): (SVector<f64, D>, Cholesky<f64, Const<D>>)| {
+            let z = SVector::from_fn(|_, _| normal());
+            let deviation = precision.l().transpose().solve_upper_triangular(&z)?;
+            Some(mean + deviation)
+        };
+        means.into_iter().map(&mut draw).collect()
     }
 }

@@ -3,6 +3,9 @@
 //! The shots are drawn once, about one aim and with a wider scatter than that of the draws. For each draw, a shot
 //! counts with the ratio of the densities (self-normalised importance sampling; Owen, *Monte Carlo theory, methods
 //! and examples*, 2013, chapter 9). All draws share the shots, so their differences hardly have a numerical error.
+//!
+//! Where draws have heavier tails than normal ones, the shots are a mixture of three normal distributions, two of
+//! them wider, so that no far shot has a great weight.
 
 use super::interval::Interval;
 use super::measured_release::{Values, nominal_of};
@@ -18,14 +21,47 @@ use rayon::prelude::*;
 const REPLICATES: usize = 8;
 /// How much wider the scatter of the sample is than that of a draw with a wide one.
 const WIDENING: f64 = 1.1;
+/// For heavy tails: how much wider still the parts of the sample are, and the shares of the shots, each a run of Sobol
+/// points of a power of two.
+const TAIL_WIDENINGS: [f64; 3] = [1.0, 2.0, 4.5];
+const TAIL_SHARES: [f64; 3] = [0.5, 0.25, 0.25];
 
 /// Simulated shots that are weighted for the draws.
 pub struct WeightedShots {
     centre: Values,
     scales: Values,
-    /// Standard normals of each shot, replicate by replicate.
-    normals: Vec<Values>,
+    /// Deviations of each shot from the centre in units of the scales, replicate by replicate.
+    deviations: Vec<Values>,
+    /// Twice the logarithm of the density of each shot's deviations; a common constant is left out.
+    log_densities: Vec<f64>,
     made: Vec<bool>,
+}
+
+/// Twice the logarithm of the density that deviations are drawn from, without a constant.
+fn twice_log_density(z: &Values, is_heavy: bool) -> f64 {
+    let square: f64 = z.iter().map(|z| z * z).sum();
+    if !is_heavy {
+        return -square;
+    }
+    let parts = TAIL_WIDENINGS.iter().zip(TAIL_SHARES);
+    let density: f64 = parts
+        .map(|(wide, share)| {
+            let volume = wide * wide * wide * wide;
+            share / volume * libm::exp(-0.5 * square / (wide * wide))
+        })
+        .sum();
+    2.0 * libm::log(density)
+}
+
+/// How much wider than usual the part of the sample is that a point belongs to.
+fn tail_widening(index: u32, points: u32) -> f64 {
+    let share = f64::from(index) / f64::from(points);
+    let part = TAIL_SHARES.iter().scan(0.0, |sum, part| {
+        *sum += part;
+        Some(*sum)
+    });
+    let number = part.take_while(|end| share >= *end).count();
+    TAIL_WIDENINGS[number.min(TAIL_WIDENINGS.len() - 1)]
 }
 
 /// P of each draw.
@@ -107,17 +143,25 @@ impl WeightedShots {
         let sobol = Sobol::new();
         let release = profile.release(&nominal_of(&centre));
         let position_m = release.position_m();
+        let is_heavy = draws.iter().any(|draw| draw.tail_weight > 0.0);
         let parts: Vec<(Vec<Values>, Vec<bool>)> = (0..REPLICATES as u64)
             .into_par_iter()
             .map_init(BatchWorkspace::default, |workspace, replicate| {
                 let scramble = sobol.scrambled(ScrambleKey { seed, replicate });
-                let normals: Vec<Values> = (0..points)
-                    .map(|index| std::array::from_fn(|k| quantile(scramble.point(index, k))))
+                let deviations: Vec<Values> = (0..points)
+                    .map(|index| {
+                        let wide = if is_heavy {
+                            tail_widening(index, points)
+                        } else {
+                            1.0
+                        };
+                        std::array::from_fn(|k| wide * quantile(scramble.point(index, k)))
+                    })
                     .collect();
-                let starts: Vec<_> = normals
+                let starts: Vec<_> = deviations
                     .iter()
-                    .map(|normals| {
-                        let value = |i: usize| centre[i] + scales[i] * normals[i];
+                    .map(|deviations| {
+                        let value = |i: usize| centre[i] + scales[i] * deviations[i];
                         let shot = profile.release(&nominal_of(&std::array::from_fn(value)));
                         ReleaseWithoutSpeed::at(position_m, &shot)
                             .state(shot.speed_m_s, shot.backspin_rad_s)
@@ -125,14 +169,17 @@ impl WeightedShots {
                     .collect();
                 let verdicts = profile.simulator().finite_verdicts(&starts, workspace);
                 let made = verdicts.iter().map(|verdict| verdict.made).collect();
-                (normals, made)
+                (deviations, made)
             })
             .collect();
-        let (normals, made): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        let (deviations, made): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        let deviations = deviations.concat();
+        let density = |z: &Values| twice_log_density(z, is_heavy);
         Self {
             centre,
             scales,
-            normals: normals.concat(),
+            log_densities: deviations.par_iter().map(density).collect(),
+            deviations,
             made: made.concat(),
         }
     }
@@ -146,7 +193,7 @@ impl WeightedShots {
     ) -> DrawProbabilities {
         let all: Vec<[(f64, f64); REPLICATES]> = draws
             .par_iter()
-            .map(|draw| self.weighted_counts(&mean(draw), &factor(draw)))
+            .map(|draw| self.weighted_counts(&mean(draw), &factor(draw), draw.tail_weight))
             .collect();
         let share = |counts: &mut dyn Iterator<Item = (f64, f64)>| {
             let (mut made, mut total) = (0.0, 0.0);
@@ -177,6 +224,7 @@ impl WeightedShots {
         &self,
         mean: &Values,
         factor: &SMatrix<f64, 4, 4>,
+        tail_weight: f64,
     ) -> [(f64, f64); REPLICATES] {
         // u = L^-1 (x - mean), with x = centre + scales z, is lower triangular in z.
         let Some(inverse) = factor.solve_lower_triangular(&SMatrix::<f64, 4, 4>::identity()) else {
@@ -190,23 +238,32 @@ impl WeightedShots {
                 slopes[i][j] = inverse[(i, j)] * self.scales[j];
             }
         }
-        let points = self.normals.len() / REPLICATES;
-        let weight = |z: &Values| {
-            let mut exponent = 0.0;
+        let points = self.deviations.len() / REPLICATES;
+        let weight = |z: &Values, log_density: f64| {
+            let mut square = 0.0;
             for i in 0..4 {
                 let mut u = offset[i];
                 for j in 0..=i {
                     u += slopes[i][j] * z[j];
                 }
-                exponent += z[i] * z[i] - u * u;
+                square += u * u;
             }
-            libm::exp(0.5 * exponent)
+            let twice_log_target = if tail_weight > 0.0 {
+                // The t density of four values whose covariance is that of the factor.
+                let ratio = tail_weight / (1.0 - 2.0 * tail_weight);
+                -(1.0 / tail_weight + 4.0) * libm::log1p(ratio * square)
+            } else {
+                -square
+            };
+            libm::exp(0.5 * (twice_log_target - log_density))
         };
         std::array::from_fn(|replicate| {
             let range = replicate * points..(replicate + 1) * points;
             let (mut made, mut total) = (0.0, 0.0);
-            for (z, is_made) in self.normals[range.clone()].iter().zip(&self.made[range]) {
-                let weight = weight(z);
+            let densities = &self.log_densities[range.clone()];
+            let shots = self.deviations[range.clone()].iter().zip(densities);
+            for ((z, log_density), is_made) in shots.zip(&self.made[range]) {
+                let weight = weight(z, *log_density);
                 total += weight;
                 if *is_made {
                     made += weight;

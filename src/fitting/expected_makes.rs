@@ -106,18 +106,26 @@ pub(super) fn release_given(
     is_spin_measured: bool,
 ) -> Option<(Values, Covariance)> {
     let factor = draw.factors[shot.place];
-    let prior = factor * factor.transpose();
+    let mut prior = factor * factor.transpose();
     let mean = nalgebra::Vector4::from(draw.means[shot.place]);
     let mut noise = shot.noise;
+    let mut values = nalgebra::Vector4::from(shot.values);
     if !is_spin_measured {
         // A measurement that says nothing.
         noise[(3, 3)] = 1e9;
-    }
-    let gain = prior * (prior + noise).try_inverse()?;
-    let mut values = nalgebra::Vector4::from(shot.values);
-    if !is_spin_measured {
         values[3] = mean[3];
     }
+    if draw.tail_weight > 0.0 {
+        // The farther a shot, the wider the normal part of the mixture that it comes from: with d values and n degrees of
+        // freedom the expected inverse scale is (n + d)/(n + squared distance).
+        let dimension = if is_spin_measured { 4.0 } else { 3.0 };
+        let freedom = 1.0 / draw.tail_weight;
+        prior *= 1.0 - 2.0 * draw.tail_weight;
+        let deviation = values - mean;
+        let square = deviation.dot(&((prior + noise).try_inverse()? * deviation));
+        prior *= (freedom + square) / (freedom + dimension);
+    }
+    let gain = prior * (prior + noise).try_inverse()?;
     let posterior = mean + gain * (values - mean);
     let covariance = prior - gain * prior;
     Some((

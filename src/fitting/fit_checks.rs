@@ -1,7 +1,7 @@
 //! Checks of measured shots: before a fit, whether it makes sense; after it, whether the model holds.
 
 use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
-use super::posterior::{Draw, SpinSource};
+use super::posterior::{Draw, SpinSource, Tails};
 use crate::math::normal_distribution::cdf;
 use crate::model::Physics;
 use nalgebra::{SMatrix, SVector};
@@ -55,6 +55,8 @@ pub enum FitWarning {
     OtherNoise(f64),
     /// The shots are not normal: the p-values of Mardia's skewness and kurtosis.
     NotNormal(f64, f64),
+    /// The tails are heavier than normal ones, and were fitted: one over the degrees of freedom.
+    HeavyTails(f64),
     /// The aim drifts: value, p-value.
     Drift(&'static str, f64),
     /// The number of makes is not what these shots give: seen, expected, its standard deviation.
@@ -84,6 +86,11 @@ impl std::fmt::Display for FitWarning {
             Self::NotNormal(skewness, kurtosis) => write!(
                 out,
                 "the releases are not normal (Mardia: skewness p = {skewness:.4}, kurtosis p = {kurtosis:.4}); look for outliers, or for shots of two kinds"
+            ),
+            Self::HeavyTails(weight) => write!(
+                out,
+                "far releases are more frequent than normal ones; a t distribution with {:.1} degrees of freedom was fitted. profile.toml holds its standard deviations, draws.parquet all of it (`--draws`)",
+                1.0 / weight
             ),
             Self::OtherMakes(made, expected, sd) => write!(
                 out,
@@ -232,6 +239,8 @@ pub struct ShapeTest {
     pub skewness_p: f64,
     /// p-value of the kurtosis.
     pub kurtosis_p: f64,
+    /// Whether the kurtosis is greater than that of a normal distribution.
+    pub is_heavy: bool,
 }
 
 /// Mardia's tests (Biometrika 57 (1970) 519) of speed, pitch and polar angle, with the normal approximations of both
@@ -263,6 +272,7 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
         return ShapeTest {
             skewness_p: 1.0,
             kurtosis_p: 1.0,
+            is_heavy: false,
         };
     };
     let (mut skewness, mut kurtosis) = (0.0, 0.0);
@@ -289,6 +299,20 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
     ShapeTest {
         skewness_p: 1.0 - cdf(z),
         kurtosis_p: 2.0 * (1.0 - cdf(kurtosis_z.abs())),
+        is_heavy: kurtosis_z > 0.0,
+    }
+}
+
+/// The distribution that the shots ask for: Student's t where their kurtosis is too great for normal ones. Of normal shots
+/// about one test in fifty is taken for heavy, which costs a little precision.
+#[must_use]
+pub fn tails_of(shots: &[MeasuredRelease], places: usize) -> Tails {
+    const LEVEL: f64 = 0.04;
+    let shape = shape_test(shots, places);
+    if shape.is_heavy && shape.kurtosis_p < LEVEL {
+        Tails::Student
+    } else {
+        Tails::Normal
     }
 }
 
@@ -368,7 +392,9 @@ pub fn warnings(
         }
     }
     let shape = shape_test(shots, places);
-    if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
+    if typical.tail_weight > 0.0 {
+        warnings.push(FitWarning::HeavyTails(typical.tail_weight));
+    } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
         warnings.push(FitWarning::NotNormal(shape.skewness_p, shape.kurtosis_p));
     }
     for trend in trends(shots, &typical.means, values) {

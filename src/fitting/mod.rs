@@ -23,6 +23,7 @@ mod population;
 mod posterior;
 mod session_comparison;
 mod shooter_fit;
+mod student_posterior;
 mod test_design;
 mod tracker;
 mod unseen_parameter;
@@ -30,14 +31,14 @@ mod unseen_parameter;
 pub use advice::{
     Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
 };
-pub use dispersion_posterior::least_speed_factor;
+pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{
     ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,
 };
 pub use fit_checks::{
     FitWarning, SessionTrend, ShapeTest, TestError, check_releases, check_speed_unit, far_shots,
-    noise_warning, shape_test, trends, warnings,
+    noise_warning, shape_test, tails_of, trends, warnings,
 };
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};
@@ -47,7 +48,7 @@ pub use measured_release::{
     Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,
 };
 pub use population::{PopulationPrior, Spread};
-pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit, pair_name};
+pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
 pub use session_comparison::{SessionComparison, compare_probabilities, compare_sessions};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};

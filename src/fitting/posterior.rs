@@ -1,10 +1,11 @@
 //! Draws of a shooter's aim and dispersion.
 
 use super::chain_diagnostics::ParameterChains;
-use super::dispersion_posterior::{Dispersion, DispersionPosterior};
+use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::interval::Interval;
 use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
 use super::population::{PopulationPrior, Spread};
+use super::student_posterior::StudentPosterior;
 use crate::math::normal_distribution::quantile;
 use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};
 use hammer_and_sample::{MinChainLen, Move, Params, Serial, Stretch, sample};
@@ -52,6 +53,15 @@ impl SpinSource {
     }
 }
 
+/// The distribution of the releases about the aim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tails {
+    /// Normal.
+    Normal,
+    /// Student's t, its degrees of freedom (3 or more) fitted.
+    Student,
+}
+
 /// What a fit is told.
 #[derive(Clone, Copy, Debug)]
 pub struct FitOptions {
@@ -59,6 +69,8 @@ pub struct FitOptions {
     pub prior: PopulationPrior,
     /// Whether each release has a measured backspin.
     pub spin: SpinSource,
+    /// The distribution of the releases.
+    pub tails: Tails,
     /// The number of draws that are kept.
     pub draws: usize,
     /// Seed of the random numbers. The same seed gives the same bits for any number of threads.
@@ -70,6 +82,7 @@ impl Default for FitOptions {
         Self {
             prior: PopulationPrior::MEASURED,
             spin: SpinSource::Assumed,
+            tails: Tails::Normal,
             draws: 1000,
             seed: 1,
         }
@@ -87,6 +100,8 @@ pub struct Draw {
     pub correlation: SMatrix<f64, 4, 4>,
     /// `c10`, `c11`, `c12` of Eq. 28 (SI units).
     pub speed_coefficients: [f64; 3],
+    /// One over the degrees of freedom of the releases' t distribution; 0 where they are normal.
+    pub tail_weight: f64,
     /// The Cholesky factor of the covariance of the releases at each place.
     pub(super) factors: Vec<SMatrix<f64, 4, 4>>,
 }
@@ -117,8 +132,31 @@ impl Draw {
             sds,
             correlation,
             speed_coefficients,
+            tail_weight: 0.0,
             factors,
         }
+    }
+
+    /// The same with heavier tails: `tail_weight` is one over the degrees of freedom, below 1/2. The standard deviations
+    /// stay those of the releases.
+    #[must_use]
+    pub fn with_tail_weight(self, tail_weight: f64) -> Self {
+        Self {
+            tail_weight,
+            ..self
+        }
+    }
+
+    /// The same scatter about one other aim.
+    #[must_use]
+    pub fn aimed_at(&self, mean: Values) -> Self {
+        Self::new(
+            vec![mean],
+            self.sds,
+            self.correlation,
+            self.speed_coefficients,
+        )
+        .with_tail_weight(self.tail_weight)
     }
 
     /// The standard deviations at a place.
@@ -216,6 +254,7 @@ impl Posterior {
             sds,
             correlation,
             speed_coefficients: std::array::from_fn(|k| mean(&|d| d.speed_coefficients[k]) * scale),
+            tail_weight: mean(&|d| d.tail_weight),
             factors: (0..places)
                 .map(|p| {
                     let covariance: SMatrix<f64, 4, 4> = self
@@ -291,6 +330,26 @@ pub fn fit(
     }
 }
 
+fn fit_values<const D: usize>(
+    shots: &[MeasuredRelease],
+    places: usize,
+    options: &FitOptions,
+) -> Result<Posterior, FitError> {
+    let prior = options.prior;
+    match options.tails {
+        Tails::Normal => sample_posterior(
+            &DispersionPosterior::<D>::new(shots, places, prior),
+            shots,
+            options,
+        ),
+        Tails::Student => sample_posterior(
+            &StudentPosterior::<D>::new(shots, places, prior),
+            shots,
+            options,
+        ),
+    }
+}
+
 /// A standard normal number.
 fn normal(random: &mut impl Rng) -> f64 {
     loop {
@@ -301,16 +360,15 @@ fn normal(random: &mut impl Rng) -> f64 {
     }
 }
 
-fn fit_values<const D: usize>(
+fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
+    model: &M,
     shots: &[MeasuredRelease],
-    places: usize,
     options: &FitOptions,
 ) -> Result<Posterior, FitError> {
-    let model = DispersionPosterior::<D>::new(shots, places, options.prior);
     let priors = model.priors();
-    let dimension = model.dimension();
+    let dimension = priors.len();
     let walkers = LEAST_WALKERS.max(2 * dimension).next_multiple_of(2);
-    let starts = starting_point(&model, shots, &priors);
+    let starts = starting_point(model.normal(), shots, &priors);
     let mut steps = FIRST_STEPS;
     for _ in 0..=DOUBLINGS {
         let burn_in = BURN_IN.max(steps / 4);
@@ -332,7 +390,7 @@ fn fit_values<const D: usize>(
                 };
                 let length = MinChainLen((burn_in + steps) * walkers);
                 let all = (0..walkers).map(walker);
-                let (mut chain, _) = sample(&model, &proposal, all, length, Serial);
+                let (mut chain, _) = sample(model, &proposal, all, length, Serial);
                 chain.drain(..burn_in * walkers);
                 chain
             })
@@ -362,7 +420,7 @@ fn fit_values<const D: usize>(
         }
         if r_hat <= LARGEST_R_HAT && effective >= LEAST_EFFECTIVE_SIZE {
             let points: Vec<&Vec<f64>> = chains.iter().flatten().collect();
-            let draws = draws_of(&model, &points, options)?;
+            let draws = draws_of(model, &points, options)?;
             let weights = prior_weights::<D>(&points, &priors);
             return Ok(Posterior {
                 draws,
@@ -370,7 +428,7 @@ fn fit_values<const D: usize>(
                 r_hat,
                 effective_sample_size: effective,
                 prior_weights: weights,
-                growth_terms: model.growth_terms,
+                growth_terms: model.normal().growth_terms,
                 shots: shots.len(),
             });
         }
@@ -417,7 +475,12 @@ fn starting_point<const D: usize>(
         };
     }
     for start in &mut starts[D..] {
-        start.sd *= 0.3;
+        // A mean with a flat prior is in units of its standard error.
+        start.sd = if start.sd.is_finite() {
+            0.3 * start.sd
+        } else {
+            1.0
+        };
     }
     starts
 }
@@ -436,7 +499,7 @@ fn prior_weights<const D: usize>(points: &[&Vec<f64>], priors: &[Spread]) -> Val
 }
 
 fn draws_of<const D: usize>(
-    model: &DispersionPosterior<D>,
+    model: &impl ReleaseModel<D>,
     points: &[&Vec<f64>],
     options: &FitOptions,
 ) -> Result<Vec<Draw>, FitError> {
@@ -445,12 +508,13 @@ fn draws_of<const D: usize>(
     (0..options.draws)
         .map(|k| {
             let point = points[k * points.len() / options.draws];
-            let dispersion = model.dispersion(point);
+            let dispersion = model.normal().dispersion(point);
             let means = model
-                .means(&dispersion, || normal(&mut random))
+                .means(point, &mut || normal(&mut random))
                 .ok_or(FitError::NoScatter)?;
             let unseen = [normal(&mut random), normal(&mut random)];
-            Ok(draw_of(model, &dispersion, &means, unseen, options))
+            let draw = draw_of(model.normal(), &dispersion, &means, unseen, options);
+            Ok(draw.with_tail_weight(model.tail_weight(point)))
         })
         .collect()
 }

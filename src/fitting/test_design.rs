@@ -3,7 +3,7 @@
 use super::advice::usual_probabilities;
 use super::fitted_profile::fitted_profile;
 use super::measured_release::{Covariance, MeasuredRelease, Place, Values};
-use super::posterior::{FitError, FitOptions, SpinSource, fit};
+use super::posterior::{FitError, FitOptions, SpinSource, Tails, fit};
 use crate::math::normal_distribution::quantile;
 use crate::probability::{Progress, Sampler};
 use crate::shooter::{Nominal, Profile, ReleaseDistribution};
@@ -108,6 +108,7 @@ pub fn design(
                 let options = FitOptions {
                     prior,
                     spin: SpinSource::Given,
+                    tails: Tails::Normal,
                     draws: 400,
                     seed,
                 };

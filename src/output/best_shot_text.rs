@@ -11,7 +11,78 @@ use std::fmt::Write;
 /// Angles below this are printed as zero, deg.
 const ZERO_DEG: f64 = 0.005;
 
-/// The table that `best` prints, with notes below it.
+/// The answer in two or three sentences, for a player.
+#[must_use]
+pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let location = profile.location();
+    let name = &profile.shooter().name;
+    let place = format!(
+        "{}{:.2} {long} from the hoop{}",
+        if name.is_empty() {
+            String::new()
+        } else {
+            format!("{name}, ")
+        },
+        location.distance_m / metre,
+        if location.angle_rad.abs() < ZERO_DEG * DEGREE_RAD {
+            String::new()
+        } else {
+            format!(
+                ", at {:.0} deg on the court",
+                location.angle_rad / DEGREE_RAD
+            )
+        }
+    );
+    let mut found: Vec<(ShotKind, &BestShot)> = best
+        .by_kind()
+        .into_iter()
+        .filter_map(|(kind, shot)| Some((kind, shot.as_ref().ok()?)))
+        .collect();
+    found.sort_by(|a, b| {
+        b.1.estimate
+            .probability
+            .total_cmp(&a.1.estimate.probability)
+    });
+    let in_hundred = |shot: &BestShot| format!("{:.0}", 100.0 * shot.estimate.probability);
+    let Some((kind, shot)) = found.first() else {
+        return format!("{place}: no clean shot.\n");
+    };
+    let how = match kind {
+        ShotKind::Direct => "Shoot it direct",
+        ShotKind::Bank => "Bank it",
+    };
+    let nominal = &shot.nominal;
+    let backspin = nominal.backspin_rad_s / REV_RAD;
+    let spin = if backspin.abs() < 0.05 {
+        "without spin".to_owned()
+    } else {
+        format!("with {backspin:.1} rev/s of backspin")
+    };
+    let others: String = found[1..]
+        .iter()
+        .map(|(kind, shot)| format!(" The best {} shot makes {}.", kind.name(), in_hundred(shot)))
+        .collect();
+    let mut text = format!(
+        "{place}.\n{how}: {} in 100.{others}\nRelease it at {:.1} {long}/s, {:.0} deg up, {spin}.\n",
+        in_hundred(shot),
+        nominal.speed_m_s / metre,
+        nominal.pitch_rad / DEGREE_RAD
+    );
+    let aim = aim_lines(*kind, shot, units).join(" ");
+    match kind {
+        _ if aim.is_empty() => {}
+        ShotKind::Direct => text += &format!("Aim {aim}.\n"),
+        ShotKind::Bank => {
+            let is_aside = aim.ends_with("right") || aim.ends_with("left");
+            let of = if is_aside { " of its middle" } else { "" };
+            text += &format!("Aim at {aim}{of}.\n");
+        }
+    }
+    text
+}
+
+/// The table that `best` prints, at most 80 columns wide, with notes below it.
 #[must_use]
 pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
     let (long, _) = units.length();
@@ -22,10 +93,8 @@ pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) 
         format!("speed\n{long}/s"),
         "pitch\ndeg".to_owned(),
         "polar\ndeg".to_owned(),
-        "backspin\nrev/s".to_owned(),
+        "spin\nrev/s".to_owned(),
         "probability".to_owned(),
-        "swish / ring\n/ board".to_owned(),
-        "entry\ndeg".to_owned(),
         "aim".to_owned(),
     ]);
     let mut notes = Vec::new();
@@ -38,7 +107,7 @@ pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) 
             Err(reason) => notes.push(format!("{}: {reason}.", kind.name())),
         }
     }
-    for column in table.column_iter_mut().skip(1) {
+    for column in table.column_iter_mut().skip(1).take(5) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     let mut text = table.trim_fmt();
@@ -54,7 +123,6 @@ fn table_row(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> 
     let (_, metre) = units.length();
     let nominal = &shot.nominal;
     let estimate = &shot.estimate;
-    let shares = &estimate.shares;
     let polar_deg = nominal.polar_rad / DEGREE_RAD;
     let polar_deg = if polar_deg.abs() < ZERO_DEG {
         0.0
@@ -71,36 +139,30 @@ fn table_row(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> 
             "{:.4} ± {:.4}",
             estimate.probability, estimate.standard_error
         ),
-        format!(
-            "{:.2} / {:.2} / {:.2}",
-            shares.swish,
-            shares.ring,
-            shares.banked()
-        ),
-        shot.outcome.entry.map_or_else(String::new, |entry| {
-            format!("{:.1}", entry.angle_rad / DEGREE_RAD)
-        }),
-        aim_text(kind, shot, units),
+        aim_lines(kind, shot, units).join("\n"),
     ]
 }
 
-/// Where a shot is aimed: on the board for a bank shot, else relative to the hoop's centre.
-fn aim_text(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> String {
+/// Where a shot is aimed, in short lines: on the board for a bank shot, else relative to the hoop's centre.
+fn aim_lines(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
     let (short, short_metre) = units.short_length();
     match (kind, shot.outcome.board_point_m, shot.aim_past_centre_m) {
         (ShotKind::Bank, Some((_, y, z)), _) => {
             let side = if z < 0.0 { "below" } else { "above" };
-            format!(
-                "board, {:.1} {short} {side} ring,\n{}",
-                z.abs() / short_metre,
-                across_text(y / short_metre, short)
-            )
+            vec![
+                format!("the board, {:.1} {short}", z.abs() / short_metre),
+                format!("{side} the ring,"),
+                across_text(y / short_metre, short),
+            ]
         }
         (_, _, Some(past)) => {
             let side = if past < 0.0 { "short of" } else { "past" };
-            format!("{:.1} {short} {side} centre", past.abs() / short_metre)
+            vec![
+                format!("{:.1} {short} {side}", past.abs() / short_metre),
+                "the ring's centre".to_owned(),
+            ]
         }
-        _ => String::new(),
+        _ => Vec::new(),
     }
 }
 
@@ -109,8 +171,74 @@ fn across_text(across: f64, unit: &str) -> String {
         return "on its middle line".to_owned();
     }
     let side = if across > 0.0 { "right" } else { "left" };
-    format!("{:.1} {unit} to the {side}, facing the board", across.abs())
+    format!("{:.1} {unit} {side}", across.abs())
 }
+
+/// What matters most for the better kind of shot, in at most ten lines.
+#[must_use]
+pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
+    let found = best.by_kind().into_iter();
+    let found = found.filter_map(|(kind, shot)| Some((kind, shot.as_ref().ok()?)));
+    let Some((kind, shot)) = found.reduce(|a, b| {
+        if b.1.estimate.probability > a.1.estimate.probability {
+            b
+        } else {
+            a
+        }
+    }) else {
+        return String::new();
+    };
+    let sensitivity = &shot.sensitivity;
+    let mut text = format!(
+        "what matters for the {} shot (points: makes in 100 shots; ± is numerical)\n",
+        kind.name()
+    );
+    let mut line = |label: &str, words: String| {
+        // Writing to a String does not fail.
+        let _ = writeln!(text, "  {label:<14} {words}");
+    };
+    for cost in sensitivity.errors.iter().take(MOST_ERRORS) {
+        let name = ReleaseVariable::name(cost.variable).replace('_', " ");
+        line(
+            &format!("{name} error"),
+            format!(
+                "without it {}, a tenth smaller {}",
+                points(&cost.without),
+                points(&cost.a_tenth_less)
+            ),
+        );
+    }
+    if let Some(gain) = sensitivity.backspin_gain() {
+        line("backspin", format!("{} over none", points(&gain)));
+    }
+    let higher = sensitivity.heights.iter();
+    if let Some(height) = higher
+        .filter(|height| height.value > profile.shooter().release_height_m)
+        .next_back()
+    {
+        let (long, metre) = units.length();
+        let by = (height.value - profile.shooter().release_height_m) / metre;
+        line(
+            "height",
+            format!("{} if released {by:.2} {long} higher", points(&height.gain)),
+        );
+    }
+    line(
+        "goes in over",
+        format!("{}, one at a time", windows_text(sensitivity, units)),
+    );
+    if let Some(difference) = bank_minus_direct(best) {
+        line("bank or direct", comparison_text(&difference));
+    }
+    text
+}
+
+/// Errors that are worth a line.
+const MOST_ERRORS: usize = 2;
+
+/// What P leaves out.
+pub const PROFILE_IS_EXACT: &str =
+    "P takes the profile as exact; `bankshot fit` says how sure a measured one is.\n";
 
 /// What the table does not show of a shot.
 fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<String> {
@@ -167,8 +295,12 @@ fn limit_text(limit: Limit) -> &'static str {
 fn points(gain: &Difference) -> String {
     let value = 100.0 * gain.value;
     // Do not print a negative zero.
-    let value = if value.abs() < 0.05 { 0.0 } else { value };
-    format!("{value:+.1} ± {:.1}", 100.0 * gain.standard_error)
+    let error = 100.0 * gain.standard_error;
+    // Enough digits that the error is not zero.
+    let decimals = if error < 0.05 { 2 } else { 1 };
+    let least = if error < 0.05 { 0.005 } else { 0.05 };
+    let value = if value.abs() < least { 0.0 } else { value };
+    format!("{value:+.decimals$} ± {error:.decimals$}")
 }
 
 /// The sensitivity of the best shots as text.
@@ -185,6 +317,17 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
             "  made over a range of {}",
             windows_text(sensitivity, units)
         );
+        let shares = &shot.estimate.shares;
+        let entry = shot.outcome.entry.map_or_else(String::new, |entry| {
+            format!("; enters at {:.1} deg", entry.angle_rad / DEGREE_RAD)
+        });
+        let _ = writeln!(
+            text,
+            "  goes in      swish {:.2}, ring {:.2}, board {:.2}{entry}",
+            shares.swish,
+            shares.ring,
+            shares.banked()
+        );
         add_errors(&mut text, &sensitivity.errors);
         if let Some(gain) = sensitivity.backspin_gain() {
             let verdict = if gain.is_surely_positive() {
@@ -194,14 +337,7 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
             };
             let _ = writeln!(text, "  backspin     {} over none{verdict}", points(&gain));
         }
-        let _ = writeln!(
-            text,
-            "  height       {} (same pitch, speed re-optimised)",
-            heights_text(profile, sensitivity, units)
-        );
-    }
-    if let Some(difference) = bank_minus_direct(best) {
-        let _ = writeln!(text, "{}", comparison_text(&difference));
+        add_heights(&mut text, profile, sensitivity, units);
     }
     text
 }
@@ -213,7 +349,7 @@ fn windows_text(sensitivity: &Sensitivity, units: UnitSystem) -> String {
         variable => format!("{} {:.1} deg", variable.name(), window.width() / DEGREE_RAD),
     };
     let widths: Vec<String> = sensitivity.windows.iter().map(width).collect();
-    format!("{}, one at a time", widths.join(", "))
+    widths.join(", ")
 }
 
 fn add_errors(text: &mut String, errors: &[ErrorCost]) {
@@ -229,17 +365,19 @@ fn add_errors(text: &mut String, errors: &[ErrorCost]) {
     }
 }
 
-fn heights_text(profile: &Profile, sensitivity: &Sensitivity, units: UnitSystem) -> String {
+/// What other release heights are worth, with the same pitch angle and the speed found anew.
+fn add_heights(text: &mut String, profile: &Profile, sensitivity: &Sensitivity, units: UnitSystem) {
     let (long, metre) = units.length();
-    let heights: Vec<String> = sensitivity
-        .heights
-        .iter()
-        .map(|height| {
-            let by = height.value - profile.shooter().release_height_m;
-            format!("{:+.2} {long} {}", by / metre, points(&height.gain))
-        })
-        .collect();
-    heights.join(", ")
+    for (i, height) in sensitivity.heights.iter().enumerate() {
+        let by = height.value - profile.shooter().release_height_m;
+        let label = if i == 0 { "height" } else { "" };
+        let _ = writeln!(
+            text,
+            "  {label:12} {:+.2} {long}    {}",
+            by / metre,
+            points(&height.gain)
+        );
+    }
 }
 
 fn comparison_text(bank_minus_direct: &Difference) -> String {
@@ -249,8 +387,11 @@ fn comparison_text(bank_minus_direct: &Difference) -> String {
         ("direct", "bank")
     };
     format!(
-        "{better} beats {worse} by {:.1} ± {:.1} points",
-        100.0 * bank_minus_direct.value.abs(),
-        100.0 * bank_minus_direct.standard_error
+        "{better} beats {worse} by {}",
+        points(&Difference {
+            value: bank_minus_direct.value.abs(),
+            ..*bank_minus_direct
+        })
+        .trim_start_matches('+')
     )
 }

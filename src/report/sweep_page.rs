@@ -10,7 +10,6 @@ use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{sweep_bank_direct_map, sweep_best_shot_maps};
-use crate::shooter::Nominal;
 use crate::sweep::SweepConfig;
 use crate::sweep::columns;
 use crate::sweep::job_list::Jobs;
@@ -103,14 +102,7 @@ fn shot_with_probability(row: &ResultRow, jobs: &Jobs, kind: usize) -> Option<Pl
     let value = |column| row.real(column).unwrap_or(0.0);
     Some(PlottedShot {
         kind: jobs.kinds[kind],
-        nominal: Nominal {
-            speed_m_s: value(columns::SPEED),
-            pitch_rad: value(columns::PITCH),
-            polar_rad: value(columns::POLAR),
-            backspin_rad_s: value(columns::BACKSPIN),
-            rifle_spin_rad_s: value(columns::RIFLE_SPIN),
-            side_spin_rad_s: value(columns::SIDE_SPIN),
-        },
+        nominal: row.nominal()?,
         probability: row.real(columns::PROBABILITY)?,
         standard_error: value(columns::STANDARD_ERROR),
     })

@@ -4,7 +4,7 @@ use super::columns::{self, IntegerColumn, RealColumn, TextColumn};
 use super::court_region::CourtPlace;
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::{BestShot, Limit, NoShot, ShotKind};
-use crate::shooter::Profile;
+use crate::shooter::{Nominal, Profile};
 
 /// One value.
 #[derive(Clone, Debug, PartialEq)]
@@ -259,6 +259,19 @@ impl ResultRow {
         Some(Difference {
             value: self.real(columns::PROBABILITY)?,
             standard_error: self.real(columns::STANDARD_ERROR)?,
+        })
+    }
+
+    /// The nominal shot, if one was found.
+    #[must_use]
+    pub fn nominal(&self) -> Option<Nominal> {
+        Some(Nominal {
+            speed_m_s: self.real(columns::SPEED)?,
+            pitch_rad: self.real(columns::PITCH)?,
+            polar_rad: self.real(columns::POLAR)?,
+            backspin_rad_s: self.real(columns::BACKSPIN)?,
+            rifle_spin_rad_s: self.real(columns::RIFLE_SPIN)?,
+            side_spin_rad_s: self.real(columns::SIDE_SPIN)?,
         })
     }
 

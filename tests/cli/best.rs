@@ -1,6 +1,8 @@
 //! `best`: its JSON, its folder, and shots that cannot be found.
 
-use super::support::{Answer, best, file_names, small_profile, too_slow_profile, write_file};
+use super::support::{
+    Answer, bankshot, best, file_names, small_profile, too_slow_profile, write_file,
+};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -26,9 +28,9 @@ fn contract_best_prints_only_json_and_writes_its_folder() {
         }
         assert!(answer[kind]["standard_error"].as_f64().unwrap() <= 0.01);
     }
-    let run = runs.join(&file_names(&runs)[0]);
+    let run = &runs;
     assert_eq!(
-        file_names(&run),
+        file_names(run),
         [
             "best_shots.csv",
             "best_shots.json",
@@ -75,9 +77,7 @@ fn contract_metres_and_feet_give_the_same_answer() {
         let profile = write_file(&folder, name, text);
         let answer = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
         let text = answer.stdout();
-        let line = text
-            .lines()
-            .find(|line| line.contains("made over a range of"));
+        let line = text.lines().find(|line| line.contains("goes in over"));
         let line = line.expect("the sensitivity says within what range a shot is made");
         assert!(line.contains(" ft/s, pitch "), "{line}");
         answers.push(answer.stdout);
@@ -114,12 +114,25 @@ fn contract_a_shooter_without_spin_or_error_of_spin_gets_an_answer() {
 fn contract_names_of_shooters_never_become_paths() {
     let folder = TempDir::new().unwrap();
     let text = small_profile().replace("college guard", "../../<script> é");
-    let profile = write_file(&folder, "p.toml", text);
-    let out = folder.path().join("runs");
-    Answer::of(best(&profile, &out).arg("--quiet")).exits(0);
-    let names = file_names(&out);
-    assert_eq!(names.len(), 1);
-    assert!(names[0].starts_with("script-"), "{names:?}");
+    let profile = write_file(&folder, "p.toml", &text);
+    let run = || {
+        let mut command = bankshot();
+        command.current_dir(folder.path()).arg("best").arg(&profile);
+        Answer::of(command.arg("--quiet")).exits(0)
+    };
+    run();
+    let of_name = folder.path().join("results/script");
+    assert_eq!(file_names(&folder.path().join("results")), ["script"]);
+    // The same configuration finds its folder again; another one of the name gets the next number.
+    run();
+    assert_eq!(file_names(&of_name), ["1", "latest"]);
+    write_file(&folder, "p.toml", text.replace("1.22 deg", "1.3 deg"));
+    run();
+    assert_eq!(file_names(&of_name), ["1", "2", "latest"]);
+    assert_eq!(
+        fs::read_link(of_name.join("latest")).unwrap(),
+        Path::new("2")
+    );
 }
 
 /// A shooter near the ring whose best direct shot is at the limit of its kind.

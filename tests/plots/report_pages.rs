@@ -4,7 +4,6 @@ use super::browser::{chromium, visit};
 use super::support::{SMALL_SWEEP, SweepRun, bankshot, succeed, write_report};
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
 
 /// A name of nearly the greatest length that a profile allows, made of text that could break a page.
 fn hostile_name() -> String {
@@ -93,17 +92,9 @@ fn contract_the_page_of_one_location_shows_the_sensitivity_and_works_in_a_browse
             .arg("--out")
             .arg(&runs),
     );
-    let page = write_report(&only_entry(&runs));
+    let page = write_report(&runs);
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("Sensitivity") && html.contains("no error in speed"));
     let Some(chromium) = chromium() else { return };
     assert_works(&visit(chromium, &page, 1280));
-}
-
-/// The only file or folder in a folder.
-fn only_entry(folder: &Path) -> std::path::PathBuf {
-    let mut entries = fs::read_dir(folder).unwrap();
-    let entry = entries.next().unwrap().unwrap().path();
-    assert!(entries.next().is_none());
-    entry
 }

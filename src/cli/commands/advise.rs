@@ -9,6 +9,7 @@ use crate::cli::terminal::print_answer;
 use bankshot::fitting::{Posterior, advise};
 use bankshot::output::fit_files::advice_text::{advice_json, advice_text};
 use bankshot::shooter::Profile;
+use bankshot::units::DEGREE_RAD;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -24,7 +25,7 @@ pub(crate) struct AdviseOptions {
     pub(crate) shots: PathBuf,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
-    /// Print one JSON object for each shooter instead of text.
+    /// Print one JSON object for each shooter and place instead of text.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -32,7 +33,7 @@ pub(crate) struct AdviseOptions {
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
         let fit = fit_folder::read(&options.shots)?;
-        answer(options, &fit.profile, &fit.posterior, fit.observed, quiet)?;
+        answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;
         return Ok(code::DONE);
     }
     let file = options.measured.read(&options.shots)?;
@@ -46,27 +47,42 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         let observed = (fit.makes.made, fit.makes.labelled);
-        answer(options, &fit.profiles[0], &fit.posterior, observed, quiet)?;
+        answer(options, &fit.profiles, &fit.posterior, observed, quiet)?;
     }
     Ok(worst)
 }
 
-/// Advice for the first place.
+/// Advice for each place; `profiles` are those of the places.
 fn answer(
     options: &AdviseOptions,
-    profile: &Profile,
+    profiles: &[Profile],
     posterior: &Posterior,
     observed: (usize, usize),
     quiet: bool,
 ) -> Result<(), Failure> {
     let bars = ProgressBars::new(quiet);
-    let advice = advise(profile, posterior, 0, &bars)?;
-    let (name, units) = (&profile.shooter().name, options.measured.unit_system());
-    print_answer(&if options.json {
-        format!("{:#}\n", advice_json(name, &advice, Some(observed), units))
-    } else {
-        let angle = profile.location().angle_rad;
-        advice_text(name, &advice, Some(observed), angle, units)
-    })?;
+    let units = options.measured.unit_system();
+    // The makes were counted over all places.
+    let observed = (profiles.len() == 1).then_some(observed);
+    for (place, profile) in profiles.iter().enumerate() {
+        let advice = advise(profile, posterior, place, &bars)?;
+        let (name, location) = (&profile.shooter().name, profile.location());
+        if options.json {
+            let json = advice_json(name, &location, &advice, observed, units);
+            print_answer(&format!("{json:#}\n"))?;
+            continue;
+        }
+        if profiles.len() > 1 {
+            let (unit, size) = units.length();
+            print_answer(&format!(
+                "{}from {:.2} {unit}, at {:.1} deg on the court\n",
+                if place > 0 { "\n" } else { "" },
+                location.distance_m / size,
+                location.angle_rad / DEGREE_RAD
+            ))?;
+        }
+        let angle = location.angle_rad;
+        print_answer(&advice_text(name, &advice, observed, angle, units))?;
+    }
     Ok(())
 }

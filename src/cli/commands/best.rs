@@ -1,16 +1,51 @@
 //! `bankshot best`: load, plan, search, write.
 
-use crate::cli::command_line_flags::BestOptions;
 use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use bankshot::best_shot;
 use bankshot::output::best_shot_json::best_shots_json;
-use bankshot::output::best_shot_text::{best_shots_table, sensitivity_text};
+use bankshot::output::best_shot_text::{
+    PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, what_matters,
+};
 use bankshot::search_space::TablePlan;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bankshot best configs/free_throw.toml
+  bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
+  bankshot best configs/bank_wing.toml --units metric --out wing
+
+Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the
+best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
+pub(crate) struct BestOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// Folder of the results [default: a numbered one in results/<name of the shooter>].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the scatter.
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    pub(crate) draws: Option<PathBuf>,
+    /// Also print how each kind of shot goes in, and what every error, backspin and height are worth.
+    #[arg(long)]
+    pub(crate) details: bool,
+    /// Print one JSON object instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Units of the results [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
+}
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let (mut profile, text) = load_profile_with_text(&options.profile, &options.physics, quiet)?;
@@ -20,14 +55,29 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let units = profile.output().units;
     // A plan that is refused is refused before anything is written.
     TablePlan::for_search(&profile)?;
-    let folder = run_folder::of_profile(&profile, options.out.as_deref());
+    let folder = match &options.out {
+        Some(folder) => folder.clone(),
+        None => run_folder::of_profile(&profile),
+    };
     run_folder::prepare(&folder)?;
     let best = best_shot::find(&profile, &ProgressBars::new(quiet))?;
     run_folder::write_best_shots(&folder, text, &profile, &best)?;
+    if options.out.is_none() {
+        run_folder::link_latest(&folder);
+    }
     print_answer(&if options.json {
         format!("{:#}\n", best_shots_json(&profile, &best, units))
     } else {
-        best_shots_table(&profile, &best, units) + &sensitivity_text(&profile, &best, units)
+        let mut text = answer_in_words(&profile, &best, units);
+        text += &best_shots_table(&profile, &best, units);
+        text += &what_matters(&profile, &best, units);
+        if options.details {
+            text += &sensitivity_text(&profile, &best, units);
+        }
+        if options.draws.is_none() {
+            text += PROFILE_IS_EXACT;
+        }
+        text
     })?;
     if let Some(fit) = &options.draws {
         for (kind, shot) in best.by_kind() {
@@ -38,7 +88,10 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         }
     }
     if !quiet {
-        print_remark(&format!("written to {}", folder.display()));
+        print_remark(&format!(
+            "written to {0}; next: bankshot report {0}",
+            folder.display()
+        ));
     }
     Ok(run_folder::exit_code(&profile, &best))
 }

@@ -1,14 +1,27 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use crate::cli::command_line_flags::CheckOptions;
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::print_answer;
+use crate::cli::value_parsers::PhysicsArg;
 use bankshot::model::{PRESETS, Physics, PhysicsValue};
 use bankshot::search_space::TablePlan;
 use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::units::DEGREE_RAD;
+use clap::Args;
 use std::fmt::Write as _;
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+pub(crate) struct CheckOptions {
+    /// The shooter's profile, or a sweep.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// List every value of the physics, and whether it is measured, from a rule book or assumed.
+    #[arg(long)]
+    pub(crate) verbose: bool,
+}
 
 pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
     let path = options.profile.display();

@@ -1,7 +1,6 @@
 //! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two shooters.
 
 use super::sweep_summary;
-use crate::cli::command_line_flags::CompareOptions;
 use crate::cli::config_files::{load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
@@ -23,8 +22,32 @@ use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sweep_folder::SweepFolder;
 use bankshot::sweep::sweep_toml::is_sweep;
+use clap::Args;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+For a sweep: P of the best direct and bank shots over the court and their difference; maps of the best P, kind,
+pitch angle and spin; and, if they were computed, the gain from spin and the costliest error.
+For a profile: outcomes and P over speed and pitch angle about the best direct and bank shots, and their
+difference.
+Each map is written as SVG and PNG.
+
+Examples:
+  bankshot compare half_court
+  bankshot compare half_court --against half_court_elite
+  bankshot compare configs/bank_wing.toml --out plots")]
+pub(crate) struct CompareOptions {
+    /// A sweep's folder, its TOML (for its usual folder), or a shooter's profile.
+    pub(crate) what: PathBuf,
+    /// Another one of the same type, with another shooter or other settings.
+    #[arg(long, value_name = "OTHER")]
+    pub(crate) against: Option<PathBuf>,
+    /// Folder of the plots [default: plots in the folder of the run].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
 
 pub(crate) fn run(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     let Some(sweep) = open_sweep(&options.what)? else {
@@ -155,7 +178,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     }
     let folder = match &options.out {
         Some(folder) => folder.clone(),
-        None => run_folder::of_profile(&profile, None),
+        None => run_folder::of_profile(&profile),
     };
     plot_files::write(&folder, &plots)?;
     run_folder::write_best_shots(&folder, profile_text, &profile, &best)?;

@@ -1,17 +1,36 @@
 //! `bankshot physics`: how much of the answer rests on the physics.
 
-use crate::cli::command_line_flags::PhysicsOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use bankshot::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
 use bankshot::plots::physics_probabilities;
 use bankshot::shooter::Profile;
 use bankshot::units::{DEGREE_RAD, UnitSystem};
+use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
 use serde_json::{Value, json};
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+pub(crate) struct PhysicsOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// Draw P under each physics (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print one JSON array (SI units).
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Units of the output [default: the profile's].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
+}
 
 pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> {
     let mut profile = load_profile(&options.profile, &options.physics, quiet)?;

@@ -1,10 +1,10 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
 use super::plan_sweep_time_and_memory;
-use crate::cli::command_line_flags::PlanOptions;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::PhysicsArg;
 use bankshot::dynamics::BatchWorkspace;
 use bankshot::math::evenly_spaced::CellAxis;
 use bankshot::output::json_object::{number, object, provenance};
@@ -13,7 +13,23 @@ use bankshot::search_space::{TablePlan, WideSample, sample_wide};
 use bankshot::shooter::{Nominal, Profile};
 use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::units::{DEGREE_RAD, REV_RAD};
+use clap::Args;
+use std::path::PathBuf;
 use std::time::Instant;
+
+#[derive(Args, Debug)]
+pub(crate) struct PlanOptions {
+    /// The shooter's profile, or a sweep.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Shots that check the search range; 0 for none.
+    #[arg(long, value_name = "N", default_value_t = 200_000)]
+    pub(crate) wide_sample: u64,
+}
 
 /// About the number of shots of the climbs and the final estimates.
 const SEARCH_SHOTS: u64 = 1_000_000;

@@ -1,7 +1,6 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
 use super::sweep_summary;
-use crate::cli::command_line_flags::FolderOptions;
 use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
@@ -21,18 +20,43 @@ use bankshot::sweep::SweepConfig;
 use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sweep_folder::SweepFolder;
+use clap::Args;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+#[derive(Args, Debug)]
+pub(crate) struct ReportOptions {
+    /// The folder of a `best`, `compare`, `sweep` or `fit` run.
+    pub(crate) folder: PathBuf,
+}
+
 /// The file of a sweep's folder that `sweep` writes first.
 const SWEEP_MANIFEST: &str = "configuration.json";
+/// The file of a fit's folder.
+const FIT_FILE: &str = "fit.json";
 
-pub(crate) fn run(options: &FolderOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = &options.folder;
+    if folder.join(FIT_FILE).exists() {
+        return page_of_fit(folder);
+    }
     match sweep_of(folder) {
         Some(sweep) => report_sweep(folder, &sweep, quiet),
         None => report_best_shots(folder, quiet),
     }
+}
+
+/// A fit has its page already, with plots of shots that its folder does not hold.
+fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
+    let page = folder.join("report.html");
+    if !page.exists() {
+        return Err(Failure::usage(format!(
+            "{}: `bankshot fit` writes the page of a fit; run it again",
+            page.display()
+        )));
+    }
+    print_answer(&format!("{}\n", page.display()))?;
+    Ok(code::DONE)
 }
 
 /// The sweep in a folder, or the sweeps whose plots are in it.

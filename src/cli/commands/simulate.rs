@@ -1,10 +1,10 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
-use crate::cli::command_line_flags::{IntegratorName, SimulateOptions};
 use crate::cli::config_files::load_physics;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
+use crate::cli::value_parsers::PhysicsArg;
 use bankshot::dynamics::{Integrator, Simulator};
 use bankshot::output::atomic_file::{AtomicFile, same_file};
 use bankshot::output::simulation_files::csv_records::{CsvRecords, Row};
@@ -14,12 +14,51 @@ use bankshot::output::simulation_files::outcome_columns::{
 use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
 use bankshot::output::simulation_files::release_columns::{ReleaseColumns, RowError};
 use bankshot::probability::Progress;
+use clap::{Args, ValueEnum};
 use csv::{ByteRecord, Writer};
 use parquet::basic::Type as Physical;
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The integrators by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum IntegratorName {
+    /// Closed-form flight, and contacts in steps that end on the events of friction.
+    Exact,
+    /// The paper's variable-step Runge-Kutta method at the paper's steps.
+    Paper,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Columns, by name and in any order: distance_ft, court_angle_deg, release_height_ft, speed_ft_s,
+pitch_deg, polar_deg; optional backspin_rev_s, rifle_spin_rev_s, side_spin_rev_s. The suffixes _m,
+_m_s, _rad and _rad_s are accepted instead. Other columns are copied. One that is named like a
+quantity needs --carry, so that no misspelt column is overlooked. The columns made, kind, contacts,
+n_board, n_ring, flight_time_s (to the end of the shot, bounces included), entry_angle_deg and
+first_touch_s are added. A row that cannot be simulated is reported with its line and has empty
+results; the exit code is then 3. Files named *.parquet are Parquet, others CSV.
+
+Examples:
+  bankshot simulate releases.csv --output outcomes.csv
+  bankshot simulate - --output - --integrator paper <releases.csv >outcomes.csv")]
+pub(crate) struct SimulateOptions {
+    /// The releases, a CSV or Parquet file; - for CSV from standard input.
+    pub(crate) releases: PathBuf,
+    /// The file of outcomes, CSV or Parquet; - for CSV to standard output.
+    #[arg(long, short, value_name = "OUT.csv|OUT.parquet")]
+    pub(crate) output: PathBuf,
+    /// Copy columns that are named like a quantity but are none of the release.
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
+    pub(crate) carry: Vec<String>,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// The integrator [default: exact, or the file's].
+    #[arg(long)]
+    pub(crate) integrator: Option<IntegratorName>,
+}
 
 /// Rows in memory at a time.
 const BATCH_ROWS: usize = 16_384;

@@ -1,28 +1,75 @@
 //! `bankshot sweep` and `bankshot merge`: compute the jobs, and write the tables.
 
 use super::sweep_summary::{highlights, job_summary, missing_shards};
-use crate::cli::command_line_flags::{MergeOptions, SweepOptions};
 use crate::cli::config_files::load_sweep;
 use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::signals;
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::{fault_injection, shard};
+use bankshot::fitting::{Draw, DrawProbabilities, Interval};
 use bankshot::output::atomic_file;
+use bankshot::probability::Progress;
 use bankshot::sweep::final_tables::ResultTables;
 use bankshot::sweep::job_list::{Jobs, Shard};
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
-use bankshot::sweep::run::{RunOptions, SweepRun};
+use bankshot::sweep::run::{FaultInjection, RunOptions, SweepRun};
 use bankshot::sweep::sweep_folder::SweepFolder;
 use bankshot::sweep::{SweepConfig, columns};
+use clap::Args;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The folder has store/*.sqlite (every result as it is computed; query it while the sweep runs) and, at the
+end, best_shots.csv, best_shots.parquet and provenance.json. The same command again computes only what is
+missing.
+
+Examples:
+  bankshot plan configs/half_court.toml
+  bankshot sweep configs/half_court.toml --out half_court
+  bankshot sweep configs/half_court.toml --out /shared/half_court --shard 3/64")]
+pub(crate) struct SweepOptions {
+    /// The sweep: a [sweep] table and a shooter.
+    pub(crate) sweep: PathBuf,
+    /// Folder of the sweep [default: a numbered one in results/<its name>].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Only shard I of N; all shards can share the folder and run on any machine.
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub(crate) shard: Option<Shard>,
+    /// Compute failed jobs again.
+    #[arg(long)]
+    pub(crate) retry_failed: bool,
+    /// The folder of a fit: when the sweep is complete, also write probability_over_draws.csv, how uncertain each P is by what
+    /// the shots of the fit do not tell about the scatter.
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "shard")]
+    pub(crate) draws: Option<PathBuf>,
+    /// Inject a fault, for tests: panic:SPOT, abort:SPOT or wait:SPOT:FILE.
+    #[arg(long, hide = true, value_parser = fault_injection)]
+    pub(crate) fault: Option<FaultInjection>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct MergeOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+    /// Number of shards of the sweep, to print which to submit again.
+    #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1_000_000))]
+    pub(crate) shards: Option<usize>,
+}
 
 /// The jobs that are saved on disk, for the remark when a signal stops the program.
 static SAVED_JOBS: AtomicUsize = AtomicUsize::new(0);
 
 pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
     let (config, texts) = load_sweep(&options.sweep)?;
+    let draws = options.draws.as_deref().map(fit_folder::read).transpose()?;
     let jobs = Jobs::new(&config);
     let shard = options.shard.unwrap_or(Shard::WHOLE);
     let path = match &options.out {
@@ -30,6 +77,9 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
         None => run_folder::of_sweep(&config)?,
     };
     let folder = SweepFolder::open(&path, &config, &texts)?;
+    if options.out.is_none() {
+        run_folder::link_latest(&path);
+    }
     let lock = folder.lock(shard)?;
     signals::note_aborts(&lock.aborted);
     let run_options = RunOptions {
@@ -59,7 +109,11 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
     drop(run);
     lock.remove_empty_note();
     if shard == Shard::WHOLE {
-        return write_tables(&folder, &config, &jobs, None, quiet);
+        let exit = write_tables(&folder, &config, &jobs, None, quiet)?;
+        if let Some(fit) = draws {
+            write_over_draws(&folder, &config, &jobs, &fit.posterior.draws, quiet)?;
+        }
+        return Ok(exit);
     }
     print_answer(&format!(
         "shard {shard}: {total} jobs, {} done before, {} computed, {} failed; `bankshot merge {}` joins the shards\n",
@@ -125,6 +179,80 @@ fn write_tables(
         ));
     }
     Ok(exit_code_of_tables(config, &rows))
+}
+
+/// Draws that P of each shot of a sweep is computed for, and shots for each.
+const DRAWS: usize = 400;
+const SHOTS_OVER_DRAWS: usize = 16_384;
+
+/// Writes P of the best shots over the draws of a fit.
+fn write_over_draws(
+    folder: &SweepFolder,
+    config: &SweepConfig,
+    jobs: &Jobs,
+    draws: &[Draw],
+    quiet: bool,
+) -> Result<(), Failure> {
+    let draws: Vec<Draw> = draws
+        .iter()
+        .step_by(draws.len().div_ceil(DRAWS))
+        .cloned()
+        .collect();
+    let (rows, _) = folder.union()?;
+    let (unit, metre) = config.settings.output.units.length();
+    let bars = ProgressBars::new(quiet);
+    bars.begin("over the draws", rows.len() as u64);
+    let found = rows
+        .par_iter()
+        .map(|(job, row)| {
+            let p = row_over_draws(config, jobs, row, &draws)?;
+            bars.advance(1);
+            Ok((*job, p))
+        })
+        .collect::<Result<BTreeMap<u64, Option<DrawProbabilities>>, Failure>>()?;
+    bars.end();
+    let mut text =
+        format!("place,kind,x_{unit},y_{unit},mean,sd,low,high,numerical_standard_error\n");
+    for (number, source) in jobs.sources.iter().enumerate() {
+        for (kind, name) in jobs.kinds.iter().map(|kind| kind.name()).enumerate() {
+            let Some(Some(p)) = found.get(&jobs.number(source.computed, kind)) else {
+                continue;
+            };
+            let Interval {
+                mean,
+                sd,
+                low,
+                high,
+            } = p.interval();
+            text += &format!(
+                "{number},{name},{},{},{mean:.5},{sd:.5},{low:.5},{high:.5},{:.5}\n",
+                source.place.x_m / metre,
+                source.place.y_m / metre,
+                p.numerical_standard_error()
+            );
+        }
+    }
+    let path = folder.path().join("probability_over_draws.csv");
+    atomic_file::write_unlinked(&path, text.as_bytes())
+        .map_err(|error| Failure::io(path.display(), &error))?;
+    if !quiet {
+        print_remark(&format!("written: {}", path.display()));
+    }
+    Ok(())
+}
+
+/// P of the shot of a row; `None` where there is none.
+fn row_over_draws(
+    config: &SweepConfig,
+    jobs: &Jobs,
+    row: &ResultRow,
+    draws: &[Draw],
+) -> Result<Option<DrawProbabilities>, Failure> {
+    let (Some((spot, _)), Some(nominal)) = (jobs.spot_and_kind(row.job), row.nominal()) else {
+        return Ok(None);
+    };
+    let profile = config.settings.at(jobs.spots[spot].location())?;
+    fit_folder::probability_over_draws(draws, &profile, &nominal, SHOTS_OVER_DRAWS).map(Some)
 }
 
 fn exit_code_of_tables(config: &SweepConfig, rows: &BTreeMap<u64, ResultRow>) -> u8 {

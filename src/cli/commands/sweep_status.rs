@@ -1,16 +1,42 @@
 //! `bankshot status`, `missing` and `verify`: the state of a sweep's folder.
 
 use super::sweep_summary::{exit_code, job_summary, missing_shards};
-use crate::cli::command_line_flags::{FolderOptions, MissingOptions, VerifyOptions};
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;
+use crate::cli::value_parsers::fraction;
 use bankshot::probability::Progress;
 use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
 use bankshot::sweep::run::compute_jobs;
 use bankshot::sweep::sweep_folder::SweepFolder;
 use bankshot::sweep::{SweepConfig, is_locked, sqlite_results};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+pub(crate) struct FolderOptions {
+    /// The folder.
+    pub(crate) folder: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct VerifyOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+    /// Compute this fraction of the jobs again, such as 1%, and compare every bit.
+    #[arg(long, value_name = "FRACTION", value_parser = fraction)]
+    pub(crate) recompute: Option<f64>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct MissingOptions {
+    /// The sweep's folder.
+    pub(crate) folder: PathBuf,
+    /// Number of shards of the sweep.
+    #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1_000_000))]
+    pub(crate) shards: usize,
+}
 
 pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
     let (folder, config) = SweepFolder::open_read_only(&options.folder)?;

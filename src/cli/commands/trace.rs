@@ -1,11 +1,12 @@
 //! `bankshot trace`: one shot with its events, its trajectory and a plot.
 
 use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
-use crate::cli::command_line_flags::TraceOptions;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
+use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::plot_files;
 use crate::cli::terminal::{print_answer, print_bytes, print_remark};
+use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use bankshot::dynamics::{Release, Trace};
 use bankshot::output::atomic_file;
 use bankshot::plots::shot_views::{self, MADE_COLOUR, MISSED_COLOUR, ShotPath};
@@ -13,7 +14,40 @@ use bankshot::plots::svg::shortened;
 use bankshot::probability::Sampler;
 use bankshot::shooter::{Nominal, Profile};
 use bankshot::units::{DEGREE_RAD, REV_RAD};
-use std::path::Path;
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Every quantity carries its unit.
+
+Examples:
+  bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg' --backspin '3 rev/s'
+  bankshot trace configs/free_throw.toml --speed '23.6 ft/s' --pitch '53.5 deg' --backspin '3 rev/s' --plot shot.png --swarm 60
+  bankshot trace configs/bank_wing.toml --speed '7.4 m/s' --pitch '52 deg' --polar '40 deg' --output shot.csv")]
+pub(crate) struct TraceOptions {
+    /// The shooter's profile (for location, height and physics).
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    #[command(flatten)]
+    pub(crate) nominal: NominalOptions,
+    /// Write the trajectory as CSV; - for standard output (then nothing else is printed there).
+    #[arg(long, short, value_name = "T.csv")]
+    pub(crate) output: Option<PathBuf>,
+    /// Draw the shot from the side, from above and facing the board.
+    #[arg(long, value_name = "T.svg|T.png")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Draw this many more shots with the shooter's errors.
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "plot", value_parser = clap::value_parser!(u32).range(0..=5000))]
+    pub(crate) swarm: u32,
+    /// Units of the answer [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
 
 /// Spacing of the trajectory in flight, s.
 const INTERVAL_S: f64 = 0.005;

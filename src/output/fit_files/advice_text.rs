@@ -5,8 +5,8 @@ use super::fit_text::percent;
 use super::parameters::value_units;
 use crate::fitting::{Advice, Cause, Interval, values_of};
 use crate::output::json_object::{number, object};
-use crate::shooter::ShotKind;
-use crate::units::UnitSystem;
+use crate::shooter::{Location, ShotKind};
+use crate::units::{DEGREE_RAD, UnitSystem};
 use serde_json::Value;
 
 /// Points of P with their interval: `2.1 points (95 %: 0.4 to 3.9)`.
@@ -170,7 +170,13 @@ pub fn advice_text(
 
 /// The answer for programs.
 #[must_use]
-pub fn advice_json(name: &str, advice: &Advice, observed: Observed, units: UnitSystem) -> Value {
+pub fn advice_json(
+    name: &str,
+    location: &Location,
+    advice: &Advice,
+    observed: Observed,
+    units: UnitSystem,
+) -> Value {
     let units_of = value_units(units);
     let values = |values: [f64; 4]| {
         let named = ["speed", "pitch", "polar", "backspin"]
@@ -210,9 +216,20 @@ pub fn advice_json(name: &str, advice: &Advice, observed: Observed, units: UnitS
         record.extend(interval_json(&training.gain));
         object(record)
     });
-    let (made, shots) = observed.unwrap_or((0, 0));
+    let observed = observed.map_or(Value::Null, |(made, shots)| {
+        object(vec![
+            named("shots", shots.into()),
+            named("made", made.into()),
+        ])
+    });
+    let (long, metre) = units.length();
     object(vec![
         named("shooter", name.into()),
+        named(
+            &format!("distance_{long}"),
+            number(location.distance_m / metre),
+        ),
+        named("court_angle_deg", number(location.angle_rad / DEGREE_RAD)),
         named("kind", advice.kind.name().into()),
         named("usual", values(advice.usual)),
         named("usual_probability", interval(&advice.usual_probability)),
@@ -220,13 +237,7 @@ pub fn advice_json(name: &str, advice: &Advice, observed: Observed, units: UnitS
             "numerical_standard_error",
             number(advice.numerical_standard_error),
         ),
-        named(
-            "observed",
-            object(vec![
-                named("shots", shots.into()),
-                named("made", made.into()),
-            ]),
-        ),
+        named("observed", observed),
         named(
             "best",
             advice

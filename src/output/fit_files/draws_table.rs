@@ -26,6 +26,7 @@ fn names(places: usize) -> Vec<String> {
         names.push(format!("{name}_sd_{unit}"));
     }
     names.extend(COEFFICIENTS.map(str::to_owned));
+    names.push("tail_weight".to_owned());
     names.extend(pairs().map(|(i, j)| format!("corr_{}", pair_name(i, j))));
     names
 }
@@ -45,6 +46,7 @@ pub fn draws_parquet(posterior: &Posterior) -> parquet::errors::Result<Vec<u8>> 
         let mut values: Vec<f64> = draw.means.iter().flatten().copied().collect();
         values.extend(draw.sds);
         values.extend(draw.speed_coefficients);
+        values.push(draw.tail_weight);
         values.extend(pairs().map(|(i, j)| draw.correlation[(i, j)]));
         let cells: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
         sink.push(cells.into())?;
@@ -96,15 +98,23 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
             let after = 4 * places;
             let mut correlation = SMatrix::<f64, 4, 4>::identity();
             for (k, (i, j)) in pairs().enumerate() {
-                correlation[(i, j)] = value(after + 7 + k);
+                correlation[(i, j)] = value(after + 8 + k);
                 correlation[(j, i)] = correlation[(i, j)];
             }
-            draws.push(Draw::new(
+            let draw = Draw::new(
                 means,
                 std::array::from_fn(|i| value(after + i)),
                 correlation,
                 std::array::from_fn(|i| value(after + 4 + i)),
-            ));
+            );
+            let tail_weight = value(after + 7);
+            if !(0.0..0.5).contains(&tail_weight) {
+                return Err(format!(
+                    "draw {}: tail_weight {tail_weight} must be from 0 to below 0.5",
+                    row.number
+                ));
+            }
+            draws.push(draw.with_tail_weight(tail_weight));
         }
     }
     if draws.is_empty() {

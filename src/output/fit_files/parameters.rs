@@ -33,7 +33,7 @@ pub fn value_units(units: UnitSystem) -> [(&'static str, f64); 4] {
 }
 
 /// All parameters of a posterior: means (of further places with the number of the place), standard deviations,
-/// correlations, and the coefficients of the speed's standard deviation where there are several.
+/// correlations, the tail weight (one over the degrees of freedom) where it was fitted, and the coefficients of the speed's standard deviation where there are several.
 #[must_use]
 pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
     let of_value = value_units(units);
@@ -83,6 +83,11 @@ pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
                 draw.correlation[(i, j)]
             });
         }
+    }
+    if posterior.draws.iter().any(|draw| draw.tail_weight > 0.0) {
+        add("tail_weight".to_owned(), ("", 1.0), "measured", &|draw| {
+            draw.tail_weight
+        });
     }
     let metre = units.length().1;
     let coefficients = [

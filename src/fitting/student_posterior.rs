@@ -1,0 +1,211 @@
+//! The posterior density where the releases have heavier tails than normal ones: a multivariate t distribution.
+//!
+//! A release is `mu + sqrt((1 - 2 t)/w) L z` with standard normals `z` and one `w` a shot, gamma distributed with shape and
+//! rate `1/(2 t)`. `t`, the tail weight, is one over the degrees of freedom; `L L^T` is the covariance whatever `t` is. The
+//! tracker's error is normal, so given `w` a measurement is normal, and `w` is integrated out by the trapezoidal
+//! rule in its logarithm. The means have no closed form here: they are parameters.
+
+use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
+use super::measured_release::MeasuredRelease;
+use super::population::{PopulationPrior, Spread};
+use crate::math::normal_distribution::cdf;
+use hammer_and_sample::Model;
+use nalgebra::{Cholesky, SMatrix, SVector};
+
+/// The heaviest tails, three degrees of freedom; the prior of the tail weight is uniform up to it.
+pub(super) const MAX_TAIL_WEIGHT: f64 = 1.0 / 3.0;
+
+/// Nodes of the integral over `w`: in standard deviations of its logarithm for light tails.
+const NODES: usize = 16;
+const FIRST_NODE: f64 = -6.3;
+const NODE_STEP: f64 = 0.7;
+
+/// Measurements at one place with one covariance of their errors.
+struct NoiseGroup<const D: usize> {
+    place: usize,
+    noise: SMatrix<f64, D, D>,
+    values: Vec<SVector<f64, D>>,
+}
+
+/// The posterior density of dispersion, tail weight and means.
+pub(super) struct StudentPosterior<const D: usize> {
+    normal: DispersionPosterior<D>,
+    groups: Vec<NoiseGroup<D>>,
+    /// Of each place the means of the measurements and their standard errors, the unit of the parameters.
+    means: Vec<[Spread; D]>,
+}
+
+/// `1/w` and the logarithm of its probability for each node.
+fn scale_nodes(tail_weight: f64) -> [(f64, f64); NODES] {
+    let shape = 0.5 / tail_weight.max(1e-9);
+    let step = NODE_STEP / shape.sqrt();
+    let mut nodes = std::array::from_fn(|k| {
+        let logarithm = step * (FIRST_NODE / NODE_STEP + k as f64);
+        // Relative to the density at 1, so that great shapes keep their digits.
+        let density = shape * (logarithm - libm::expm1(logarithm));
+        (libm::exp(-logarithm), density)
+    });
+    let total: f64 = nodes.iter().map(|(_, density)| libm::exp(*density)).sum();
+    for (_, density) in &mut nodes {
+        *density -= libm::log(total);
+    }
+    nodes
+}
+
+/// The logarithm of a sum of exponentials.
+fn log_sum_exp(terms: &[f64; NODES]) -> f64 {
+    let greatest = terms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = terms.iter().map(|term| libm::exp(term - greatest)).sum();
+    greatest + libm::log(sum)
+}
+
+impl<const D: usize> StudentPosterior<D> {
+    pub(super) fn new(shots: &[MeasuredRelease], places: usize, prior: PopulationPrior) -> Self {
+        let mut groups: Vec<NoiseGroup<D>> = Vec::new();
+        for shot in shots {
+            let noise = SMatrix::<f64, D, D>::from_fn(|i, j| shot.noise[(i, j)]);
+            let y = SVector::<f64, D>::from_fn(|i, _| shot.values[i]);
+            let mut latest = groups.iter_mut().rev().take(64);
+            match latest.find(|group| group.place == shot.place && group.noise == noise) {
+                Some(group) => group.values.push(y),
+                None => groups.push(NoiseGroup {
+                    place: shot.place,
+                    noise,
+                    values: vec![y],
+                }),
+            }
+        }
+        let mean_of = |place: usize, i: usize| {
+            let of_place = || shots.iter().filter(|shot| shot.place == place);
+            let count = of_place().count() as f64;
+            let mean = of_place().map(|shot| shot.values[i]).sum::<f64>() / count;
+            let deviation = |shot: &MeasuredRelease| shot.values[i] - mean;
+            let squares: f64 = of_place().map(|s| deviation(s) * deviation(s)).sum();
+            Spread {
+                mean,
+                sd: (squares / (count - 1.0).max(1.0) / count).sqrt(),
+            }
+        };
+        Self {
+            normal: DispersionPosterior::new(shots, places, prior),
+            groups,
+            means: (0..places)
+                .map(|place| std::array::from_fn(|i| mean_of(place, i)))
+                .collect(),
+        }
+    }
+
+    fn tail(&self, point: &[f64]) -> f64 {
+        MAX_TAIL_WEIGHT * cdf(point[self.normal.dimension()])
+    }
+
+    fn mean(&self, point: &[f64], place: usize) -> SVector<f64, D> {
+        let first = self.normal.dimension() + 1 + place * D;
+        SVector::from_fn(|i, _| {
+            let spread = self.means[place][i];
+            spread.mean + spread.sd * point[first + i]
+        })
+    }
+
+    fn log_likelihood(&self, point: &[f64], dispersion: &Dispersion<D>) -> Option<f64> {
+        let tail_weight = self.tail(point);
+        let nodes = scale_nodes(tail_weight);
+        let mut sum = 0.0;
+        for group in &self.groups {
+            let factor = self.normal.release_factor(dispersion, group.place);
+            let scale = factor * factor.transpose() * (1.0 - 2.0 * tail_weight);
+            let mut inverses = [SMatrix::<f64, D, D>::zeros(); NODES];
+            let mut constants = [0.0; NODES];
+            for (k, (inverse_w, log_probability)) in nodes.iter().enumerate() {
+                let cholesky = Cholesky::new(scale * *inverse_w + group.noise)?;
+                let diagonal = cholesky.l_dirty().diagonal();
+                let half: f64 = diagonal.iter().map(|entry| libm::log(*entry)).sum();
+                inverses[k] = cholesky.inverse();
+                constants[k] = log_probability - half;
+            }
+            let mean = self.mean(point, group.place);
+            for y in &group.values {
+                let deviation = y - mean;
+                let terms = std::array::from_fn(|k| {
+                    constants[k] - 0.5 * deviation.dot(&(inverses[k] * deviation))
+                });
+                sum += log_sum_exp(&terms);
+            }
+        }
+        Some(sum)
+    }
+}
+
+impl<const D: usize> Model for StudentPosterior<D> {
+    type Params = Vec<f64>;
+
+    fn log_prob(&self, point: &Vec<f64>) -> f64 {
+        let Some((log_prior, dispersion)) = self.normal.log_prior(point, &self.priors()) else {
+            return f64::NEG_INFINITY;
+        };
+        match self.log_likelihood(point, &dispersion) {
+            Some(log_likelihood) if log_likelihood.is_finite() => log_prior + log_likelihood,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl<const D: usize> ReleaseModel<D> for StudentPosterior<D> {
+    fn normal(&self) -> &DispersionPosterior<D> {
+        &self.normal
+    }
+
+    /// Those of the dispersion, of the tail weight's normal quantile, and flat ones of the means.
+    fn priors(&self) -> Vec<Spread> {
+        let mut priors = self.normal.priors();
+        priors.push(Spread { mean: 0.0, sd: 1.0 });
+        let flat = Spread {
+            mean: 0.0,
+            sd: f64::INFINITY,
+        };
+        priors.resize(priors.len() + D * self.means.len(), flat);
+        priors
+    }
+
+    fn tail_weight(&self, point: &[f64]) -> f64 {
+        self.tail(point)
+    }
+
+    fn means(
+        &self,
+        point: &[f64],
+        _normal: &mut dyn FnMut() -> f64,
+    ) -> Option<Vec<SVector<f64, D>>> {
+        let places = 0..self.means.len();
+        Some(places.map(|place| self.mean(point, place)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Authority: the closed form of the one-dimensional t density, by its ratio to that at 0:
+    /// `(1 + x^2/n)^(-(n + 1)/2)`. Without a tracker's error the integral over `w` is the t density.
+    #[test]
+    fn val_mixture_is_the_t_distribution() {
+        for freedom in [3.0, 5.0, 12.0, 60.0, 1000.0] {
+            let nodes = scale_nodes(1.0 / freedom);
+            let log_density = |x: f64| {
+                log_sum_exp(&nodes.map(|(inverse_w, log_probability)| {
+                    log_probability - 0.5 * libm::log(inverse_w) - 0.5 * x * x / inverse_w
+                }))
+            };
+            for x in [0.5, 1.0, 2.0, 4.0, 8.0] {
+                let seen = log_density(x) - log_density(0.0);
+                let expected = -0.5 * (freedom + 1.0) * libm::log1p(x * x / freedom);
+                // Far out the mixture has normal tails; no shot is there.
+                let tolerance = if x < 5.0 { 2e-3 } else { 0.05 } * expected.abs();
+                assert!(
+                    (seen - expected).abs() < tolerance,
+                    "{freedom} {x}: {seen} {expected}"
+                );
+            }
+        }
+    }
+}
