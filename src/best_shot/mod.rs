@@ -3,7 +3,9 @@
 mod pattern_search;
 mod physics_comparison;
 mod search;
+mod shot_table;
 
 pub use crate::shooter::ShotKind;
 pub use physics_comparison::{PhysicsRow, PhysicsVariant, compare_physics, physics_variants};
 pub use search::{BestShot, BestShotError, BestShots, Limit, NoShot, find, find_kinds};
+pub use shot_table::{InterpolationCheck, ShotTable, ShotTableError, ShotTableRequest, TableShot};

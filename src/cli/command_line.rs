@@ -7,6 +7,7 @@ use super::commands::compare::CompareOptions;
 use super::commands::compare_sessions::CompareSessionsOptions;
 use super::commands::design::DesignOptions;
 use super::commands::fit::FitOptions;
+use super::commands::new::NewOptions;
 use super::commands::physics::PhysicsOptions;
 use super::commands::plan::PlanOptions;
 use super::commands::probability::ProbabilityOptions;
@@ -14,6 +15,7 @@ use super::commands::report::ReportOptions;
 use super::commands::simulate::SimulateOptions;
 use super::commands::sweep::{MergeOptions, SweepOptions};
 use super::commands::sweep_status::{FolderOptions, MissingOptions, VerifyOptions};
+use super::commands::table::TableOptions;
 use super::commands::trace::TraceOptions;
 use super::value_parsers::instruction_set;
 use bankshot::dynamics::InstructionSet;
@@ -61,6 +63,10 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Find the best direct and the best bank shot from the profile's location.
     Best(BestOptions),
+    /// Write a commented file to edit: a player, a launcher, a sweep, or a physics.
+    New(NewOptions),
+    /// Make a table of best shots over distances and angles, for a machine.
+    Table(TableOptions),
     /// Fit a profile to measured shots: releases, landings of a gym sensor, or tracked trajectories.
     Fit(FitOptions),
     /// Say what a measured shooter should change and train, and how sure that is.

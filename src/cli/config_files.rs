@@ -8,7 +8,7 @@ use bankshot::config::{
 };
 use bankshot::dynamics::Integrator;
 use bankshot::model::{PRESETS, Physics, Preset};
-use bankshot::shooter::Profile;
+use bankshot::shooter::{Profile, implausible_values};
 use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
@@ -72,11 +72,16 @@ pub(crate) fn load_profile_with_text(
         )));
     }
     let origin = path.display().to_string();
-    let Some(name) = &physics.physics else {
-        return Ok((parse_profile(&text, &origin)?, text));
-    };
     // The profile itself must be valid, with its own physics.
     let own = parse_profile(&text, &origin)?;
+    if !quiet {
+        for words in implausible_values(&own) {
+            print_remark(&format!("warning: {words}"));
+        }
+    }
+    let Some(name) = &physics.physics else {
+        return Ok((own, text));
+    };
     text = without_physics_table(&text);
     if has_physics_table(&text) {
         return Err(Failure::usage(format!(

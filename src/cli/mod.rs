@@ -17,8 +17,8 @@ mod value_parsers;
 use clap::{CommandFactory, Parser};
 use command_line::{Arguments, Command};
 use commands::{
-    advise, best, check, compare, compare_sessions, design, figures, fit, physics, plan,
-    probability, report, simulate, sweep, sweep_status, trace,
+    advise, best, check, compare, compare_sessions, design, figures, fit, new, physics, plan,
+    probability, report, simulate, sweep, sweep_status, table, trace,
 };
 use failure::{Failure, code};
 use std::process::ExitCode;
@@ -65,6 +65,8 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Advise(options) => advise::run(options, quiet),
         Command::CompareSessions(options) => compare_sessions::run(options),
         Command::Design(options) => design::run(options, quiet),
+        Command::New(options) => new::run(options, quiet),
+        Command::Table(options) => table::run(options, quiet),
         Command::Check(options) => check::run(options, quiet),
         Command::Physics(options) => physics::run(options, quiet),
         Command::Plan(options) => plan::run(options, quiet),

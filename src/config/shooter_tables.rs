@@ -38,11 +38,14 @@ fn read_dispersion(
     table: &mut TableReader<'_, '_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> ReleaseDispersion {
-    let mut required = |key, dimension| table.required(key, dimension, diagnostics).unwrap_or(0.0);
-    let c10_m_s = required("c10", Dimension::Speed);
-    let c20_rad = required("c20", Dimension::Angle);
-    let c30_rad = required("c30", Dimension::Angle);
-    let c40_rad_s = required("c40", Dimension::Spin);
+    let mut required = |keys, dimension| {
+        let value = table.required_as(keys, dimension, diagnostics);
+        value.unwrap_or(0.0)
+    };
+    let c10_m_s = required(["c10", "speed"], Dimension::Speed);
+    let c20_rad = required(["c20", "pitch"], Dimension::Angle);
+    let c30_rad = required(["c30", "polar"], Dimension::Angle);
+    let c40_rad_s = required(["c40", "backspin"], Dimension::Spin);
     let mut optional = |key, dimension| table.quantity(key, dimension, diagnostics).unwrap_or(0.0);
     ReleaseDispersion {
         c10_m_s,
@@ -70,6 +73,15 @@ fn read_correlation(
     let mut table = shooter.table("correlation", diagnostics);
     let mut pairs = Vec::new();
     for (a, b, key) in PAIRS.iter() {
+        let twice = PAIRS.iter().find(|(c, d, _)| (c, d) == (b, a));
+        if let Some((_, _, other)) =
+            twice.filter(|(_, _, other)| table.has(other) && table.has(key))
+        {
+            if *a < *b {
+                let message = format!("is given twice: {key} and {other} are the same");
+                diagnostics.push(table.diagnostic(other, message));
+            }
+        }
         match table.quantity(key, Dimension::Number, diagnostics) {
             Some(value) if (-1.0..=1.0).contains(&value) => pairs.push((*a, *b, value)),
             Some(_) => diagnostics.push(table.diagnostic(key, "must be from -1 to 1")),
@@ -88,13 +100,13 @@ fn read_correlation(
     correlation.unwrap_or(Correlation::NONE)
 }
 
-/// The keys of `[shooter.correlation]` with their two variables.
+/// The keys of `[shooter.correlation]` with their two variables, in either order.
 static PAIRS: LazyLock<Vec<(ReleaseVariable, ReleaseVariable, &'static str)>> =
     LazyLock::new(|| {
         let mut pairs = Vec::new();
-        for (i, a) in ReleaseVariable::ALL.into_iter().enumerate() {
-            for b in ReleaseVariable::ALL.into_iter().skip(i + 1) {
-                // 36 short names, once in the life of the program.
+        for a in ReleaseVariable::ALL {
+            for b in ReleaseVariable::ALL.into_iter().filter(|b| *b != a) {
+                // 72 short names, once in the life of the program.
                 let key: &'static str = format!("{}_{}", a.name(), b.name()).leak();
                 pairs.push((a, b, key));
             }

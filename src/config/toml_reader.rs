@@ -1,10 +1,13 @@
 //! Reads TOML tables key by key. It collects the errors instead of stopping at the first.
 
 use super::diagnostics::{ConfigError, Diagnostic};
-use crate::units::{Dimension, parse};
+use crate::units::{Dimension, parse, suggestion};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// Known keys are listed up to this number.
+const MOST_KNOWN_NAMES: usize = 40;
 
 /// A table that is being read. A key that is never asked for is reported as unknown.
 #[derive(Clone)]
@@ -199,6 +202,31 @@ impl<'t, 'i> TableReader<'t, 'i> {
         self.quantity(key, dimension, diagnostics)
     }
 
+    /// A quantity that must be given under one of two names.
+    pub(crate) fn required_as(
+        &mut self,
+        [key, other]: [&'static str; 2],
+        dimension: Dimension,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<f64> {
+        self.asked.extend([key, other]);
+        match (self.has(key), self.has(other)) {
+            (true, true) => {
+                let message = format!("is given twice: {key} and {other} are the same");
+                diagnostics.push(self.diagnostic(other, message));
+                None
+            }
+            (false, true) => self.quantity(other, dimension, diagnostics),
+            (true, false) => self.quantity(key, dimension, diagnostics),
+            (false, false) => {
+                let example = dimension.units().first().map_or("", |(name, _)| name);
+                let message = format!("is missing; write {key} (or {other}) = \"... {example}\"");
+                diagnostics.push(self.diagnostic(key, message));
+                None
+            }
+        }
+    }
+
     /// A text, if it is given.
     pub(crate) fn text(
         &mut self,
@@ -292,13 +320,18 @@ impl<'t, 'i> TableReader<'t, 'i> {
         let Some(table) = self.table else { return };
         let mut known = self.asked.clone();
         known.sort_unstable();
-        let known_names = known.join(", ");
+        let known_names = if known.len() > MOST_KNOWN_NAMES {
+            format!("{}, ...", known[..3].join(", "))
+        } else {
+            known.join(", ")
+        };
         for (key, _) in table.iter() {
             let name: &str = key.get_ref();
             if known.binary_search(&name).is_ok() {
                 continue;
             }
-            let message = format!("is not a key here; known are {known_names}");
+            let meant = suggestion(name, known.iter().copied());
+            let message = format!("is not a key here; known are {known_names}{meant}");
             let shown: String = name.chars().take(60).collect();
             diagnostics.push(Diagnostic {
                 span: key.span(),

@@ -66,7 +66,7 @@ const LEAST_FACTOR: f64 = 0.05;
 const MAX_SPEED_M_S: f64 = 40.0;
 /// No standard deviation of the speed is greater than this at any speed, m/s. A profile may have 10 m/s; the middle of the
 /// draws is a little greater than their mean.
-const MAX_SPEED_SD_M_S: f64 = 8.0;
+const MAX_SPEED_SD_M_S: f64 = 6.0;
 
 /// Whether a scatter of the speed makes sense at every speed of a profile, not at the measured ones alone: the factor
 /// `1 + x (g + h x)` of its standard deviation, with `x = v/v0 - 1`, is positive, and the standard deviation not too great.

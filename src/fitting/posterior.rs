@@ -19,13 +19,13 @@ const CHAINS: usize = 4;
 /// Least walkers of an ensemble.
 const LEAST_WALKERS: usize = 16;
 /// Steps that are forgotten, and steps that are kept at first.
-const BURN_IN: usize = 150;
-const FIRST_STEPS: usize = 250;
+const BURN_IN: usize = 300;
+const FIRST_STEPS: usize = 500;
 /// How often the kept steps are doubled before the sampler gives up.
 const DOUBLINGS: u32 = 5;
 /// What a converged sample has.
 const LARGEST_R_HAT: f64 = 1.02;
-const LEAST_EFFECTIVE_SIZE: f64 = 400.0;
+const LEAST_EFFECTIVE_SIZE: f64 = 1000.0;
 
 /// The speed's standard deviation at a place is at least this share of that at the reference speed.
 const LEAST_SD_SHARE: f64 = 0.05;

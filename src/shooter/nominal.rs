@@ -78,4 +78,17 @@ impl NominalOverrides {
             NominalVariable::RifleSpin => self.rifle_spin_rad_s,
         }
     }
+
+    /// Fixes a variable, SI units.
+    pub fn set(&mut self, variable: NominalVariable, value: f64) {
+        let field = match variable {
+            NominalVariable::Speed => &mut self.speed_m_s,
+            NominalVariable::Pitch => &mut self.pitch_rad,
+            NominalVariable::Polar => &mut self.polar_rad,
+            NominalVariable::Backspin => &mut self.backspin_rad_s,
+            NominalVariable::SideSpin => &mut self.side_spin_rad_s,
+            NominalVariable::RifleSpin => &mut self.rifle_spin_rad_s,
+        };
+        *field = Some(value);
+    }
 }

@@ -6,7 +6,7 @@ mod quantity;
 mod unit_system;
 
 pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
-pub use quantity::{Dimension, QuantityError, parse};
+pub use quantity::{Dimension, QuantityError, parse, suggestion};
 pub use unit_system::UnitSystem;
 
 /// The value with 12 significant digits. A table shows 6 and not 6.000000000000001, the last digits of a change of

@@ -53,10 +53,12 @@ impl Dimension {
                 ("m/s", 1.0),
                 ("km/h", 1.0 / 3.6),
                 ("mph", 5280.0 * FOOT_M / 3600.0),
+                ("cm/s", 0.01),
             ],
             Self::Angle => &[("deg", DEGREE_RAD), ("rad", 1.0)],
             Self::Spin => &[
                 ("rev/s", REV_RAD),
+                ("rpm", REV_RAD / 60.0),
                 ("Hz", REV_RAD),
                 ("rad/s", 1.0),
                 ("deg/s", DEGREE_RAD),
@@ -83,6 +85,34 @@ impl Dimension {
                 ("lb/ft^3", POUND_KG / (FOOT_M * FOOT_M * FOOT_M)),
             ],
         }
+    }
+
+    /// Other spellings of the units.
+    fn spellings(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::Length => &[
+                ("feet", "ft"),
+                ("foot", "ft"),
+                ("'", "ft"),
+                ("\u{2032}", "ft"),
+                ("inches", "in"),
+                ("inch", "in"),
+                ("\"", "in"),
+                ("\u{2033}", "in"),
+            ],
+            Self::Speed => &[("fps", "ft/s"), ("kph", "km/h")],
+            Self::Angle => &[("degrees", "deg"), ("degree", "deg"), ("\u{b0}", "deg")],
+            Self::Spin => &[("Hertz", "Hz"), ("rev/min", "rpm"), ("\u{b0}/s", "deg/s")],
+            _ => &[],
+        }
+    }
+
+    /// The size of a unit, by any of its spellings.
+    fn size_of(self, unit: &str) -> Option<f64> {
+        let other = self.spellings().iter().find(|(name, _)| *name == unit);
+        let unit = other.map_or(unit, |(_, name)| name);
+        let found = self.units().iter().find(|(name, _)| *name == unit);
+        found.map(|(_, size)| *size)
     }
 
     /// The accepted units as text: `ft, in, m, cm or mm`.
@@ -126,11 +156,21 @@ pub enum QuantityError {
         /// The input.
         text: String,
     },
+    /// It has a decimal comma.
+    #[error("\"{text}\" has a decimal comma; write {point}")]
+    DecimalComma {
+        /// The input.
+        text: String,
+        /// The same with a point.
+        point: String,
+    },
     /// The unit does not belong to this dimension.
-    #[error("\"{unit}\" is not a unit of this quantity; write one of {allowed}")]
+    #[error("\"{unit}\" is not a unit of this quantity; write one of {allowed}{suggestion}")]
     WrongUnit {
         /// The unit in the input.
         unit: String,
+        /// What may have been meant, as the end of a sentence; empty if nothing is like it.
+        suggestion: String,
         /// The accepted units.
         allowed: String,
     },
@@ -165,6 +205,21 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
         .parse()
         .map_err(|_| QuantityError::NotANumber { text: shown() })?;
     let unit = unit.split_whitespace().collect::<Vec<_>>().join(" ");
+    if unit
+        .strip_prefix(',')
+        .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()))
+    {
+        return Err(QuantityError::DecimalComma {
+            point: shown().replacen(',', ".", 1),
+            text: shown(),
+        });
+    }
+    if dimension == Dimension::Number && unit == "%" {
+        return Ok(value / 100.0);
+    }
+    if let Some(inches) = feet_and_inches(value, &unit, dimension) {
+        return inches;
+    }
     if unit.is_empty() && dimension != Dimension::Number {
         return Err(QuantityError::NoUnit {
             text: shown(),
@@ -178,12 +233,10 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
         1.0
     } else {
         dimension
-            .units()
-            .iter()
-            .find(|(name, _)| *name == unit)
-            .map(|(_, scale)| *scale)
+            .size_of(&unit)
             .ok_or_else(|| QuantityError::WrongUnit {
                 unit: unit.chars().take(40).collect(),
+                suggestion: suggestion(&unit, dimension.units().iter().map(|(name, _)| *name)),
                 allowed: dimension.unit_names(),
             })?
     };
@@ -193,6 +246,45 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
     } else {
         Err(QuantityError::NotFinite { text: shown() })
     }
+}
+
+/// `6'11"`, `6 ft 11 in` and the like: the rest of a length after its feet. `None` if it is none.
+fn feet_and_inches(
+    feet: f64,
+    rest: &str,
+    dimension: Dimension,
+) -> Option<Result<f64, QuantityError>> {
+    if dimension != Dimension::Length {
+        return None;
+    }
+    let names = ["feet", "foot", "ft", "'", "\u{2032}"];
+    let after = names.into_iter().find_map(|name| rest.strip_prefix(name))?;
+    let after = after.trim_start();
+    if !after.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    // A sign before the feet is that of the whole.
+    let signed = |inches: f64| feet * FOOT_M + inches.copysign(feet);
+    Some(parse(after, dimension).map(signed))
+}
+
+/// What may have been meant by a name that is not known, as the end of a sentence; empty if nothing is like it.
+#[must_use]
+pub fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    /// Names less alike than this, from 0 to 1, have nothing in common.
+    const LEAST_LIKENESS: f64 = 0.75;
+    let name: String = name.chars().take(60).collect::<String>().to_lowercase();
+    known
+        .into_iter()
+        .map(|known| {
+            let likeness = strsim::normalized_damerau_levenshtein(&name, &known.to_lowercase());
+            (likeness, known)
+        })
+        .filter(|(likeness, _)| *likeness >= LEAST_LIKENESS)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or_else(String::new, |(_, known)| {
+            format!("; did you mean \"{known}\"?")
+        })
 }
 
 /// Whether character `i` belongs to the number: a digit, a sign, or an exponent. An `e` belongs to it only
@@ -226,6 +318,39 @@ mod tests {
             1.53 * POUND_FORCE_N / FOOT_M
         );
         assert_eq!(parse("180 deg", Dimension::Angle).unwrap(), PI);
+    }
+
+    #[test]
+    fn contract_units_as_people_write_them() {
+        let near = |text: &str, dimension: Dimension, expected: f64| {
+            let value = parse(text, dimension).unwrap();
+            assert!((value - expected).abs() < 1e-12, "{text}: {value}");
+        };
+        let length = Dimension::Length;
+        for text in [
+            "6'11\"",
+            "6 ft 11 in",
+            "6ft 11in",
+            "6 feet 11 inches",
+            "6\u{2032}11\u{2033}",
+        ] {
+            near(text, length, 83.0 * INCH_M);
+        }
+        near("-1'6\"", length, -18.0 * INCH_M);
+        near("7'", length, 7.0 * FOOT_M);
+        near("180 rpm", Dimension::Spin, 6.0 * PI);
+        near("20 fps", Dimension::Speed, 20.0 * FOOT_M);
+        near("700 cm/s", Dimension::Speed, 7.0);
+        near("52\u{b0}", Dimension::Angle, 52.0 * DEGREE_RAD);
+        near("52 degrees", Dimension::Angle, 52.0 * DEGREE_RAD);
+        near("70 %", Dimension::Number, 0.7);
+        let message = |text: &str| parse(text, length).unwrap_err().to_string();
+        assert_eq!(
+            message("13,75 ft"),
+            "\"13,75 ft\" has a decimal comma; write 13.75 ft"
+        );
+        assert!(message("1 FT").ends_with("did you mean \"ft\"?"));
+        assert!(message("1 parsec").ends_with("cm or mm"));
     }
 
     #[test]

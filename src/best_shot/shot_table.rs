@@ -1,0 +1,268 @@
+//! The best shots of one kind for a grid of distances and court angles, for a program to interpolate in.
+
+use super::search::{BestShot, BestShotError, find_kinds};
+use crate::analysis::sensitivity::SensitivityTopics;
+use crate::probability::{MAX_SHOTS, Progress, Sampler, Silent};
+use crate::search_space::PlanError;
+use crate::shooter::{
+    Location, Nominal, NominalVariable, Profile, ProfileError, SearchChoice, ShotKind,
+};
+
+/// The best shot at one node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableShot {
+    /// The nominal shot.
+    pub nominal: Nominal,
+    /// Its direction from the line to the hoop's centre, rad, positive to the shooter's left.
+    pub aim_rad: f64,
+    /// P.
+    pub probability: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Time from the release until the error-free shot is made, s.
+    pub time_s: f64,
+    /// Angle at which the error-free shot falls through the plane of the hoop, rad.
+    pub entry_rad: Option<f64>,
+    /// Widths of the ranges of speed (m/s) and pitch angle (rad) in which an otherwise exact shot is made.
+    pub tolerances: [f64; 2],
+}
+
+/// P of the shot that is interpolated between four nodes (two where there is one angle), against the best shot there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InterpolationCheck {
+    /// The place.
+    pub location: Location,
+    /// P of the interpolated shot.
+    pub interpolated: f64,
+    /// P of the best shot.
+    pub best: f64,
+}
+
+/// A table of best shots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShotTable {
+    /// The kind of all shots.
+    pub kind: ShotKind,
+    /// Distances, ascending, m.
+    pub distances_m: Vec<f64>,
+    /// Court angles, ascending, rad.
+    pub angles_rad: Vec<f64>,
+    /// The shots, angle by angle; `None` where there is no clean one.
+    pub shots: Vec<Option<TableShot>>,
+    /// The checks between the nodes.
+    pub checks: Vec<InterpolationCheck>,
+}
+
+/// What a table is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShotTableRequest {
+    /// The kind of all shots.
+    pub kind: ShotKind,
+    /// Distances, ascending, m.
+    pub distances_m: Vec<f64>,
+    /// Court angles, ascending, rad.
+    pub angles_rad: Vec<f64>,
+    /// Values that the shooter cannot change.
+    pub fixed: Vec<(NominalVariable, f64)>,
+}
+
+/// Why there is no table.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ShotTableError {
+    /// A value or a place is not possible.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+    /// The search is too large.
+    #[error(transparent)]
+    Search(#[from] BestShotError),
+}
+
+impl ShotTable {
+    /// Computes a table, with a check between all nodes.
+    ///
+    /// # Errors
+    /// A fixed value or a place is not possible, or the search is too large.
+    pub fn compute(
+        profile: &Profile,
+        request: &ShotTableRequest,
+        progress: &dyn Progress,
+    ) -> Result<Self, ShotTableError> {
+        let profile = with_fixed(profile, &request.fixed)?;
+        let (distances, angles) = (&request.distances_m, &request.angles_rad);
+        let between_distances = midpoints(distances);
+        let between_angles = if angles.len() > 1 {
+            midpoints(angles)
+        } else {
+            angles.clone()
+        };
+        let nodes = distances.len() * angles.len();
+        let checks = between_distances.len() * between_angles.len();
+        progress.begin("finding shots", (nodes + checks) as u64);
+        let mut table = Self {
+            kind: request.kind,
+            distances_m: distances.clone(),
+            angles_rad: angles.clone(),
+            shots: Vec::with_capacity(nodes),
+            checks: Vec::with_capacity(checks),
+        };
+        for &angle_rad in angles {
+            for &distance_m in distances {
+                let here = profile.moved_to(Location {
+                    distance_m,
+                    angle_rad,
+                })?;
+                let topics = SensitivityTopics {
+                    windows: true,
+                    ..SensitivityTopics::NONE
+                };
+                let shot = best(&here, request.kind, topics)?;
+                table.shots.push(shot.map(|shot| TableShot {
+                    nominal: shot.nominal,
+                    aim_rad: shot.nominal.polar_rad - angle_rad,
+                    probability: shot.estimate.probability,
+                    standard_error: shot.estimate.standard_error,
+                    time_s: shot.outcome.verdict.time_s,
+                    entry_rad: shot.outcome.entry.map(|entry| entry.angle_rad),
+                    tolerances: [0, 1].map(|i| shot.sensitivity.windows[i].width()),
+                }));
+                progress.advance(1);
+            }
+        }
+        for &angle_rad in &between_angles {
+            for &distance_m in &between_distances {
+                let location = Location {
+                    distance_m,
+                    angle_rad,
+                };
+                let here = profile.moved_to(location)?;
+                if let Some(nominal) = table.interpolated(location)
+                    && let Some(shot) = best(&here, request.kind, SensitivityTopics::NONE)?
+                {
+                    let search = here.search();
+                    let (target, seed) = (search.standard_error, search.seed);
+                    let estimate = Sampler::new(&here)
+                        .estimate_within(&nominal, target, MAX_SHOTS, seed, &Silent);
+                    table.checks.push(InterpolationCheck {
+                        location,
+                        interpolated: estimate.probability,
+                        best: shot.estimate.probability,
+                    });
+                }
+                progress.advance(1);
+            }
+        }
+        progress.end();
+        Ok(table)
+    }
+
+    /// The shot at a node.
+    #[must_use]
+    pub fn at(&self, angle: usize, distance: usize) -> Option<&TableShot> {
+        self.shots[angle * self.distances_m.len() + distance].as_ref()
+    }
+
+    /// The shot at a place inside the table, linear in distance and court angle; `None` where a node has no shot.
+    #[must_use]
+    pub fn interpolated(&self, location: Location) -> Option<Nominal> {
+        let (d, along) = cell(&self.distances_m, location.distance_m)?;
+        let (a, across) = cell(&self.angles_rad, location.angle_rad)?;
+        let corners = [
+            (a, d, (1.0 - across) * (1.0 - along)),
+            (a, d + 1, (1.0 - across) * along),
+            (a + 1, d, across * (1.0 - along)),
+            (a + 1, d + 1, across * along),
+        ];
+        let mut nominal = Nominal::default();
+        let mut aim = 0.0;
+        for (a, d, weight) in corners {
+            if weight == 0.0 {
+                continue;
+            }
+            let shot = self.at(a, d)?;
+            aim += weight * shot.aim_rad;
+            for variable in NominalVariable::ALL {
+                *nominal.get_mut(variable) += weight * shot.nominal.get(variable);
+            }
+        }
+        nominal.polar_rad = location.angle_rad + aim;
+        Some(nominal)
+    }
+
+    /// The greatest P that interpolation costs, over all checks; `None` without a check.
+    #[must_use]
+    pub fn greatest_loss(&self) -> Option<f64> {
+        let losses = self
+            .checks
+            .iter()
+            .map(|check| check.best - check.interpolated);
+        losses.reduce(f64::max)
+    }
+}
+
+/// The cell of ascending values that a value is in, and how far into it, 0 to 1. One value alone is a cell of no width.
+fn cell(values: &[f64], value: f64) -> Option<(usize, f64)> {
+    let (first, last) = (*values.first()?, *values.last()?);
+    if !(first..=last).contains(&value) {
+        return None;
+    }
+    let next = values.partition_point(|v| *v <= value);
+    if next == values.len() {
+        return Some((values.len() - 1, 0.0));
+    }
+    let (low, high) = (values[next - 1], values[next]);
+    Some((next - 1, (value - low) / (high - low)))
+}
+
+fn midpoints(values: &[f64]) -> Vec<f64> {
+    values
+        .windows(2)
+        .map(|pair| 0.5 * (pair[0] + pair[1]))
+        .collect()
+}
+
+/// The profile with values that the search leaves as they are.
+fn with_fixed(
+    profile: &Profile,
+    fixed: &[(NominalVariable, f64)],
+) -> Result<Profile, ProfileError> {
+    profile.with(|settings| {
+        let chosen: Vec<NominalVariable> = settings
+            .search
+            .choice
+            .iter()
+            .filter(|chosen| fixed.iter().all(|(variable, _)| variable != chosen))
+            .collect();
+        settings.search.choice = SearchChoice::only(&chosen);
+        for &(variable, value) in fixed {
+            settings.nominal.set(variable, value);
+        }
+    })
+}
+
+/// The best shot of a kind, if there is a clean one.
+fn best(
+    profile: &Profile,
+    kind: ShotKind,
+    topics: SensitivityTopics,
+) -> Result<Option<BestShot>, BestShotError> {
+    match find_kinds(profile, &[kind], topics, &Silent) {
+        Ok((_, mut shots)) => Ok(shots.pop().and_then(Result::ok)),
+        Err(BestShotError::Plan(PlanError::OutOfReach)) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_cells_of_a_table() {
+        let values = [1.0, 2.0, 4.0];
+        assert_eq!(cell(&values, 1.0), Some((0, 0.0)));
+        assert_eq!(cell(&values, 3.0), Some((1, 0.5)));
+        assert_eq!(cell(&values, 4.0), Some((2, 0.0)));
+        assert_eq!(cell(&values, 4.1), None);
+        assert_eq!(cell(&[0.3], 0.3), Some((0, 0.0)));
+    }
+}

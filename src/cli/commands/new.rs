@@ -1,0 +1,240 @@
+//! `bankshot new`: a commented file to edit.
+
+use crate::cli::failure::{Failure, code};
+use crate::cli::terminal::{print_answer, print_remark};
+use bankshot::config::parse_profile;
+use bankshot::shooter::Profile;
+use bankshot::units::{self, Dimension};
+use clap::{Args, ValueEnum};
+use std::io::{BufRead, Write};
+use std::path::{Path, PathBuf};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bankshot new player                    writes player.toml
+  bankshot new player --interactive      asks five questions first
+  bankshot new robot launcher.toml
+  bankshot new sweep my_court.toml")]
+pub(crate) struct NewOptions {
+    /// What to write.
+    pub(crate) what: Template,
+    /// The file [default: its name, such as player.toml]; - for standard output.
+    pub(crate) file: Option<PathBuf>,
+    /// Ask for the main values (player only).
+    #[arg(long)]
+    pub(crate) interactive: bool,
+}
+
+/// The files that can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Template {
+    /// The profile of a player.
+    Player,
+    /// A sweep over the court.
+    Sweep,
+    /// The profile of a launcher.
+    Robot,
+    /// A ball and a hoop.
+    Physics,
+}
+
+impl Template {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Player => include_str!("new_templates/player.toml"),
+            Self::Sweep => include_str!("new_templates/sweep.toml"),
+            Self::Robot => include_str!("new_templates/robot.toml"),
+            Self::Physics => include_str!("new_templates/physics.toml"),
+        }
+    }
+
+    fn file_name(self) -> &'static str {
+        match self {
+            Self::Player => "player.toml",
+            Self::Sweep => "sweep.toml",
+            Self::Robot => "robot.toml",
+            Self::Physics => "physics.toml",
+        }
+    }
+
+    /// The command to run next.
+    fn next(self, file: &Path) -> String {
+        let file = file.display();
+        match self {
+            Self::Player => format!("bankshot best {file}"),
+            Self::Sweep => format!("bankshot plan {file}"),
+            Self::Robot => {
+                format!("bankshot table {file} --distances '6 ft to 20 ft by 2 ft'")
+            }
+            Self::Physics => format!("bankshot check player.toml --physics {file} --verbose"),
+        }
+    }
+}
+
+pub(crate) fn run(options: &NewOptions, quiet: bool) -> Result<u8, Failure> {
+    if options.interactive && options.what != Template::Player {
+        return Err(Failure::usage("--interactive: only for a player"));
+    }
+    let file = options
+        .file
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(options.what.file_name()));
+    let is_standard_output = file.as_os_str() == "-";
+    // Refused before any question is asked.
+    if !is_standard_output && file.symlink_metadata().is_ok() {
+        return Err(exists(&file));
+    }
+    let text = if options.interactive {
+        ask(&mut std::io::stdin().lock())?
+    } else {
+        options.what.text().to_owned()
+    };
+    if is_standard_output {
+        return print_answer(&text);
+    }
+    let mut created = match std::fs::File::create_new(&file) {
+        Ok(created) => created,
+        Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
+            return Err(exists(&file));
+        }
+        Err(error) => return Err(Failure::io(file.display(), &error)),
+    };
+    created
+        .write_all(text.as_bytes())
+        .map_err(|error| Failure::io(file.display(), &error))?;
+    if !quiet {
+        print_remark(&format!(
+            "written: {}; edit it, then: {}",
+            file.display(),
+            options.what.next(&file)
+        ));
+    }
+    Ok(code::DONE)
+}
+
+fn exists(file: &Path) -> Failure {
+    Failure::usage(format!(
+        "{}: exists already; name another file",
+        file.display()
+    ))
+}
+
+/// A question: what is asked, the usual answer, and the key that the answer is the value of.
+struct Question {
+    words: &'static str,
+    usual: &'static str,
+    /// The line of the template, up to its value.
+    line: &'static str,
+    /// `None` for a name.
+    dimension: Option<Dimension>,
+}
+
+const QUESTIONS: [Question; 4] = [
+    Question {
+        words: "Name of the player",
+        usual: "my player",
+        line: "name = ",
+        dimension: None,
+    },
+    Question {
+        words: "How far from the hoop",
+        usual: "13 ft 9 in",
+        line: "distance = ",
+        dimension: Some(Dimension::Length),
+    },
+    Question {
+        words: "At what angle (0 deg is straight in front, 90 deg the baseline on the right)",
+        usual: "0 deg",
+        line: "angle = ",
+        dimension: Some(Dimension::Angle),
+    },
+    Question {
+        words: "How high is the ball as it leaves the hand",
+        usual: "6 ft 11 in",
+        line: "release_height = ",
+        dimension: Some(Dimension::Length),
+    },
+];
+
+/// How steady a player is, with the scatter of speed, pitch and polar angle: those of the files in configs/.
+const LEVELS: [(&str, [&str; 3]); 4] = [
+    ("novice", ["0.44 ft/s", "2.7 deg", "1.46 deg"]),
+    ("school", ["0.30 ft/s", "1.2 deg", "1.22 deg"]),
+    ("college", ["0.25 ft/s", "1.2 deg", "1.22 deg"]),
+    ("elite", ["0.15 ft/s", "1.2 deg", "0.8 deg"]),
+];
+
+/// Asks for the values of a player. An empty answer is the usual one.
+fn ask(input: &mut impl BufRead) -> Result<String, Failure> {
+    let mut text = Template::Player.text().to_owned();
+    for question in &QUESTIONS {
+        let answer = answer_to(input, question.words, question.usual, |answer| {
+            question.dimension.map_or(Ok(()), |dimension| {
+                units::parse(answer, dimension)
+                    .map(drop)
+                    .map_err(|error| error.to_string())
+            })
+        })?;
+        text = with_value(&text, question.line, &answer);
+    }
+    let names = LEVELS.map(|(name, _)| name).join(", ");
+    let words = format!("How steady are they ({names})");
+    let level = answer_to(input, &words, "college", |answer| {
+        let is_known = LEVELS.iter().any(|(name, _)| *name == answer);
+        is_known.then_some(()).ok_or(format!("one of {names}"))
+    })?;
+    for (name, values) in LEVELS {
+        if name == level {
+            for (line, value) in ["speed = ", "pitch = ", "polar = "].iter().zip(values) {
+                text = with_value(&text, line, value);
+            }
+        }
+    }
+    let checked: Result<Profile, _> = parse_profile(&text, "the answers");
+    checked?;
+    Ok(text)
+}
+
+/// Asks until the answer makes sense.
+fn answer_to(
+    input: &mut impl BufRead,
+    words: &str,
+    usual: &str,
+    check: impl Fn(&str) -> Result<(), String>,
+) -> Result<String, Failure> {
+    loop {
+        print_remark(&format!("{words}? [{usual}]"));
+        let mut line = String::new();
+        let read = input
+            .read_line(&mut line)
+            .map_err(|error| Failure::io("standard input", &error))?;
+        let answer = match line.trim() {
+            "" => usual,
+            answer => answer,
+        };
+        match check(answer) {
+            Ok(()) => return Ok(answer.to_owned()),
+            Err(error) if read > 0 => print_remark(&error),
+            Err(error) => return Err(Failure::usage(error)),
+        }
+    }
+}
+
+/// The text with another value, as a TOML string, in the first line that starts so. Its comment stays.
+fn with_value(text: &str, start: &str, value: &str) -> String {
+    let mut is_done = false;
+    let lines = text.lines().map(|line| {
+        if is_done || !line.starts_with(start) {
+            return format!("{line}\n");
+        }
+        is_done = true;
+        let value = value.replace('\\', "\\\\").replace('"', "\\\"");
+        let comment = line.find("  #").map_or("", |at| line[at..].trim_start());
+        format!("{:<35}{comment}", format!("{start}\"{value}\""))
+            .trim_end()
+            .to_owned()
+            + "\n"
+    });
+    lines.collect()
+}

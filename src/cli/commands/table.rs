@@ -1,0 +1,204 @@
+//! `bankshot table`: best shots for a grid of places, for a machine.
+
+use crate::cli::config_files::load_profile;
+use crate::cli::failure::{Failure, code};
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
+use bankshot::best_shot::{ShotKind, ShotTable, ShotTableError, ShotTableRequest};
+use bankshot::output::atomic_file;
+use bankshot::output::shot_table_files::source_code::{Language, source_code};
+use bankshot::output::shot_table_files::table_text::{
+    check_text, table_csv, table_json, table_text,
+};
+use bankshot::shooter::NominalVariable;
+use bankshot::units::{self, Dimension};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are
+interpolated, and the table says how much P that costs.
+
+Examples:
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --pitch '60 deg' --backspin '2 rev/s'
+  bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' --angles '0 deg to 60 deg by 15 deg' --kind bank
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --format java --output ShotTable.java")]
+pub(crate) struct TableOptions {
+    /// The launcher's profile.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    /// Distances from the hoop's centre: '6 ft, 8 ft' or '6 ft to 20 ft by 1 ft'.
+    #[arg(long, value_name = "LIST|RANGE")]
+    pub(crate) distances: String,
+    /// Court angles [default: the profile's].
+    #[arg(long, value_name = "LIST|RANGE", allow_hyphen_values = true)]
+    pub(crate) angles: Option<String>,
+    /// The kind of the shots.
+    #[arg(long, value_enum, default_value_t = KindArg::Direct)]
+    pub(crate) kind: KindArg,
+    /// Fix the speed.
+    #[arg(long, value_name = "SPEED")]
+    pub(crate) speed: Option<String>,
+    /// Fix the pitch angle.
+    #[arg(long, value_name = "ANGLE")]
+    pub(crate) pitch: Option<String>,
+    /// Fix the backspin.
+    #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
+    pub(crate) backspin: Option<String>,
+    /// The form of the table.
+    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
+    pub(crate) format: TableFormat,
+    /// Write the table into a file.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Units of the table [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
+}
+
+/// The kinds of shots by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum KindArg {
+    Direct,
+    Bank,
+}
+
+/// The forms of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TableFormat {
+    /// For people.
+    Text,
+    Csv,
+    Json,
+    /// A class that looks shots up.
+    Java,
+    /// A header that looks shots up.
+    Cpp,
+    /// A module that looks shots up.
+    Python,
+}
+
+/// Most places of a table.
+const MOST_PLACES: usize = 2000;
+/// Interpolation that costs more than this in P is worth a remark.
+const GREAT_LOSS: f64 = 0.01;
+
+pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
+    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
+    if let Some(units) = options.units {
+        profile = profile.with(|settings| settings.output.units = units.into())?;
+    }
+    let units = profile.output().units;
+    let distances_m = values("distances", &options.distances, Dimension::Length)?;
+    let angles_rad = match &options.angles {
+        Some(text) => values("angles", text, Dimension::Angle)?,
+        None => vec![profile.location().angle_rad],
+    };
+    let mut fixed = Vec::new();
+    for (variable, text) in [
+        (NominalVariable::Speed, &options.speed),
+        (NominalVariable::Pitch, &options.pitch),
+        (NominalVariable::Backspin, &options.backspin),
+    ] {
+        if let Some(text) = text {
+            let value = units::parse(text, variable.dimension())
+                .map_err(|error| Failure::usage(format!("--{}: {error}", variable.name())))?;
+            fixed.push((variable, value));
+        }
+    }
+    let request = ShotTableRequest {
+        kind: match options.kind {
+            KindArg::Direct => ShotKind::Direct,
+            KindArg::Bank => ShotKind::Bank,
+        },
+        distances_m,
+        angles_rad,
+        fixed,
+    };
+    let table =
+        ShotTable::compute(&profile, &request, &ProgressBars::new(quiet)).map_err(|error| {
+            match error {
+                ShotTableError::Profile(error) => Failure::from(error),
+                ShotTableError::Search(error) => Failure::from(error),
+            }
+        })?;
+    let origin = format!(
+        "of {}",
+        profile
+            .shooter()
+            .name
+            .replace(|c: char| c.is_control() || c == '\\', " ")
+    );
+    let source = |language| source_code(&table, language, units, &origin);
+    let text = match options.format {
+        TableFormat::Text => table_text(&table, units),
+        TableFormat::Csv => table_csv(&table, units),
+        TableFormat::Json => format!("{:#}\n", table_json(&table, &profile, units)),
+        TableFormat::Java => source(Language::Java),
+        TableFormat::Cpp => source(Language::Cpp),
+        TableFormat::Python => source(Language::Python),
+    };
+    match &options.output {
+        None => {
+            print_answer(&text)?;
+        }
+        Some(path) => {
+            atomic_file::write(path, text.as_bytes())
+                .map_err(|error| Failure::io(path.display(), &error))?;
+        }
+    }
+    if !quiet {
+        if options.format != TableFormat::Text {
+            print_remark(check_text(&table).trim_end());
+        }
+        if table.greatest_loss().is_some_and(|loss| loss > GREAT_LOSS) {
+            print_remark(
+                "warning: between some nodes interpolation costs more than 0.01; take a smaller step, or fix --pitch",
+            );
+        }
+    }
+    let has_every_shot = table.shots.iter().all(Option::is_some);
+    Ok(if has_every_shot {
+        code::DONE
+    } else {
+        code::INCOMPLETE
+    })
+}
+
+/// Ascending values: `6 ft, 8 ft` or `6 ft to 20 ft by 1 ft`.
+fn values(flag: &str, text: &str, dimension: Dimension) -> Result<Vec<f64>, Failure> {
+    let refuse = |message: String| Failure::usage(format!("--{flag}: {message}"));
+    let parse = |text: &str| {
+        units::parse(text.trim(), dimension).map_err(|error| refuse(error.to_string()))
+    };
+    let values = match text.split_once(" to ") {
+        Some((from, rest)) => {
+            let (to, step) = rest.split_once(" by ").ok_or_else(|| {
+                refuse(format!("\"{text}\" has no step; write FROM to TO by STEP"))
+            })?;
+            let (from, to, step) = (parse(from)?, parse(to)?, parse(step)?);
+            if !(step > 0.0) || !(to >= from) {
+                return Err(refuse("must ascend, with a step above 0".to_owned()));
+            }
+            // The end belongs to the range, also where the steps do not add up exactly.
+            let steps = ((to - from) / step + 1e-9).floor();
+            if steps >= MOST_PLACES as f64 {
+                return Err(refuse(format!("has more than {MOST_PLACES} values")));
+            }
+            (0..=steps as usize)
+                .map(|k| from + step * k as f64)
+                .collect()
+        }
+        None => text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?,
+    };
+    if values.len() > MOST_PLACES {
+        return Err(refuse(format!("has more than {MOST_PLACES} values")));
+    }
+    if values.windows(2).any(|pair| !(pair[1] > pair[0])) {
+        return Err(refuse("the values must ascend".to_owned()));
+    }
+    Ok(values)
+}

@@ -1,0 +1,237 @@
+//! A table of best shots as source that looks a shot up: Java, C++ and Python.
+//!
+//! Each has one function of distance and court angle, linear between the nodes. It gives NaN outside the table and beside a
+//! place without a clean shot.
+
+use super::table_text::check_text;
+use crate::best_shot::{ShotTable, TableShot};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+
+/// A programming language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Language {
+    /// Java 8 or newer.
+    Java,
+    /// C++11 or newer, a header.
+    Cpp,
+    /// Python 3.
+    Python,
+}
+
+/// The values that a lookup returns: name and value in units of the results.
+fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 5] {
+    let (long, metre) = units.length();
+    [
+        (format!("speed_{long}_s"), |s| s.nominal.speed_m_s, metre),
+        ("pitch_deg".to_owned(), |s| s.nominal.pitch_rad, DEGREE_RAD),
+        ("aim_deg".to_owned(), |s| s.aim_rad, DEGREE_RAD),
+        (
+            "backspin_rev_s".to_owned(),
+            |s| s.nominal.backspin_rad_s,
+            REV_RAD,
+        ),
+        ("probability".to_owned(), |s| s.probability, 1.0),
+    ]
+}
+
+/// The source; `origin` says where the table comes from.
+#[must_use]
+pub fn source_code(
+    table: &ShotTable,
+    language: Language,
+    units: UnitSystem,
+    origin: &str,
+) -> String {
+    let (long, metre) = units.length();
+    let list = |values: &[f64], size: f64| {
+        let texts: Vec<String> = values.iter().map(|v| format!("{:.6}", v / size)).collect();
+        texts.join(", ")
+    };
+    let nan = match language {
+        Language::Java => "Double.NaN",
+        Language::Cpp => "std::numeric_limits<double>::quiet_NaN()",
+        Language::Python => "math.nan",
+    };
+    let (open, close) = match language {
+        Language::Python => ("[", "]"),
+        _ => ("{", "}"),
+    };
+    let indent = if language == Language::Java {
+        "    "
+    } else {
+        ""
+    };
+    let values = values(units);
+    let rows: Vec<String> = table
+        .shots
+        .iter()
+        .map(|shot| {
+            let cells: Vec<String> = values
+                .iter()
+                .map(|(_, value, size)| match shot {
+                    Some(shot) => format!("{:.6}", value(shot) / size),
+                    None => nan.to_owned(),
+                })
+                .collect();
+            format!("{indent}    {open}{}{close},\n", cells.join(", "))
+        })
+        .collect();
+    let names: Vec<&str> = values.iter().map(|(name, ..)| name.as_str()).collect();
+    let about = [
+        format!(
+            "Best {} shots {origin}, by bankshot {}.",
+            table.kind.name(),
+            env!("CARGO_PKG_VERSION")
+        ),
+        format!(
+            "look_up(distance_{long}, court_angle_deg) gives {}.",
+            names.join(", ")
+        ),
+        "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
+        format!(
+            "NaN outside the table. Checked: {}",
+            check_text(table).trim()
+        ),
+    ];
+    let comment = |prefix: &str| {
+        let lines = about.iter().map(|line| format!("{prefix} {line}\n"));
+        lines.collect::<String>()
+    };
+    let template = match language {
+        Language::Java => JAVA,
+        Language::Cpp => CPP,
+        Language::Python => PYTHON,
+    };
+    let prefix = if language == Language::Python {
+        "#"
+    } else {
+        "//"
+    };
+    template
+        .replace("@ABOUT@", &comment(prefix))
+        .replace("@DISTANCES@", &list(&table.distances_m, metre))
+        .replace("@ANGLES@", &list(&table.angles_rad, DEGREE_RAD))
+        .replace("@ROWS@", &rows.concat())
+        .replace("@VALUES@", &values.len().to_string())
+}
+
+const JAVA: &str = "\
+@ABOUT@public final class ShotTable {
+    private static final double[] DISTANCES = {@DISTANCES@};
+    private static final double[] ANGLES = {@ANGLES@};
+    private static final double[][] SHOTS = {
+@ROWS@    };
+
+    private ShotTable() {}
+
+    public static double[] lookUp(double distance, double angle) {
+        double[] result = new double[@VALUES@];
+        int d = cell(DISTANCES, distance);
+        int a = cell(ANGLES, angle);
+        if (d < 0 || a < 0) {
+            java.util.Arrays.fill(result, Double.NaN);
+            return result;
+        }
+        double x = part(DISTANCES, d, distance);
+        double y = part(ANGLES, a, angle);
+        for (int i = 0; i < 2; i++) {
+            for (int j = 0; j < 2; j++) {
+                double weight = (i == 0 ? 1 - y : y) * (j == 0 ? 1 - x : x);
+                if (weight == 0) continue;
+                double[] shot = SHOTS[(a + i) * DISTANCES.length + d + j];
+                for (int k = 0; k < result.length; k++) result[k] += weight * shot[k];
+            }
+        }
+        return result;
+    }
+
+    private static int cell(double[] values, double value) {
+        if (!(value >= values[0] && value <= values[values.length - 1])) return -1;
+        int i = values.length - 1;
+        while (values[i] > value) i--;
+        return i;
+    }
+
+    private static double part(double[] values, int i, double value) {
+        return i + 1 < values.length ? (value - values[i]) / (values[i + 1] - values[i]) : 0;
+    }
+}
+";
+
+const CPP: &str = "\
+@ABOUT@#pragma once
+#include <array>
+#include <cstddef>
+#include <limits>
+
+namespace shot_table {
+
+constexpr double distances[] = {@DISTANCES@};
+constexpr double angles[] = {@ANGLES@};
+constexpr double shots[][@VALUES@] = {
+@ROWS@};
+
+template <std::size_t N>
+int cell(const double (&values)[N], double value) {
+    if (!(value >= values[0] && value <= values[N - 1])) return -1;
+    int i = static_cast<int>(N) - 1;
+    while (values[i] > value) --i;
+    return i;
+}
+
+template <std::size_t N>
+double part(const double (&values)[N], int i, double value) {
+    return i + 1 < static_cast<int>(N) ? (value - values[i]) / (values[i + 1] - values[i]) : 0.0;
+}
+
+inline std::array<double, @VALUES@> look_up(double distance, double angle) {
+    std::array<double, @VALUES@> result{};
+    constexpr int count = sizeof(distances) / sizeof(distances[0]);
+    const int d = cell(distances, distance), a = cell(angles, angle);
+    if (d < 0 || a < 0) {
+        result.fill(std::numeric_limits<double>::quiet_NaN());
+        return result;
+    }
+    const double x = part(distances, d, distance), y = part(angles, a, angle);
+    for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < 2; ++j) {
+            const double weight = (i == 0 ? 1 - y : y) * (j == 0 ? 1 - x : x);
+            if (weight == 0) continue;
+            const double* shot = shots[(a + i) * count + d + j];
+            for (std::size_t k = 0; k < result.size(); ++k) result[k] += weight * shot[k];
+        }
+    }
+    return result;
+}
+
+}  // namespace shot_table
+";
+
+const PYTHON: &str = "\
+@ABOUT@import bisect
+import math
+
+DISTANCES = [@DISTANCES@]
+ANGLES = [@ANGLES@]
+SHOTS = [
+@ROWS@]
+
+
+def look_up(distance, angle=ANGLES[0]):
+    cells = []
+    for values, value in ((DISTANCES, distance), (ANGLES, angle)):
+        if not values[0] <= value <= values[-1]:
+            return [math.nan] * @VALUES@
+        i = bisect.bisect_right(values, value) - 1
+        last = i + 1 == len(values)
+        cells.append((i, 0.0 if last else (value - values[i]) / (values[i + 1] - values[i])))
+    (d, x), (a, y) = cells
+    result = [0.0] * @VALUES@
+    for i, across in ((0, 1 - y), (1, y)):
+        for j, along in ((0, 1 - x), (1, x)):
+            weight = across * along
+            if weight:
+                shot = SHOTS[(a + i) * len(DISTANCES) + d + j]
+                result = [r + weight * s for r, s in zip(result, shot)]
+    return result
+";

@@ -1,0 +1,73 @@
+//! Values that a profile may have, but that no player is known to have.
+
+use super::profile::Profile;
+use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+
+/// The speed that the scatter of speeds is looked at, m/s: that of a free throw.
+const USUAL_SPEED_M_S: f64 = 7.4;
+
+/// What is implausible about a profile, each as a sentence; nothing for a profile of a player.
+///
+/// Measured scatters are 0.15 to 0.45 ft/s and 0.8 to 2.7 deg; the limits here are three times and more that. The heights
+/// of release and the distances are those of people on a court.
+#[must_use]
+pub fn implausible_values(profile: &Profile) -> Vec<String> {
+    let shooter = profile.shooter();
+    let errors = &shooter.dispersion;
+    let feet = |length_m: f64| length_m / FOOT_M;
+    let speed_sd =
+        errors.c10_m_s + USUAL_SPEED_M_S * (errors.c11 + USUAL_SPEED_M_S * errors.c12_s_m);
+    let distance_m = profile.location().distance_m;
+    let mut found = Vec::new();
+    let mut say = |is_odd: bool, words: String| {
+        if is_odd {
+            found.push(words);
+        }
+    };
+    let height = feet(shooter.release_height_m);
+    say(
+        !(1.5..=9.5).contains(&height),
+        format!(
+            "shooter.release_height: a release {height:.1} ft above the floor; players release at 5 to 9 ft"
+        ),
+    );
+    say(
+        feet(speed_sd) > 1.5,
+        format!(
+            "shooter.errors: speeds scatter by {:.1} ft/s (one standard deviation); players by 0.15 to 0.45 ft/s",
+            feet(speed_sd)
+        ),
+    );
+    for (key, angle_rad) in [
+        ("c20 (pitch)", errors.c20_rad),
+        ("c30 (polar)", errors.c30_rad),
+    ] {
+        let angle = angle_rad / DEGREE_RAD;
+        say(
+            angle > 6.0,
+            format!(
+                "shooter.errors.{key}: angles scatter by {angle:.1} deg (one standard deviation); players by 0.8 to 2.7 deg"
+            ),
+        );
+    }
+    let spin_sd = errors.c40_rad_s / REV_RAD;
+    say(
+        spin_sd > 1.5,
+        format!(
+            "shooter.errors.c40 (backspin): spins scatter by {spin_sd:.1} rev/s (one standard deviation); players by about 0.3 rev/s"
+        ),
+    );
+    let most_spin = shooter.max_backspin_rad_s / REV_RAD;
+    say(
+        most_spin > 6.0,
+        format!("shooter.max_backspin: {most_spin:.1} rev/s; players reach 2 to 3 rev/s"),
+    );
+    say(
+        feet(distance_m) > 60.0,
+        format!(
+            "location: {:.0} ft from the hoop; half a court is 42 ft",
+            feet(distance_m)
+        ),
+    );
+    found
+}
