@@ -14,7 +14,7 @@ use super::commands::probability::ProbabilityOptions;
 use super::commands::report::ReportOptions;
 use super::commands::simulate::SimulateOptions;
 use super::commands::sweep::{MergeOptions, SweepOptions};
-use super::commands::sweep_status::{FolderOptions, MissingOptions, VerifyOptions};
+use super::commands::sweep_status::{MissingOptions, StatusOptions, VerifyOptions};
 use super::commands::table::TableOptions;
 use super::commands::trace::TraceOptions;
 use super::value_parsers::instruction_set;
@@ -91,7 +91,7 @@ pub(crate) enum Command {
     /// Find the best shots at every place of a region; run the same command again to continue.
     Sweep(SweepOptions),
     /// Show the progress of a sweep.
-    Status(FolderOptions),
+    Status(StatusOptions),
     /// Check every result of a sweep, and compute some of them again.
     Verify(VerifyOptions),
     /// Print the shards of a sweep with missing jobs, in the form of `sbatch --array`.

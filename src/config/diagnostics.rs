@@ -65,6 +65,16 @@ impl ConfigError {
         renderer.render(&[group])
     }
 
+    /// Line and column of a diagnostic in the text, from 1.
+    #[must_use]
+    pub fn line_and_column(&self, diagnostic: &Diagnostic) -> (usize, usize) {
+        let (start, _) = self.boundaries(&diagnostic.span);
+        let before = &self.text[..start];
+        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
+        let line = 1 + before.bytes().filter(|&byte| byte == b'\n').count();
+        (line, 1 + before[line_start..].chars().count())
+    }
+
     /// The start and the end of a span, moved to boundaries of characters of the text.
     fn boundaries(&self, span: &Range<usize>) -> (usize, usize) {
         let boundary = |at: usize| {

@@ -290,7 +290,7 @@ fn contract_impossible_correlations_are_refused_with_their_file() {
     let folder = TempDir::new().unwrap();
     for (text, reason) in [
         ("speed_pitch = 1.5", "from -1 to 1"),
-        ("pitch_speed = 0.5", "not a key here"),
+        ("pitch_tempo = 0.5", "not a key here"),
         (
             "speed_pitch = 0.9\nspeed_polar = 0.9\npitch_polar = -0.9",
             "not positive semi-definite",
@@ -315,4 +315,59 @@ fn contract_thousands_of_errors_are_counted_and_the_first_shown() {
     );
     let large = write_file(&folder, "large.toml", "#".repeat(2_000_000));
     check(&large).exits(2).says("at most 1048576 are read");
+}
+
+#[test]
+fn contract_plain_names_of_errors_and_either_order_of_correlations() {
+    let folder = TempDir::new().unwrap();
+    let load = |text: &str| bankshot::config::parse_profile(text, "p.toml");
+    let plain = FREE_THROW
+        .replace("c10 =", "speed =")
+        .replace("c20 =", "pitch =")
+        .replace("c30 =", "polar =")
+        .replace("c40 =", "backspin =");
+    let with = |text: &str, pair: &str| format!("{text}\n[shooter.correlation]\n{pair}\n");
+    let usual = load(&with(FREE_THROW, "speed_pitch = 0.2")).unwrap();
+    let other = load(&with(&plain, "pitch_speed = \"20 %\"")).unwrap();
+    assert_eq!(usual.shooter().dispersion, other.shooter().dispersion);
+    for (text, message) in [
+        (
+            FREE_THROW.replace("c20 =", "speed = \"1 ft/s\"\nc20 ="),
+            "shooter.errors.speed: is given twice: c10 and speed are the same",
+        ),
+        (
+            with(FREE_THROW, "speed_pitch = 0.1\npitch_speed = 0.1"),
+            "is given twice: speed_pitch and pitch_speed are the same",
+        ),
+        (
+            FREE_THROW.replace("release_height", "relaese_height"),
+            "did you mean \"release_height\"?",
+        ),
+    ] {
+        let profile = write_file(&folder, "p.toml", text);
+        check(&profile).exits(2).says(message);
+    }
+}
+
+#[test]
+fn contract_check_names_errors_with_their_lines_as_json() {
+    let folder = TempDir::new().unwrap();
+    let json = |text: &str, code: i32| {
+        let profile = write_file(&folder, "p.toml", text);
+        let mut command = bankshot();
+        Answer::of(command.arg("check").arg(profile).arg("--json"))
+            .exits(code)
+            .json()
+    };
+    let valid = json(FREE_THROW, 0);
+    assert_eq!(valid["is_valid"], true);
+    assert_eq!(valid["warnings"].as_array().unwrap().len(), 0);
+    let high = json(&FREE_THROW.replace("\"7 ft\"", "\"11 ft\""), 0);
+    assert!(high["warnings"][0].as_str().unwrap().contains("11.0 ft"));
+    let wrong = FREE_THROW.replace("\"1.2 deg\"", "\"1.2 ft\"");
+    let line = 1 + wrong.lines().position(|l| l.contains("1.2 ft")).unwrap();
+    let refused = json(&wrong, 2);
+    assert_eq!(refused["is_valid"], false);
+    assert_eq!(refused["errors"][0]["key"], "shooter.errors.c20");
+    assert_eq!(refused["errors"][0]["line"], line);
 }

@@ -64,7 +64,7 @@ fn contract_the_page_of_a_sweep_works_in_a_browser() {
     let Some(chromium) = chromium() else { return };
     let sweep = hostile_sweep();
     let page = write_report(&sweep.results());
-    for width in [1280, 500] {
+    for width in [1280, 390] {
         let seen = visit(chromium, &page, width);
         assert_works(&seen);
         assert_eq!(seen["turned"], json!(["descending", true]), "{seen:#}");

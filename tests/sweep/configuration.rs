@@ -37,6 +37,14 @@ fn contract_another_version_of_the_program_is_refused_and_named() {
     let sealed = serde_json::to_string(&(&manifest["hash"], &manifest["texts"])).unwrap();
     manifest["checksum"] = blake3::hash(sealed.as_bytes()).to_hex().to_string().into();
     fs::write(&file, manifest.to_string()).unwrap();
+    let output = bankshot()
+        .args(["status", "--json"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    let status: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(status["jobs"].as_u64().unwrap() > 0);
+    assert_eq!(status["remarks"].as_array().unwrap().len(), 0);
     let output = bankshot().arg("status").arg(&out).output().unwrap();
     assert_code(&output, 3);
     for output in [

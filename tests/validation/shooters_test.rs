@@ -357,9 +357,11 @@ fn campaign_shooters_test_covers() {
                     .map(|r| format!("{:.1}", 100.0 * r.0))
                     .collect();
                 let least = results.iter().map(|r| r.1).fold(1.0, f64::min);
+                let of = results.iter().position(|r| r.1 == least);
+                let of = of.map_or("", |i| names[i]);
                 worst_rank = worst_rank.min(least);
                 println!(
-                    "| population | {shots} | {noise:?} | {places} | {} | {least:.4} |",
+                    "| population | {shots} | {noise:?} | {places} | {} | {least:.4} ({of}) |",
                     shown.join(" | ")
                 );
                 for (name, result) in names.iter().zip(&results) {

@@ -1,14 +1,17 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::print_answer;
 use crate::cli::value_parsers::PhysicsArg;
+use bankshot::config::parse_profile;
 use bankshot::model::{PRESETS, Physics, PhysicsValue};
 use bankshot::search_space::TablePlan;
+use bankshot::shooter::implausible_values;
 use bankshot::sweep::sweep_toml::is_sweep;
 use bankshot::units::DEGREE_RAD;
 use clap::Args;
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -21,9 +24,15 @@ pub(crate) struct CheckOptions {
     /// List every value of the physics, and whether it is measured, from a rule book or assumed.
     #[arg(long)]
     pub(crate) verbose: bool,
+    /// Print one JSON object: whether the file is valid, and each error with its line.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
+    if options.json {
+        return print_json(options);
+    }
     let path = options.profile.display();
     if is_sweep(&read_text(&options.profile)?) {
         let (config, _) = load_sweep(&options.profile)?;
@@ -44,6 +53,68 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         answer.push_str(&physics_text(profile.physics()));
     }
     print_answer(&answer)
+}
+
+/// The answer for programs. The exit code is that of the answer for people.
+fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
+    let text = read_text(&options.profile)?;
+    let origin = options.profile.display().to_string();
+    let of_file = |errors: Vec<Value>, more: Value| {
+        let mut answer = json!({ "file": origin, "is_valid": errors.is_empty(), "errors": errors });
+        if let (Some(answer), Value::Object(more)) = (answer.as_object_mut(), more) {
+            answer.extend(more);
+        }
+        format!("{answer:#}\n")
+    };
+    let refused = |message: &str| vec![json!({ "message": message })];
+    if is_sweep(&text) {
+        return match load_sweep(&options.profile) {
+            Ok((config, _)) => print_answer(&of_file(
+                Vec::new(),
+                json!({ "sweep": config.name, "places": config.places.len() }),
+            )),
+            Err(failure) => {
+                print_answer(&of_file(refused(&failure.message), Value::Null))?;
+                Ok(failure.code)
+            }
+        };
+    }
+    if let Err(error) = parse_profile(&text, &origin) {
+        let errors = error.diagnostics.iter().map(|diagnostic| {
+            let (line, column) = error.line_and_column(diagnostic);
+            json!({
+                "key": diagnostic.key,
+                "message": diagnostic.message,
+                "line": line,
+                "column": column,
+            })
+        });
+        print_answer(&of_file(errors.collect(), Value::Null))?;
+        return Ok(code::USAGE);
+    }
+    let loaded = load_profile(&options.profile, &options.physics, true).and_then(|profile| {
+        TablePlan::for_search(&profile)
+            .map(|_| profile)
+            .map_err(Failure::from)
+    });
+    match loaded {
+        Ok(profile) => {
+            let location = profile.location();
+            print_answer(&of_file(
+                Vec::new(),
+                json!({
+                    "shooter": profile.shooter().name,
+                    "distance_m": location.distance_m,
+                    "court_angle_rad": location.angle_rad,
+                    "warnings": implausible_values(&profile),
+                }),
+            ))
+        }
+        Err(failure) => {
+            print_answer(&of_file(refused(&failure.message), Value::Null))?;
+            Ok(failure.code)
+        }
+    }
 }
 
 /// Every value of the physics, and whether it is measured, from a rule book or assumed.

@@ -209,14 +209,18 @@ fn answer_to(
         let read = input
             .read_line(&mut line)
             .map_err(|error| Failure::io("standard input", &error))?;
+        if read == 0 {
+            return Err(Failure::usage(
+                "the input ended before all questions were answered; nothing was written",
+            ));
+        }
         let answer = match line.trim() {
             "" => usual,
             answer => answer,
         };
         match check(answer) {
             Ok(()) => return Ok(answer.to_owned()),
-            Err(error) if read > 0 => print_remark(&error),
-            Err(error) => return Err(Failure::usage(error)),
+            Err(error) => print_remark(&error),
         }
     }
 }

@@ -12,12 +12,17 @@ use bankshot::sweep::run::compute_jobs;
 use bankshot::sweep::sweep_folder::SweepFolder;
 use bankshot::sweep::{SweepConfig, is_locked, sqlite_results};
 use clap::Args;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 #[derive(Args, Debug)]
-pub(crate) struct FolderOptions {
-    /// The folder.
+pub(crate) struct StatusOptions {
+    /// The sweep's folder.
     pub(crate) folder: PathBuf,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -27,6 +32,9 @@ pub(crate) struct VerifyOptions {
     /// Compute this fraction of the jobs again, such as 1%, and compare every bit.
     #[arg(long, value_name = "FRACTION", value_parser = fraction)]
     pub(crate) recompute: Option<f64>,
+    /// Print one JSON object instead of text.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -38,26 +46,37 @@ pub(crate) struct MissingOptions {
     pub(crate) shards: usize,
 }
 
-pub(crate) fn status(options: &FolderOptions) -> Result<u8, Failure> {
+pub(crate) fn status(options: &StatusOptions) -> Result<u8, Failure> {
     let (folder, config) = SweepFolder::open_read_only(&options.folder)?;
     let jobs = Jobs::new(&config);
     let (rows, remarks) = folder.union()?;
     let mut text = format!("{}\n", config.name) + &job_summary(&jobs, &rows);
+    let mut stores = Vec::new();
     for store in folder.stores()? {
         let (computed, seconds) = sqlite_results::job_times(&store);
-        let running = if is_locked(&store.with_extension("lock")) {
-            ", running"
-        } else {
-            ""
-        };
+        let is_running = is_locked(&store.with_extension("lock"));
+        let running = if is_running { ", running" } else { "" };
+        stores.push(json!({
+            "file": store.file_name().unwrap_or_default().to_string_lossy(),
+            "computed": computed,
+            "thread_seconds": seconds,
+            "is_running": is_running,
+        }));
         text.push_str(&format!(
             "{}: {computed} jobs, {:.2} s each{running}\n",
             store.file_name().unwrap_or_default().display(),
             seconds / computed.max(1) as f64
         ));
     }
-    for remark in remarks {
+    for remark in &remarks {
         text.push_str(&format!("remark: {remark}\n"));
+    }
+    if options.json {
+        let mut answer = jobs_json(&jobs, &rows);
+        answer["sweep"] = config.name.clone().into();
+        answer["stores"] = stores.into();
+        answer["remarks"] = texts(&remarks);
+        text = format!("{answer:#}\n");
     }
     print_answer(&text)?;
     Ok(exit_code(&jobs, &rows))
@@ -84,6 +103,7 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
         text.push_str(&format!("damaged: {remark}\n"));
     }
     let mut differing = Vec::new();
+    let mut recomputed = 0;
     if let Some(fraction) = options.recompute {
         let every = (1.0 / fraction).round().max(1.0) as usize;
         let chosen: Vec<&ResultRow> = rows
@@ -92,6 +112,7 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
             .step_by(every)
             .collect();
         differing = recompute(&config, &jobs, &chosen, quiet);
+        recomputed = chosen.len();
         text.push_str(&format!(
             "recomputed {} jobs: {} differ\n",
             chosen.len(),
@@ -101,12 +122,38 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
             text.push_str(&format!("differs: job {job}\n"));
         }
     }
+    if options.json {
+        let mut answer = jobs_json(&jobs, &rows);
+        answer["damaged"] = texts(&remarks);
+        answer["recomputed"] = recomputed.into();
+        answer["differing_jobs"] = differing.clone().into();
+        text = format!("{answer:#}\n");
+    }
     print_answer(&text)?;
     Ok(if !remarks.is_empty() || !differing.is_empty() {
         code::DAMAGED
     } else {
         exit_code(&jobs, &rows)
     })
+}
+
+/// How many jobs there are, and how many ended how.
+fn jobs_json(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Value {
+    let count = |status| {
+        let with = rows.values().filter(|row| row.status() == Some(status));
+        with.count()
+    };
+    json!({
+        "jobs": jobs.count(),
+        "done": rows.len(),
+        "found": count(JobStatus::Found),
+        "without_shot": count(JobStatus::NoShot),
+        "failed": count(JobStatus::Failed),
+    })
+}
+
+fn texts(remarks: &[impl ToString]) -> Value {
+    remarks.iter().map(ToString::to_string).collect()
 }
 
 /// Computes some jobs again; returns those whose result differs.
