@@ -16,6 +16,7 @@ use super::commands::simulate::SimulateOptions;
 use super::commands::sweep::{MergeOptions, SweepOptions};
 use super::commands::sweep_status::{MissingOptions, StatusOptions, VerifyOptions};
 use super::commands::table::TableOptions;
+use super::commands::team::TeamOptions;
 use super::commands::trace::TraceOptions;
 use super::value_parsers::instruction_set;
 use bankshot::dynamics::InstructionSet;
@@ -65,6 +66,8 @@ pub(crate) enum Command {
     Best(BestOptions),
     /// Write a commented file to edit: a player, a launcher, a sweep, or a physics.
     New(NewOptions),
+    /// Say who of a team should bank from where, and who is best from where; posters to print.
+    Team(TeamOptions),
     /// Make a table of best shots over distances and angles, for a machine.
     Table(TableOptions),
     /// Fit a profile to measured shots: releases, landings of a gym sensor, or tracked trajectories.

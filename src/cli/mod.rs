@@ -18,7 +18,7 @@ use clap::{CommandFactory, Parser};
 use command_line::{Arguments, Command};
 use commands::{
     advise, best, check, compare, compare_sessions, design, figures, fit, new, physics, plan,
-    probability, report, simulate, sweep, sweep_status, table, trace,
+    probability, report, simulate, sweep, sweep_status, table, team, trace,
 };
 use failure::{Failure, code};
 use std::process::ExitCode;
@@ -66,6 +66,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::CompareSessions(options) => compare_sessions::run(options),
         Command::Design(options) => design::run(options, quiet),
         Command::New(options) => new::run(options, quiet),
+        Command::Team(options) => team::run(options, quiet),
         Command::Table(options) => table::run(options, quiet),
         Command::Check(options) => check::run(options, quiet),
         Command::Physics(options) => physics::run(options, quiet),

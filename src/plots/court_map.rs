@@ -4,7 +4,7 @@ use super::axes::Axes;
 use super::colormaps::{NO_VALUE, Rgb, hex};
 use super::colour_key::{ColourKey, draw_legend};
 use super::court_lines::draw_court_lines;
-use super::svg::{INK, Svg};
+use super::svg::{Anchor, INK, Svg};
 use crate::model::Physics;
 use crate::model::league_courts::Court;
 use crate::units::UnitSystem;
@@ -115,6 +115,34 @@ impl CourtMap<'_> {
         } else {
             let style = format!("fill=\"{colour}\" stroke=\"{INK}\" stroke-width=\"0.5\"");
             svg.circle(at, 6.0, &style);
+        }
+    }
+
+    /// Writes a short text on places (x, y), m, of a grid whose squares are wide enough; bold where asked.
+    pub fn draw_numbers(
+        &self,
+        svg: &mut Svg,
+        corner: (f64, f64),
+        numbers: &[((f64, f64), String, bool)],
+    ) {
+        /// Narrowest square that two digits fit in, px.
+        const NARROWEST: f64 = 14.0;
+        let axes = self.axes(corner);
+        let (_, unit_m) = self.units.length();
+        let side = self
+            .step_m
+            .map_or(NARROWEST, |step_m| axes.pixels_of_length(step_m / unit_m));
+        if side < NARROWEST {
+            return;
+        }
+        for ((x_m, y_m), text, is_bold) in numbers {
+            let (left, top) = axes.pixel((y_m / unit_m, x_m / unit_m));
+            let at = (left, top + 4.0);
+            if *is_bold {
+                svg.heading(at, 11.0, Anchor::Middle, text);
+            } else {
+                svg.text(at, 11.0, Anchor::Middle, text);
+            }
         }
     }
 

@@ -11,6 +11,7 @@ pub mod court_map;
 pub mod measured_shots;
 pub mod paper_figures;
 pub mod physics_probabilities;
+pub mod player_poster;
 mod polyline_thinning;
 pub mod probability_curves;
 pub mod rasterise;

@@ -19,5 +19,6 @@ pub(super) mod sweep;
 pub(super) mod sweep_status;
 mod sweep_summary;
 pub(super) mod table;
+pub(super) mod team;
 pub(super) mod trace;
 mod trace_text;

@@ -15,13 +15,14 @@ use bankshot::probability::Progress;
 use bankshot::sweep::final_tables::ResultTables;
 use bankshot::sweep::job_list::{Jobs, Shard};
 use bankshot::sweep::result_row::{JobStatus, ResultRow};
-use bankshot::sweep::run::{FaultInjection, RunOptions, SweepRun};
+use bankshot::sweep::run::{FaultInjection, RunOptions, RunSummary, SweepRun};
 use bankshot::sweep::sweep_folder::SweepFolder;
+use bankshot::sweep::sweep_toml::SourceTexts;
 use bankshot::sweep::{SweepConfig, columns};
 use clap::Args;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[derive(Args, Debug)]
@@ -76,19 +77,63 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
         Some(path) => path.clone(),
         None => run_folder::of_sweep(&config)?,
     };
-    let folder = SweepFolder::open(&path, &config, &texts)?;
+    let run_options = RunOptions {
+        retry_failed: options.retry_failed,
+        fault: options.fault.clone(),
+        ..run_options(shard)
+    };
+    let (folder, summary) = compute(&path, &config, &texts, run_options, quiet)?;
     if options.out.is_none() {
         run_folder::link_latest(&path);
     }
-    let lock = folder.lock(shard)?;
-    signals::note_aborts(&lock.aborted);
-    let run_options = RunOptions {
+    if shard == Shard::WHOLE {
+        let exit = write_tables(&folder, &config, &jobs, None, quiet)?;
+        if let Some(fit) = draws {
+            write_over_draws(&folder, &config, &jobs, &fit.posterior.draws, quiet)?;
+        }
+        return Ok(exit);
+    }
+    let spots = (0..jobs.spots.len())
+        .filter(|&spot| shard.contains(spot))
+        .count();
+    print_answer(&format!(
+        "shard {shard}: {} jobs, {} done before, {} computed, {} failed; `bankshot merge {}` joins the shards\n",
+        spots * jobs.kinds.len(),
+        summary.resumed,
+        summary.computed,
+        summary.failed,
+        path.display()
+    ))?;
+    Ok(if summary.failed > 0 {
+        code::INCOMPLETE
+    } else {
+        code::DONE
+    })
+}
+
+/// A run of a shard on all threads.
+pub(super) fn run_options(shard: Shard) -> RunOptions {
+    RunOptions {
         shard,
         threads: rayon::current_num_threads(),
-        retry_failed: options.retry_failed,
-        fault: options.fault.clone(),
-    };
-    let run = SweepRun::new(&folder, &lock, &config, &jobs, run_options, &SAVED_JOBS)?;
+        retry_failed: false,
+        fault: None,
+    }
+}
+
+/// Computes what is missing of a sweep in a folder.
+pub(super) fn compute(
+    path: &Path,
+    config: &SweepConfig,
+    texts: &SourceTexts,
+    options: RunOptions,
+    quiet: bool,
+) -> Result<(SweepFolder, RunSummary), Failure> {
+    let jobs = Jobs::new(config);
+    let folder = SweepFolder::open(path, config, texts)?;
+    let lock = folder.lock(options.shard)?;
+    signals::note_aborts(&lock.aborted);
+    let run = SweepRun::new(&folder, &lock, config, &jobs, options, &SAVED_JOBS)?;
     for damage in run.damaged() {
         print_remark(&format!("remark: {damage}"));
     }
@@ -108,25 +153,8 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
     })?;
     drop(run);
     lock.remove_empty_note();
-    if shard == Shard::WHOLE {
-        let exit = write_tables(&folder, &config, &jobs, None, quiet)?;
-        if let Some(fit) = draws {
-            write_over_draws(&folder, &config, &jobs, &fit.posterior.draws, quiet)?;
-        }
-        return Ok(exit);
-    }
-    print_answer(&format!(
-        "shard {shard}: {total} jobs, {} done before, {} computed, {} failed; `bankshot merge {}` joins the shards\n",
-        summary.resumed,
-        summary.computed,
-        summary.failed,
-        path.display()
-    ))?;
-    Ok(if summary.failed > 0 {
-        code::INCOMPLETE
-    } else {
-        code::DONE
-    })
+    drop(lock);
+    Ok((folder, summary))
 }
 
 pub(crate) fn merge(options: &MergeOptions, quiet: bool) -> Result<u8, Failure> {
