@@ -11,7 +11,7 @@ use crate::model::{BallState, SolidId};
 /// Limits of a simulation that are not part of the equations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotLimits {
-    /// Longest step of a contact in the frame of space, s.
+    /// Longest step of a contact in the world frame, s.
     pub(crate) longest_step_s: f64,
     /// Contacts with one solid are computed in single precision.
     pub(crate) single_precision: bool,
@@ -87,10 +87,10 @@ pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T
     height.lt(state.position_m.z)
 }
 
-/// A ball faster than this is not one that any step has followed well, m/s.
+/// A ball faster than this is one that no accurate step gives, m/s.
 const LARGEST_SPEED_M_S: f64 = 1000.0;
 
-/// Whether the numerics have lost a ball: its speed is beyond every bound, or not a number. (Seen where gravity is a
+/// Whether the numerics have lost a ball: its speed is above the limit, or not a number. (Seen where gravity is a
 /// hundred times that of the earth, and a step of a contact crosses the whole hoop.) Such a shot is unresolved.
 #[inline(always)]
 pub(crate) fn has_diverged<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {

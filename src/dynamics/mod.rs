@@ -12,7 +12,7 @@
 //! | `u`, `N`, `mu` | compression of the ball, normal force (per unit of mass), coefficient of friction |
 //! | slip, slip rate | velocity of the contact point along the surface, and its derivative |
 //! | sliding | friction is `mu N`, against the slip or the slip that is about to start |
-//! | rolling | less friction than `mu N` keeps the slip at zero |
+//! | rolling | friction below `mu N` keeps the slip at zero |
 //! | at zero slip | rolling, or about to roll or slide |
 //! | solid | the board or the ring |
 //! | single, double contact | with one solid, with board and ring at once |

@@ -123,8 +123,8 @@ fn suits_single_precision(physics: &Physics) -> bool {
         && (0.1..=100.0).contains(&physics.gravity_m_s2)
 }
 
-/// Steps in the frame of space, as a share of the steps per contact. (Two solids together are stiffer.)
-const SPACE_STEPS: f64 = 1.5;
+/// Steps in the world frame over the steps per contact. (Two solids together are stiffer.)
+const WORLD_STEP_FACTOR: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
 /// steps; some constants that are far from any ball would take steps without end.
@@ -151,7 +151,7 @@ impl Default for Integrator {
 /// Why a simulator cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SimulatorError {
-    /// A physical constant cannot be simulated.
+    /// A physical constant is out of range.
     #[error(transparent)]
     Physics(#[from] PhysicsError),
     /// A setting of the integrator is out of range.
@@ -251,7 +251,7 @@ impl Simulator {
             integrator,
             params,
             limits: ShotLimits {
-                longest_step_s: physics.contact_time_s() / (steps * SPACE_STEPS),
+                longest_step_s: physics.contact_time_s() / (steps * WORLD_STEP_FACTOR),
                 single_precision: integrator.is_single_precision(physics),
                 oscillators: [
                     Oscillator::new(&params.board.material, steps),

@@ -200,16 +200,16 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
     for cost in sensitivity.errors.iter().take(MOST_ERRORS) {
         let name = ReleaseVariable::name(cost.variable).replace('_', " ");
         line(
-            &format!("{name} error"),
+            &name,
             format!(
-                "without it {}, a tenth smaller {}",
+                "perfect {}; 10 % steadier {}",
                 points(&cost.without),
                 points(&cost.a_tenth_less)
             ),
         );
     }
     if let Some(gain) = sensitivity.backspin_gain() {
-        line("backspin", format!("{} over none", points(&gain)));
+        line("backspin", format!("{} over no backspin", points(&gain)));
     }
     let higher = sensitivity.heights.iter();
     if let Some(height) = higher
@@ -224,7 +224,7 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
         );
     }
     line(
-        "goes in over",
+        "range made",
         format!("{}, one at a time", windows_text(sensitivity, units)),
     );
     if let Some(difference) = bank_minus_direct(best) {
@@ -238,7 +238,7 @@ const MOST_ERRORS: usize = 2;
 
 /// What P leaves out.
 pub const PROFILE_IS_EXACT: &str =
-    "P takes the profile as exact; `bankshot fit` says how sure a measured one is.\n";
+    "P assumes an exact profile; `bankshot fit` says how sure a measured one is.\n";
 
 /// What the table does not show of a shot.
 fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<String> {

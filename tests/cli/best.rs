@@ -77,7 +77,7 @@ fn contract_metres_and_feet_give_the_same_answer() {
         let profile = write_file(&folder, name, text);
         let answer = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
         let text = answer.stdout();
-        let line = text.lines().find(|line| line.contains("goes in over"));
+        let line = text.lines().find(|line| line.contains("range made"));
         let line = line.expect("the sensitivity says within what range a shot is made");
         assert!(line.contains(" ft/s, pitch "), "{line}");
         answers.push(answer.stdout);

@@ -11,5 +11,6 @@ mod probability;
 mod simulate;
 mod support;
 mod table;
+mod team;
 mod trace;
 mod tutorial;

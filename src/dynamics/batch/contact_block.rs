@@ -18,7 +18,7 @@ pub(super) struct ContactBlock<E> {
     /// The values of [`ContactMotion`].
     motion: [Row<E>; CONTACT_VALUES],
     slip_tolerances: Row<E>,
-    /// [`ShotProgress::step_share`], [`ShotProgress::contact_time_s`], and the time left at the begin of the contact.
+    /// [`ShotProgress::step_share`], [`ShotProgress::contact_time_s`], and the time left at the start of the contact.
     step_shares: Row<E>,
     contact_times_s: Row<E>,
     allowed_times_s: Row<E>,
@@ -172,7 +172,7 @@ impl<E: LaneElement> ContactBlock<E> {
         }
     }
 
-    /// The time that was left at the begin of each contact, s.
+    /// The time that was left at the start of each contact, s.
     #[inline(always)]
     pub(super) fn allowed_times_s<T: SimdReal<Element = E>>(&self, simd: T::Simd) -> T {
         T::load(simd, &self.allowed_times_s)

@@ -16,7 +16,7 @@ use fearless_simd::Simd;
 
 /// Flies every shot that waits for flight, to its end or its next touch.
 ///
-/// The phases stand in separate modules, so that the compiler translates them in parallel.
+/// One module for each phase: they compile in parallel.
 #[inline(never)]
 pub(super) fn fly<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where
@@ -193,7 +193,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                     shot.begin_single_contact(solid);
                 } else {
                     shot.step_share = 1.0;
-                    shot.go_on_touching(self.params, SolidId::ALL.map(|id| id == solid));
+                    shot.set_touching(self.params, SolidId::ALL.map(|id| id == solid));
                 }
                 self.workspace.enqueue(slots[lane]);
             }

@@ -322,7 +322,7 @@ impl LaneBlock {
             let from_ring = T::mask_from_bits(simd, self.flags.from_ring);
             *state = params
                 .ring
-                .to_space(&params.ball, &motion)
+                .to_world(&params.ball, &motion)
                 .select(from_ring, *state);
         }
     }

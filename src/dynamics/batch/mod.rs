@@ -10,8 +10,8 @@ mod ring_contact_phase;
 mod scheduler;
 mod segment_flight_phase;
 mod single_contact_phase;
-mod space_contact_phase;
 mod workspace;
+mod world_contact_phase;
 
 pub use instruction_set::InstructionSet;
 pub(crate) use scheduler::run;

@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 
 /// Steps the shots on the ring until they leave it, touch the board or end, or another phase can use the lanes better.
 ///
-/// The phases stand in separate modules, so that the compiler translates them in parallel.
+/// One module for each phase: they compile in parallel.
 #[inline(never)]
 pub(super) fn ring_contact<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where

@@ -1,6 +1,6 @@
 //! Runs the shots of a batch, eight or sixteen to a step.
 //!
-//! The shots wait in queues by phase: flight, contact in the frame of one solid, contact in the frame of space. Flights are closed
+//! The shots wait in queues by phase: flight, contact in the frame of one solid, contact in the world frame. Flights are closed
 //! form and are done a block at a time. In contact the shots of a block step together. Finished lanes are
 //! refilled at once, so short and long contacts mix without waiting. Rare events (from one contact to two,
 //! the board's edges, the time limit in flight, an unresolved search) are left to the scalar code; after them the
@@ -14,8 +14,8 @@ use super::board_contact_phase::board_contact;
 use super::flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
 use super::segment_flight_phase::fly_in_segments;
-use super::space_contact_phase::in_space;
 use super::workspace::{BatchWorkspace, Phase};
+use super::world_contact_phase::in_world;
 use crate::dynamics::end_rules::ShotLimits;
 use crate::math::real::SimdReal;
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -90,7 +90,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 on_solid::<S, WideSingle<S>, WIDTH>(self, solid)
             }
             Phase::Single(solid) => on_solid::<S, NarrowSingle<S>, WIDTH>(self, solid),
-            Phase::InSpace => in_space::<S, Narrow<S>, WIDTH>(self),
+            Phase::InWorld => in_world::<S, Narrow<S>, WIDTH>(self),
         }
     }
 }

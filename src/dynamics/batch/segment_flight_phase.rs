@@ -16,7 +16,7 @@ use fearless_simd::Simd;
 /// Starts shots, as long as there are free slots, and flies every shot that waits for flight to its end or its next
 /// touch.
 ///
-/// The phases stand in separate modules, so that the compiler translates them in parallel.
+/// One module for each phase: they compile in parallel.
 #[inline(never)]
 pub(super) fn fly_in_segments<S, T, const WIDTH: u8>(
     batch: &mut Batch<S, WIDTH>,

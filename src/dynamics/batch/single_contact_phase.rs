@@ -104,10 +104,10 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 self.workspace.queue_mut(Phase::Flight).push(slot);
             } else if bit(result.arrived, lane) {
                 shot.arrive(self.params, other);
-                self.workspace.queue_mut(Phase::InSpace).push(slot);
+                self.workspace.queue_mut(Phase::InWorld).push(slot);
             } else if !bit(result.beside, lane) {
                 shot.leave_frame(self.params, block.solid());
-                self.workspace.queue_mut(Phase::InSpace).push(slot);
+                self.workspace.queue_mut(Phase::InWorld).push(slot);
             } else {
                 shot.end_single_contact(ContactState::Free);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
@@ -128,12 +128,12 @@ fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
     let (params, solid) = (contact.params, contact.solid);
     let shots = block.load::<T>(simd);
     let step = contact.step(&shots.motion, &shots.friction, shots.step_share);
-    let after = solid.to_space(&params.ball, &step.motion);
+    let after = solid.to_world(&params.ball, &step.motion);
     let path = (shots.motion.speed_bound() + step.motion.speed_bound()) * step.dt;
     let end = GapAtEnd::new(params, other, &after, path);
     let (mut again, mut share) = (end.is_near, params.one());
     if end.is_near.any() {
-        let before = solid.to_space(&params.ball, &shots.motion);
+        let before = solid.to_world(&params.ball, &shots.motion);
         (again, share) = passed(params, other, &before, &end, step.dt);
     }
     let stays = again | T::mask_from_bits(simd, given_up);

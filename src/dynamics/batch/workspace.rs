@@ -31,7 +31,7 @@ pub struct BatchWorkspace {
 pub(super) enum Phase {
     Flight,
     Single(SolidId),
-    InSpace,
+    InWorld,
 }
 
 impl Phase {
@@ -41,14 +41,14 @@ impl Phase {
         Self::Flight,
         Self::Single(SolidId::Board),
         Self::Single(SolidId::Ring),
-        Self::InSpace,
+        Self::InWorld,
     ];
 
     const fn index(self) -> usize {
         match self {
             Self::Flight => 0,
             Self::Single(solid) => 1 + solid.index(),
-            Self::InSpace => 1 + SolidId::COUNT,
+            Self::InWorld => 1 + SolidId::COUNT,
         }
     }
 
@@ -56,7 +56,7 @@ impl Phase {
         match contact {
             ContactState::Free => Self::Flight,
             ContactState::Single(solid) => Self::Single(*solid),
-            ContactState::InSpace => Self::InSpace,
+            ContactState::InWorld => Self::InWorld,
         }
     }
 }

@@ -39,7 +39,7 @@ pub(super) type Response<T> = (Vec3<T>, Vec3<T>);
 pub(super) struct ContactPair<T> {
     pub(super) kinematics: [ContactKinematics<T>; 2],
     pub(super) materials: [Material<T>; 2],
-    /// The directions (n, 1, 2) of each contact in space.
+    /// The directions (n, 1, 2) of each contact in the world frame.
     pub(super) axes: [[Vec3<T>; 3]; 2],
     /// Lever over the moment of inertia (per unit of mass).
     lever_over_inertia: [T; 2],
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn prop_held_slips_change_at_the_wanted_rates() {
+    fn prop_constrained_slips_change_at_the_wanted_rates() {
         let (params, pair) = pair();
         let right_side = [Vec2::new(0.7, -0.4), Vec2::new(-0.2, 0.5)];
         for constrained in [[true, true], [true, false], [false, true], [false, false]] {

@@ -52,7 +52,7 @@ struct SlowRates<T> {
     v1: T,
     v2: T,
     spin: ContactVector<T>,
-    place: [T; 3],
+    coordinates: [T; 3],
 }
 
 impl<T: Real> SlowRates<T> {
@@ -60,8 +60,8 @@ impl<T: Real> SlowRates<T> {
     #[inline(always)]
     fn mix(&self, a: f64, other: &Self, b: f64) -> Self {
         let (p, q) = (self.spin, other.spin);
-        let [p_0, p_1, p_2] = self.place;
-        let [q_0, q_1, q_2] = other.place;
+        let [p_0, p_1, p_2] = self.coordinates;
+        let [q_0, q_1, q_2] = other.coordinates;
         Self {
             v1: self.v1 * a + other.v1 * b,
             v2: self.v2 * a + other.v2 * b,
@@ -70,7 +70,7 @@ impl<T: Real> SlowRates<T> {
                 p.tangent.x * a + q.tangent.x * b,
                 p.tangent.y * a + q.tangent.y * b,
             ),
-            place: [p_0 * a + q_0 * b, p_1 * a + q_1 * b, p_2 * a + q_2 * b],
+            coordinates: [p_0 * a + q_0 * b, p_1 * a + q_1 * b, p_2 * a + q_2 * b],
         }
     }
 }
@@ -178,7 +178,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                     v1: gravity.tangent.x,
                     v2: gravity.tangent.y,
                     spin: ContactVector::new(zero, zero, zero),
-                    place: self.solid.place_rates(motion, &distances, &none),
+                    coordinates: self.solid.coordinate_rates(motion, &distances, &none),
                 },
                 slip,
                 still: gravity.tangent,
@@ -205,7 +205,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                     torsion * w.tangent.y - turn.x * w.normal,
                     -(torsion * w.tangent.x) - turn.y * w.normal,
                 ),
-                place: self.solid.place_rates(motion, &distances, &frame),
+                coordinates: self.solid.coordinate_rates(motion, &distances, &frame),
             },
             slip,
             still,
@@ -228,10 +228,10 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let ball = &self.params.ball;
         let from = &start.motion;
         let before = &start.at.distances;
-        let place = [
-            rates.place[0] * h + from.place[0],
-            rates.place[1] * h + from.place[1],
-            rates.place[2] * h + from.place[2],
+        let coordinates = [
+            rates.coordinates[0] * h + from.coordinates[0],
+            rates.coordinates[1] * h + from.coordinates[1],
+            rates.coordinates[2] * h + from.coordinates[2],
         ];
         let twist = scaled(impulse.times_lever, ball.mass_over_inertia);
         let spin = ContactVector::new(
@@ -239,7 +239,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             rates.spin.tangent.x * h + (from.spin.tangent.x + twist.y),
             rates.spin.tangent.y * h + (from.spin.tangent.y - twist.x),
         );
-        let distances = self.solid.distances(ball, compression, &place);
+        let distances = self.solid.distances(ball, compression, &coordinates);
         let v = from.velocity.tangent;
         let tangent = if S::FLAT {
             Vec2::new(
@@ -259,7 +259,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 tangent,
             },
             spin,
-            place,
+            coordinates,
             start: from.start,
         };
         (motion, distances)
@@ -273,7 +273,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let mut motion = *motion;
         let distances = self
             .solid
-            .distances(&params.ball, motion.compression, &motion.place);
+            .distances(&params.ball, motion.compression, &motion.coordinates);
         let mass_over_inertia = params.ball.mass_over_inertia;
         let inverse_effective_mass = distances.lever.squared() * mass_over_inertia + 1.0;
         let effective_mass = one / inverse_effective_mass;
@@ -303,8 +303,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let direction = scaled(slip_or_rate, one / size.select(size.is_positive(), one));
         let required = effective_mass * size;
         let loading = normal_rate.is_positive();
-        let (share, least) = self.oscillator.roll_reserve;
-        let with_reserve = required * share + least;
+        let (share, min_reserve) = self.oscillator.roll_reserve;
+        let with_reserve = required * share + min_reserve;
         let suffices = required.select(loading, with_reserve).le(limit);
         let rolling_failed = (friction.rolling_failed | (at_zero_slip & !suffices)) & !loading;
         StepStart {
@@ -344,14 +344,14 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         };
         let compression_at_end = at_end.0 - shift;
         let parts = compression_at_end.le(zero);
-        // Sliding: the slip along its direction. Rolling: mu N less the friction that rolling needs.
+        // Sliding: the slip along its direction. Rolling: mu N minus the friction that rolling needs.
         let mu = material.friction_coefficient;
         let d_slip_rate_d_compression_rate = -at.swing.dot(start.direction);
-        let give = start.effective_mass * d_slip_rate_d_compression_rate;
+        let required_rate = start.effective_mass * d_slip_rate_d_compression_rate;
         let mu_a = mu * start.inverse_effective_mass;
         let displacement =
             (mu * material.stiffness).select(start.rolling, d_slip_rate_d_compression_rate);
-        let constant = (-start.required - give * v_n).select(
+        let constant = (-start.required - required_rate * v_n).select(
             start.rolling,
             start.slip_speed - d_slip_rate_d_compression_rate * start.motion.compression
                 + mu_a * v_n,
@@ -361,7 +361,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             + mu_a * at.normal_acceleration;
         let change = EventFunction {
             displacement,
-            velocity: (give - mu * material.damping).select(start.rolling, -mu_a),
+            velocity: (required_rate - mu * material.damping).select(start.rolling, -mu_a),
             constant: constant - displacement * shift,
             rate: zero.select(start.rolling, sliding_rate * oscillator.step_s),
         };
@@ -482,14 +482,17 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         }
         // Along the Taylor polynomial of N about the end, back to N = 0.
         let inverse_rate = one / rate.select(negative, one);
-        // Where N only just becomes negative the polynomial is of no use; these bounds hold for the truth.
+        // Where N only just becomes negative the polynomial does not apply; these bounds hold for the exact value.
         let since = Real::min(normal * inverse_rate, h);
         let second = -(material.stiffness * acceleration) - material.damping * rate;
-        let bend = second * since * inverse_rate;
-        let bend = Real::max(Real::min(bend, one), -one);
-        let third = (material.stiffness * since + material.damping * bend) * since;
-        let impulse =
-            normal * since * (bend * (bend * 0.125 + 1.0 / 6.0) + third * (1.0 / 24.0) + 0.5);
+        let second_ratio = second * since * inverse_rate;
+        let second_ratio = Real::max(Real::min(second_ratio, one), -one);
+        let third_ratio = (material.stiffness * since + material.damping * second_ratio) * since;
+        let impulse = normal
+            * since
+            * (second_ratio * (second_ratio * 0.125 + 1.0 / 6.0)
+                + third_ratio * (1.0 / 24.0)
+                + 0.5);
         impulse.select(negative, zero)
     }
 
@@ -626,8 +629,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         // A ball that parts is at zero compression, but for the error of the step.
         next.compression = zero.select(end.parts, next.compression);
         self.solid.rebase(&mut next);
-        let (fraction, least) = oscillator.slip_remainder;
-        let remainder = Real::max(start.slip_speed * fraction, least);
+        let (fraction, min_remainder) = oscillator.slip_remainder;
+        let remainder = Real::max(start.slip_speed * fraction, min_remainder);
         MacroStep {
             motion: next,
             friction: FrictionState {

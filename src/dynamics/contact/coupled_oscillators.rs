@@ -51,7 +51,7 @@ pub(super) struct EventSeries<T>([T; TERMS + 1]);
 /// The slip along its direction.
 pub(super) struct SlipSeries<T> {
     pub(super) speed: T,
-    /// Its rate without normal forces, less that from the normal velocity, m/s^2.
+    /// Its rate without normal forces, minus that from the normal velocity, m/s^2.
     pub(super) rate: T,
     /// Its change for a unit of path along the normal, 1/s.
     pub(super) per_path: T,

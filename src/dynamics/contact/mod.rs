@@ -6,4 +6,4 @@ mod coupled_oscillators;
 pub(crate) mod friction;
 pub(crate) mod oscillator;
 pub(crate) mod other_solid_touch;
-pub(crate) mod space_contact_step;
+pub(crate) mod world_contact_step;

@@ -74,7 +74,7 @@ pub(crate) fn passed<T: Real, O: Solid<T>>(
     let one = params.one();
     let (gap_0, rate_0) = other.gap(&params.ball, before);
     let (gap_1, rate_1, near) = (end.gap, end.rate, end.is_near);
-    let apart = params.splat(-ARRIVED_M).lt(gap_0);
+    let is_separated = params.splat(-ARRIVED_M).lt(gap_0);
     // gap_0 + a s + c s^2 + d s^3 at the share s of the step.
     let (a, b, change) = (rate_0 * dt, rate_1 * dt, gap_1 - gap_0);
     let c = change * 3.0 - a * 2.0 - b;
@@ -99,13 +99,13 @@ pub(crate) fn passed<T: Real, O: Solid<T>>(
         share = Real::max(Real::min(next.select(falls, share * 0.5), one), one.zero());
     }
     let share = closest.select(grazes, share);
-    let (least, most) = SHARE;
-    let share = Real::max(Real::min(share, one * most), one * least);
-    let again = near & apart & (passes | grazes);
+    let (min_share, max_share) = SHARE;
+    let share = Real::max(Real::min(share, one * max_share), one * min_share);
+    let again = near & is_separated & (passes | grazes);
     (again, share.select(again, one))
 }
 
-/// How a step in the frame of space came to the solids that the ball did not touch.
+/// How a step in the world frame came to the solids that the ball did not touch.
 pub(crate) struct Approach<T: Real> {
     /// The step passed a solid, and is to be taken again.
     pub(crate) again: T::Mask,
@@ -117,7 +117,7 @@ pub(crate) struct Approach<T: Real> {
 
 /// The approach to other solids in a step of `dt` from the first state to the second.
 #[inline(always)]
-pub(crate) fn approach_in_space<T: Real, A: Solid<T>, B: Solid<T>>(
+pub(crate) fn approach_in_world<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,
     solids: (&A, &B),
     touching: [T::Mask; SolidId::COUNT],
@@ -219,14 +219,14 @@ mod tests {
             let (again, share) = passed(&params, &params.board, &before, &end, dt);
             let turn = (-rate / acceleration).clamp(0.0, dt);
             let gap_at = |t: f64| params.board.gap(&params.ball, &at(t)).0;
-            let least = gap_at(turn).min(gap_at(dt));
-            if least < -2.0 * ARRIVED_M {
+            let min_gap = gap_at(turn).min(gap_at(dt));
+            if min_gap < -2.0 * ARRIVED_M {
                 prop_assert!(again);
             }
             if again {
                 // The shorter step goes to the touch or to the closest point, or is one of several towards it.
                 let reached = gap_at(share * dt);
-                prop_assert!(share < 1.0 && reached > least - 1e-9);
+                prop_assert!(share < 1.0 && reached > min_gap - 1e-9);
                 // A touch in the first hundredths of the step is passed by the shortest step.
                 prop_assert!(reached < gap_at(0.0) + 1e-9 || share <= SHARE.0);
             }

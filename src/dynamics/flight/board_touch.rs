@@ -7,7 +7,7 @@ use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 
-/// A ball that passed the touch plane longer ago than this overlaps the board, s.
+/// A ball that passed the touch plane earlier than this overlaps the board, s.
 const OVERLAP_TOLERANCE_S: f64 = 1e-9;
 
 /// Times at which the ball touches the board, and at which it reaches the touch plane outside the rectangle.

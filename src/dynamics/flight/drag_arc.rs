@@ -26,7 +26,7 @@ const TERMS: usize = 9;
 const SHARES: (f64, f64) = (0.40, 1.02);
 const SHARE_PER_STRENGTH: f64 = 0.45;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
-const LEAST_SPEED_M_S: f64 = 1e-6;
+const MIN_HORIZONTAL_SPEED_M_S: f64 = 1e-6;
 /// Newton steps to the highest point.
 const NEWTON_STEPS: u32 = 4;
 /// Limit on those to a height: three or four, more only where the path is nearly flat.
@@ -59,9 +59,9 @@ impl<T: Real> DragArc<T> {
         let (zero, one) = (ball.zero(), ball.one());
         let v = start.velocity_m_s;
         let v_h = (v.x.squared() + v.y.squared()).sqrt();
-        let least = ball.splat(LEAST_SPEED_M_S);
-        let is_vertical = v_h.lt(least);
-        let speed_h = Real::max(v_h, least);
+        let min_speed = ball.splat(MIN_HORIZONTAL_SPEED_M_S);
+        let is_vertical = v_h.lt(min_speed);
+        let speed_h = Real::max(v_h, min_speed);
         let y_0 = one / speed_h;
         let q_0 = v.z * y_0;
         let r_0 = (q_0.squared() + 1.0).sqrt();
@@ -202,7 +202,7 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
     /// Never, if not on this arc.
     #[inline(always)]
     fn falls_through(&self, height: T) -> T {
-        self.falling_place(height)
+        self.falling_s(height)
     }
 
     /// -z'' only grows: the parabolas with its first and its last value lie above and below the path.
@@ -236,24 +236,24 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
 }
 
 impl<T: Real> DragArc<T> {
-    /// Where it rises through `height`; for one that has risen before, or does not, a place before the start.
+    /// Where it rises through `height`; for one that has risen before, or does not, a negative s.
     #[inline(always)]
     pub(super) fn rises_through(&self, height: T) -> T {
         height.outlined(
             #[inline(always)]
-            || self.rising_place(height),
+            || self.rising_s(height),
         )
     }
 
     #[inline(always)]
-    fn falling_place(&self, height: T) -> T {
+    fn falling_s(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
         let (end_z, end_rate) = self.end;
         let falls = end_z.lt(height) & end_rate.is_negative();
         if !falls.any() {
             return self.never;
         }
-        // From the end backwards with the least curvature, that of the start: a place that is not earlier. z is concave, so
+        // From the end backwards with the least curvature, that of the start: an s that is not earlier. z is concave, so
         // Newton's steps from there never pass the height.
         let below = (height - end_z).positive_part();
         let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
@@ -273,9 +273,9 @@ impl<T: Real> DragArc<T> {
         Real::max(s, zero).select(falls, self.never)
     }
 
-    /// Newton's steps from the place where the parabola above the path rises through the height: they never pass it.
+    /// Newton's steps from the s at which the parabola above the path rises through the height: they never pass it.
     #[inline(always)]
-    fn rising_place(&self, height: T) -> T {
+    fn rising_s(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
         let (rise, rate_0) = (height - self.z[0], self.rate[0]);
         let above = rate_0.squared() - self.fall_rate(zero) * rise * 2.0;
@@ -437,8 +437,8 @@ mod tests {
                     v += (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
                     done += 1.0;
                 }
-                // A ball that goes straight up moves along at LEAST_SPEED_M_S.
-                let along_m_s = LEAST_SPEED_M_S * f64::from(velocity[0] == 0.0);
+                // A ball that goes straight up moves along at MIN_HORIZONTAL_SPEED_M_S.
+                let along_m_s = MIN_HORIZONTAL_SPEED_M_S * f64::from(velocity[0] == 0.0);
                 let allowed_m = allowed_m + along_m_s * duration;
                 let end = arc.state(1.0, start.spin_rad_s);
                 let error = (end.position_m - p).norm();

@@ -22,7 +22,7 @@ const MAX_ITERATIONS: u32 = 10_000;
 const BEHIND_PLANE_M: f64 = 1e-6;
 
 /// Where the plane of the board is reached, in s (never elsewhere).
-struct BoardPlace<T: Real> {
+struct BoardEvents<T: Real> {
     /// The flat part of the face is touched.
     face: T,
     /// From here on the ball may touch an edge.
@@ -39,8 +39,8 @@ pub(crate) fn drag_segment<T: Real>(
 ) -> FlightSegment<T> {
     let (one, never) = (params.one(), params.ball.never_s);
     let arc = arc_of(params, state);
-    let fell = fall_place(params, &arc, state);
-    let board = board_place(params, &arc, state);
+    let fell = fall_s(params, &arc, state);
+    let board = board_events(params, &arc, state);
     let last = Real::min(one, Real::min(fell, board.behind));
     let motion = HorizontalMotion::new(params, state.position_m, arc.path);
     let falls_to_top = arc.falls_through(params.ring.reach);
@@ -158,9 +158,9 @@ fn rising_crossing<T: Real>(
     if !may_rise.any() {
         return (may_rise, may_rise);
     }
-    let place = arc.rises_through(zero);
-    let rises = may_rise & zero.lt(place) & place.lt(end);
-    let p = arc.position(place);
+    let rise_s = arc.rises_through(zero);
+    let rises = may_rise & zero.lt(rise_s) & rise_s.lt(end);
+    let p = arc.position(rise_s);
     let distance_squared = p.x.squared() + p.y.squared();
     (
         rises,
@@ -170,26 +170,26 @@ fn rising_crossing<T: Real>(
 
 /// Where the centre falls through z = -reach, or is at its highest point below it.
 #[inline(always)]
-fn fall_place<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T {
+fn fall_s<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T {
     let (zero, never) = (params.zero(), params.ball.never_s);
     let bottom = -params.ring.reach;
-    let place = arc.falls_through(bottom);
-    let starts_below = start.position_m.z.lt(bottom) & place.lt(never);
+    let falls_s = arc.falls_through(bottom);
+    let starts_below = start.position_m.z.lt(bottom) & falls_s.lt(never);
     if !starts_below.any() {
-        return place;
+        return falls_s;
     }
     let rises = start.velocity_m_s.z.is_positive();
-    let (top, top_place) = arc.top();
+    let (top, top_s) = arc.top();
     let never_rose = starts_below & (!rises | top.lt(bottom));
-    top_place.select(rises, zero).select(never_rose, place)
+    top_s.select(rises, zero).select(never_rose, falls_s)
 }
 
 #[inline(always)]
-fn board_place<T: Real>(
+fn board_events<T: Real>(
     params: &ModelParams<T>,
     arc: &DragArc<T>,
     start: &BallState<T>,
-) -> BoardPlace<T> {
+) -> BoardEvents<T> {
     let board = &params.board;
     let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
     let (x, u) = (start.position_m.x, arc.path.x);
@@ -206,7 +206,7 @@ fn board_place<T: Real>(
             reaches & p.y.abs().lt(board.half_width) & board.bottom_z.lt(p.z) & p.z.lt(board.top_z);
     }
     let is_behind = x.lt(board.core.low.x);
-    BoardPlace {
+    BoardEvents {
         face: plane.select(on_face, never),
         edges: zero.select(is_past, plane.select(reaches & !on_face, never)),
         behind: zero.select(
@@ -289,5 +289,5 @@ fn search_convex<T: Real>(
     (found, searching)
 }
 
-/// A place that is not on the arc.
+/// An s that is not on the arc.
 const NEVER: f64 = 1e9;

@@ -1,7 +1,7 @@
 //! A segment of a flight with lift, and its first touch.
 //!
 //! The first touch is found with certainty, however short a graze. The search steps through the segment; at each time it
-//! asks every solid how long no touch is possible, and goes on by the least of the answers.
+//! asks every solid how long no touch is possible, and takes the shortest of the answers.
 //!
 //! - Board and bracket: their cores are convex, so the distance d of the centre is a convex function of its position, and
 //!   `d'' >= -A`, with A a bound on the acceleration. A gap G with the rate G' cannot close within
@@ -375,8 +375,8 @@ fn ring_step<T: Real>(
         fastest.squared() + inner * path.air_acceleration_bound,
         params.splat(1e-9),
     );
-    let room = (inner.squared() - distance.squared()).positive_part();
-    let root = (dot.squared() + growth * room).sqrt();
+    let remaining_squared = (inner.squared() - distance.squared()).positive_part();
+    let root = (dot.squared() + growth * remaining_squared).sqrt();
     let within_step = (root - dot) / growth;
     let within_step = within_step.select(within, zero);
 
@@ -393,14 +393,14 @@ fn ring_step<T: Real>(
     } else {
         zero
     };
-    let most_angular = angular + lift_torque;
+    let max_angular = angular + lift_torque;
     let closest = (angular - lift_torque).positive_part()
         / Real::max(
             horizontal + path.air_acceleration_bound * longest,
             params.splat(1e-9),
         );
     let nearest = Real::max(inner * WITHIN.1, closest);
-    let half_bound = (radius * most_angular.squared() / (nearest.squared() * nearest)
+    let half_bound = (radius * max_angular.squared() / (nearest.squared() * nearest)
         + reach * (path.acceleration_bound + path.air_acceleration_bound) * NEAR
         - slowest.squared())
     .positive_part();
@@ -413,11 +413,11 @@ fn ring_step<T: Real>(
         (half_slope + root).select(bounded, params.ball.never_s),
     );
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, one));
-    let least = zero.select(closing, params.splat(PARTING_STEP));
+    let min_step = zero.select(closing, params.splat(PARTING_STEP));
     let to_within = (distance - inner * WITHIN.1) * path.inverse_speed_bound;
     let near_step = Real::min(
-        Real::max(numerator / denominator, least),
-        Real::max(Real::min(longest, to_within), least),
+        Real::max(numerator / denominator, min_step),
+        Real::max(Real::min(longest, to_within), min_step),
     );
 
     let elsewhere = Real::max(Real::max(height, outside_step), within_step);

@@ -1,7 +1,7 @@
 //! The first touch of the ring by a ball in free flight, found with certainty.
 //!
 //! It is the first root of `F(t) = (R_H - D)^2 + z^2 - R^2`, where `D` is the distance from the hoop's
-//! axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. (With a rod, R stands for the reach.) Elsewhere
+//! axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. (With a rod, R stands for the reach: its radius more.) Elsewhere
 //!
 //! ```text
 //! F'' = 2 (v_h^2 + v_z^2 - g z - R_H L^2/D^3),    L = x v_y - y v_x (constant in flight)
@@ -208,8 +208,8 @@ fn search_step<T: Real>(
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, params.one()));
     // A ball that parts with hardly any speed must get away from the ring. What this step passes over is a graze
     // of less than 1e-9 m.
-    let least = zero.select(closing, params.splat(PARTING_STEP_S));
-    let safe = t + Real::max(numerator / denominator, least);
+    let min_step = zero.select(closing, params.splat(PARTING_STEP_S));
+    let safe = t + Real::max(numerator / denominator, min_step);
     let touches = closing & value.le(reach.squared() * TOUCH_TOLERANCE);
 
     // Jumps over parts where no touch is possible.

@@ -18,7 +18,7 @@ pub(super) fn gap_step<T: Real>(gap: T, rate: T, acceleration_bound: T) -> (T::M
     let root = (rate.squared() + bound * open * 2.0).sqrt();
     let numerator = (open * 2.0).select(closing, rate + root);
     let denominator = (root - rate).select(closing, bound);
-    let least = zero.select(closing, gap.splat(PARTING_STEP));
+    let min_step = zero.select(closing, gap.splat(PARTING_STEP));
     let touches = closing & gap.le(gap.splat(TOUCH_M));
-    (touches, Real::max(numerator / denominator, least))
+    (touches, Real::max(numerator / denominator, min_step))
 }

@@ -4,9 +4,9 @@
 use crate::dynamics::contact::contact_step::{Contact, MacroStep};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::{
-    GapAtEnd, approach_in_space, has_arrived, passed,
+    GapAtEnd, approach_in_world, has_arrived, passed,
 };
-use crate::dynamics::contact::space_contact_step::{self, SpaceContact, SpaceContactStep};
+use crate::dynamics::contact::world_contact_step::{self, WorldContact, WorldContactStep};
 use crate::dynamics::end_rules::{
     ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
 };
@@ -31,20 +31,20 @@ pub(crate) enum ContactState {
     Free,
     /// On the face of the board or on the ring's circle alone: in the frame of the contact.
     Single(SolidId),
-    /// On the bracket, on an edge of the board, or on both solids: in the frame of space.
-    InSpace,
+    /// On the bracket, on an edge of the board, or on both solids: in the world frame.
+    InWorld,
 }
 
 /// A shot in progress.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotProgress {
-    /// The ball in space. While `frame` names a solid, `motion` holds instead.
+    /// In the world frame. If `frame` names a solid, `motion` is valid and this is stale.
     pub(crate) state: BallState,
     /// The ball in the frame of a contact.
     pub(crate) motion: ContactMotion,
     pub(crate) frame: Option<SolidId>,
     pub(crate) contact: ContactState,
-    /// The solids that a ball in contact in the frame of space touches, by [`SolidId::index`].
+    /// The solids that a ball in contact in the world frame touches, by [`SolidId::index`].
     pub(crate) touching: [bool; SolidId::COUNT],
     /// Friction at the board and at the ring.
     pub(crate) friction: [FrictionState; SolidId::COUNT],
@@ -106,15 +106,15 @@ impl ShotProgress {
 
     /// The ball leaves the part of `solid` that the frame of the contact describes.
     pub(crate) fn leave_frame(&mut self, params: &ModelParams, solid: SolidId) {
-        self.end_single_contact(ContactState::InSpace);
+        self.end_single_contact(ContactState::InWorld);
         self.update_state(params);
         self.touching = SolidId::ALL.map(|id| id == solid);
         self.step_share = 1.0;
     }
 
-    /// The ball on `arrived` in addition to the solid that it is on.
+    /// The ball now also touches `arrived`.
     pub(crate) fn arrive(&mut self, params: &ModelParams, arrived: SolidId) {
-        self.end_single_contact(ContactState::InSpace);
+        self.end_single_contact(ContactState::InWorld);
         self.update_state(params);
         self.touching = [true; SolidId::COUNT];
         self.step_share = 1.0;
@@ -122,15 +122,11 @@ impl ShotProgress {
         self.friction[arrived.index()] = FrictionState::new(params);
     }
 
-    /// The solids that the ball in space touches are now `touching`: it flies, or goes on in the frame of the contact
+    /// Sets the solids that the ball touches: it then flies, or is in contact in the frame of one solid
     /// where there is one.
-    pub(crate) fn go_on_touching(
-        &mut self,
-        params: &ModelParams,
-        touching: [bool; SolidId::COUNT],
-    ) {
+    pub(crate) fn set_touching(&mut self, params: &ModelParams, touching: [bool; SolidId::COUNT]) {
         self.touching = touching;
-        self.contact = ContactState::InSpace;
+        self.contact = ContactState::InWorld;
         let (board, ring) = (&params.board, &params.ring);
         match touching {
             [false, false] => self.contact = ContactState::Free,
@@ -152,10 +148,10 @@ impl ShotProgress {
         match self.frame {
             None => return,
             Some(SolidId::Board) => {
-                self.state = params.board.to_space(&params.ball, &self.motion);
+                self.state = params.board.to_world(&params.ball, &self.motion);
             }
             Some(SolidId::Ring) => {
-                self.state = params.ring.to_space(&params.ball, &self.motion);
+                self.state = params.ring.to_world(&params.ball, &self.motion);
             }
         }
         self.frame = None;
@@ -195,7 +191,7 @@ pub(crate) fn run<O: Observer>(
             observer.touch(0.0, solid, &start);
         }
     }
-    shot.go_on_touching(params, touched);
+    shot.set_touching(params, touched);
     let mut run = Run {
         params,
         limits,
@@ -242,16 +238,16 @@ fn single_step<T: ScalarReal, S: Solid<T>>(
     contact.step(motion, friction, share)
 }
 
-/// The same in the frame of space.
+/// The same in the world frame.
 #[inline(never)]
-fn space_step<A: Solid<f64>, B: Solid<f64>>(
+fn world_step<A: Solid<f64>, B: Solid<f64>>(
     params: &ModelParams,
     solids: (&A, &B),
     state: &mut BallState,
     friction: &mut [FrictionState; SolidId::COUNT],
-    contact: &SpaceContact<f64>,
-) -> SpaceContactStep<f64> {
-    space_contact_step::step(params, solids, state, friction, contact)
+    contact: &WorldContact<f64>,
+) -> WorldContactStep<f64> {
+    world_contact_step::step(params, solids, state, friction, contact)
 }
 
 /// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next segment.
@@ -284,7 +280,7 @@ impl<O: Observer> Run<'_, O> {
                 self.single_contact(&narrow, solid)
             }
             ContactState::Single(solid) => self.single_contact(params, solid),
-            ContactState::InSpace => self.contact_in_space((&params.board, &params.ring)),
+            ContactState::InWorld => self.contact_in_world((&params.board, &params.ring)),
         }
     }
 
@@ -385,7 +381,7 @@ impl<O: Observer> Run<'_, O> {
         let shot = &mut self.shot;
         shot.contacts.push(solid);
         shot.friction[solid.index()] = FrictionState::new(self.params);
-        shot.go_on_touching(self.params, SolidId::ALL.map(|id| id == solid));
+        shot.set_touching(self.params, SolidId::ALL.map(|id| id == solid));
         shot.step_share = 1.0;
         let time_s = shot.time_s;
         let state = shot.state;
@@ -421,13 +417,13 @@ impl<O: Observer> Run<'_, O> {
                 return Some(self.shot.verdict(Ending::Unresolved, false));
             }
             let step = single_step(&contact, &motion, &friction, share);
-            let after = solid.to_space(&params.ball, &step.motion);
+            let after = solid.to_world(&params.ball, &step.motion);
             let path = (motion.speed_bound() + step.motion.speed_bound()) * step.dt;
             let end = GapAtEnd::new(params, other, &after, path);
             let mut again = false;
             share = params.one();
             if end.is_near {
-                let before = solid.to_space(&params.ball, &motion);
+                let before = solid.to_world(&params.ball, &motion);
                 (again, share) = passed(params, other, &before, &end, step.dt);
             }
             if again {
@@ -477,7 +473,7 @@ impl<O: Observer> Run<'_, O> {
         }
     }
 
-    /// After a step in contact with one solid: updates the state in space, and reports the step.
+    /// After a step in contact with one solid: updates the state in the world frame, and reports the step.
     fn report_contact_step(&mut self, solid: SolidId, contact_time_s: f64) {
         let shot = &mut self.shot;
         let before = shot.state;
@@ -495,9 +491,9 @@ impl<O: Observer> Run<'_, O> {
             .step(start, dt, (&before, &self.shot.state), impulses);
     }
 
-    /// Contact in the frame of space until the ball flies, goes on in the frame of a contact, is lodged, or the shot
+    /// Contact in the world frame until the ball flies, goes on in the frame of a contact, is lodged, or the shot
     /// ends.
-    fn contact_in_space<A: Solid<f64>, B: Solid<f64>>(
+    fn contact_in_world<A: Solid<f64>, B: Solid<f64>>(
         &mut self,
         solids: (&A, &B),
     ) -> Option<Verdict> {
@@ -505,7 +501,7 @@ impl<O: Observer> Run<'_, O> {
         loop {
             let before = self.shot.state;
             let (mut after, mut friction) = (before, self.shot.friction);
-            let contact = SpaceContact {
+            let contact = WorldContact {
                 touching: self.shot.touching,
                 step_s: self.limits.longest_step_s,
                 share: self.shot.step_share,
@@ -514,9 +510,9 @@ impl<O: Observer> Run<'_, O> {
             if self.shot.steps >= self.limits.max_steps {
                 return Some(self.shot.verdict(Ending::Unresolved, false));
             }
-            let step = space_step(params, solids, &mut after, &mut friction, &contact);
+            let step = world_step(params, solids, &mut after, &mut friction, &contact);
             let touching = contact.touching;
-            let approach = approach_in_space(params, solids, touching, (&before, &after), step.dt);
+            let approach = approach_in_world(params, solids, touching, (&before, &after), step.dt);
             self.shot.step_share = approach.share;
             if approach.again {
                 self.shot.step_share *= step.dt / contact.step_s;
@@ -527,7 +523,7 @@ impl<O: Observer> Run<'_, O> {
             let ending = self.after_step(step.dt, &before, step.impulses);
             let shot = &mut self.shot;
             shot.rolling_time_s =
-                space_contact_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
+                world_contact_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
             if let Some(ending) = ending {
                 let made = shot.crossing.is_made(params, &shot.state);
                 return Some(shot.verdict(ending, made));
@@ -551,8 +547,8 @@ impl<O: Observer> Run<'_, O> {
                     self.observer.touch(time_s, solid, &after);
                 }
             }
-            self.shot.go_on_touching(params, now);
-            if self.shot.contact != ContactState::InSpace {
+            self.shot.set_touching(params, now);
+            if self.shot.contact != ContactState::InWorld {
                 return None;
             }
         }

@@ -207,7 +207,7 @@ impl<O: Observer> Run<'_, O> {
         falling_time(self.params, z, vz, -self.params.ring.reach)
     }
 
-    /// Whether a parabola from a state is or rises above z = -R.
+    /// Whether a parabola from a state reaches z = -R.
     fn rises_above_ring(&self, state: &BallState) -> bool {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
         let reach = self.params.ring.reach;

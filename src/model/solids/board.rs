@@ -44,7 +44,7 @@ impl Board {
     }
 }
 
-/// The unit vectors of space.
+/// The unit vectors of the world frame.
 #[inline(always)]
 fn unit_vectors<T: Real>(ball: &BallParams<T>) -> [Vec3<T>; 3] {
     let (zero, one) = (ball.zero(), ball.one());
@@ -110,19 +110,19 @@ impl<T: Real> Solid<T> for Board<T> {
             compression: self.touch_x - p.x,
             velocity: ContactVector::new(v.x, v.y, v.z),
             spin: ContactVector::new(w.x, w.y, w.z),
-            place: [p.y, p.z, zero],
+            coordinates: [p.y, p.z, zero],
             start: [zero, zero],
         }
     }
 
     #[inline(always)]
-    fn to_space(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
+    fn to_world(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
         let [v, w] = [motion.velocity, motion.spin];
         BallState {
             position_m: Vec3::new(
                 self.touch_x - motion.compression,
-                motion.place[0],
-                motion.place[1],
+                motion.coordinates[0],
+                motion.coordinates[1],
             ),
             velocity_m_s: Vec3::new(v.normal, v.tangent.x, v.tangent.y),
             spin_rad_s: Vec3::new(w.normal, w.tangent.x, w.tangent.y),
@@ -134,7 +134,7 @@ impl<T: Real> Solid<T> for Board<T> {
         &self,
         ball: &BallParams<T>,
         compression: T,
-        _place: &[T; 3],
+        _coordinates: &[T; 3],
     ) -> ContactDistances<T> {
         let one = ball.one();
         ContactDistances {
@@ -174,7 +174,7 @@ impl<T: Real> Solid<T> for Board<T> {
     }
 
     #[inline(always)]
-    fn place_rates(
+    fn coordinate_rates(
         &self,
         motion: &ContactMotion<T>,
         _distances: &ContactDistances<T>,

@@ -16,7 +16,7 @@ pub(crate) struct ContactMotion<T = f64> {
     pub(crate) spin: ContactVector<T>,
     /// Where the contact is on the solid. On the ring: cos phi, sin phi and the angle by which theta has changed
     /// since the start. On the board: y, z and zero.
-    pub(crate) place: [T; 3],
+    pub(crate) coordinates: [T; 3],
     /// On the ring: cos theta and sin theta at the start.
     pub(crate) start: [T; 2],
 }
@@ -29,7 +29,7 @@ impl<T: Real> ContactMotion<T> {
     #[inline(always)]
     pub(crate) fn to_array(self) -> [T; CONTACT_VALUES] {
         let (v, w) = (self.velocity, self.spin);
-        let [p_0, p_1, p_2] = self.place;
+        let [p_0, p_1, p_2] = self.coordinates;
         let [s_0, s_1] = self.start;
         [
             self.compression,
@@ -55,7 +55,7 @@ impl<T: Real> ContactMotion<T> {
             compression: u,
             velocity: ContactVector::new(vn, v1, v2),
             spin: ContactVector::new(wn, w1, w2),
-            place: [p_0, p_1, p_2],
+            coordinates: [p_0, p_1, p_2],
             start: [s_0, s_1],
         }
     }
@@ -69,10 +69,10 @@ impl<T: Real> ContactMotion<T> {
             compression: self.compression.select(condition, other.compression),
             velocity: self.velocity.select(condition, other.velocity),
             spin: self.spin.select(condition, other.spin),
-            place: [
-                self.place[0].select(condition, other.place[0]),
-                self.place[1].select(condition, other.place[1]),
-                self.place[2].select(condition, other.place[2]),
+            coordinates: [
+                self.coordinates[0].select(condition, other.coordinates[0]),
+                self.coordinates[1].select(condition, other.coordinates[1]),
+                self.coordinates[2].select(condition, other.coordinates[2]),
             ],
             start: [
                 self.start[0].select(condition, other.start[0]),
@@ -94,11 +94,11 @@ impl<T: Real> ContactMotion<T> {
         v.normal.abs() + v.tangent.x.abs() + v.tangent.y.abs()
     }
 
-    /// Whether the centre is below the plane of the hoop: the second value of the place has the sign of z on
+    /// Whether the centre is below the plane of the hoop: the second value of the coordinates has the sign of z on
     /// either solid.
     #[inline(always)]
     pub(crate) fn is_below_hoop(&self) -> T::Mask {
-        self.place[1].is_negative()
+        self.coordinates[1].is_negative()
     }
 
     /// The acceleration by drag and lift, in the frame.

@@ -13,7 +13,7 @@
 //! `-cos(phi)/D_theta` at the ring (Eq. 7), with `1/d` across an edge and around a corner.
 //!
 //! A ball on the ring's circle or on the board's face is followed in that frame ([`ContactMotion`]); on the bracket, on
-//! an edge, and on two solids at once, in the frame of space.
+//! an edge, and on two solids at once, in the world frame.
 
 mod board;
 mod contact_kinematics;

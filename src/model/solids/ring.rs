@@ -52,7 +52,7 @@ pub(crate) struct RingFrame<T> {
 }
 
 impl<T: Real> RingFrame<T> {
-    /// Components along (u_n, u_phi, u_theta) of a vector in space.
+    /// Components along (u_n, u_phi, u_theta) of a vector in the world frame.
     #[inline(always)]
     fn to_frame(self, v: Vec3<T>) -> ContactVector<T> {
         let outward = v.x * self.cos_theta + v.y * self.sin_theta;
@@ -65,7 +65,7 @@ impl<T: Real> RingFrame<T> {
 
     /// x, y, z components of a vector given along (u_n, u_phi, u_theta).
     #[inline(always)]
-    fn to_space(self, vector: ContactVector<T>) -> Vec3<T> {
+    fn to_world(self, vector: ContactVector<T>) -> Vec3<T> {
         let (along_phi, along_theta) = (vector.tangent.x, vector.tangent.y);
         let outward = along_phi * self.sin_phi - vector.normal * self.cos_phi;
         Vec3::new(
@@ -100,7 +100,7 @@ fn unit_scale<T: Real>(cosine: T, sine: T) -> T {
 /// Cosine and sine of theta.
 #[inline(always)]
 fn theta<T: Real>(motion: &ContactMotion<T>) -> [T; 2] {
-    let (cos_turned, sin_turned) = cos_sin(motion.place[2]);
+    let (cos_turned, sin_turned) = cos_sin(motion.coordinates[2]);
     let [cos_start, sin_start] = motion.start;
     [
         cos_start * cos_turned - sin_start * sin_turned,
@@ -158,9 +158,9 @@ impl<T: Real> Ring<T> {
             curvature_2: -frame.cos_phi * per_axis,
         };
         let axes = [
-            frame.to_space(ContactVector::new(one, zero, zero)),
-            frame.to_space(ContactVector::new(zero, one, zero)),
-            frame.to_space(ContactVector::new(zero, zero, one)),
+            frame.to_world(ContactVector::new(one, zero, zero)),
+            frame.to_world(ContactVector::new(zero, one, zero)),
+            frame.to_world(ContactVector::new(zero, zero, one)),
         ];
         (kinematics, axes)
     }
@@ -229,14 +229,14 @@ impl<T: Real> Solid<T> for Ring<T> {
             compression: self.reach - core,
             velocity: frame.to_frame(state.velocity_m_s),
             spin: frame.to_frame(state.spin_rad_s),
-            place: [frame.cos_phi, frame.sin_phi, ball.zero()],
+            coordinates: [frame.cos_phi, frame.sin_phi, ball.zero()],
             start: [frame.cos_theta, frame.sin_theta],
         }
     }
 
     #[inline(always)]
-    fn to_space(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
-        let [cos_phi, sin_phi, _] = motion.place;
+    fn to_world(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
+        let [cos_phi, sin_phi, _] = motion.coordinates;
         let scale = unit_scale(cos_phi, sin_phi);
         let (cos_phi, sin_phi) = (cos_phi * scale, sin_phi * scale);
         let [cos_theta, sin_theta] = theta(motion);
@@ -254,8 +254,8 @@ impl<T: Real> Solid<T> for Ring<T> {
                 axis * frame.sin_theta,
                 core * sin_phi,
             ),
-            velocity_m_s: frame.to_space(motion.velocity),
-            spin_rad_s: frame.to_space(motion.spin),
+            velocity_m_s: frame.to_world(motion.velocity),
+            spin_rad_s: frame.to_world(motion.spin),
         }
     }
 
@@ -264,10 +264,10 @@ impl<T: Real> Solid<T> for Ring<T> {
         &self,
         ball: &BallParams<T>,
         compression: T,
-        place: &[T; 3],
+        coordinates: &[T; 3],
     ) -> ContactDistances<T> {
         let core = self.reach - compression;
-        let axis = self.radius - core * place[0];
+        let axis = self.radius - core * coordinates[0];
         let per_both = ball.one() / (core * axis);
         ContactDistances {
             lever: core - self.tube_radius,
@@ -284,7 +284,7 @@ impl<T: Real> Solid<T> for Ring<T> {
         motion: &ContactMotion<T>,
         distances: &ContactDistances<T>,
     ) -> FrameTurn<T> {
-        let [cos_phi, sin_phi, _] = motion.place;
+        let [cos_phi, sin_phi, _] = motion.coordinates;
         let v = motion.velocity.tangent;
         let about_axis = v.y * distances.inverse_axis;
         FrameTurn {
@@ -299,7 +299,7 @@ impl<T: Real> Solid<T> for Ring<T> {
         ball: &BallParams<T>,
         motion: &ContactMotion<T>,
     ) -> ContactVector<T> {
-        let [cos_phi, sin_phi, _] = motion.place;
+        let [cos_phi, sin_phi, _] = motion.coordinates;
         let gravity = ContactVector::new(
             -(ball.gravity * sin_phi),
             -(ball.gravity * cos_phi),
@@ -313,13 +313,13 @@ impl<T: Real> Solid<T> for Ring<T> {
     }
 
     #[inline(always)]
-    fn place_rates(
+    fn coordinate_rates(
         &self,
         motion: &ContactMotion<T>,
         distances: &ContactDistances<T>,
         turn: &FrameTurn<T>,
     ) -> [T; 3] {
-        let [cos_phi, sin_phi, _] = motion.place;
+        let [cos_phi, sin_phi, _] = motion.coordinates;
         [
             -(sin_phi * turn.turn.x),
             cos_phi * turn.turn.x,
@@ -343,14 +343,14 @@ impl<T: Real> Solid<T> for Ring<T> {
 
     #[inline(always)]
     fn rebase(&self, motion: &mut ContactMotion<T>) {
-        let [cos_phi, sin_phi, turned] = motion.place;
+        let [cos_phi, sin_phi, turned] = motion.coordinates;
         let far = turned.splat(LARGEST_TURN_RAD).lt(turned.abs());
         if !far.any() {
             return;
         }
         let (scale, [cos_theta, sin_theta]) = (unit_scale(cos_phi, sin_phi), theta(motion));
         let theta_scale = unit_scale(cos_theta, sin_theta);
-        motion.place = [
+        motion.coordinates = [
             (cos_phi * scale).select(far, cos_phi),
             (sin_phi * scale).select(far, sin_phi),
             turned.zero().select(far, turned),

@@ -54,7 +54,7 @@ pub(crate) trait Solid<T: Real>: Copy {
     fn reach(&self, ball: &BallParams<T>) -> T;
 
     /// Position and motion of the ball relative to the nearest point of the solid, in the frame of the
-    /// contact, and the directions (n, 1, 2) of that frame in space.
+    /// contact, and the directions (n, 1, 2) of that frame in the world frame.
     fn contact(
         &self,
         ball: &BallParams<T>,
@@ -64,15 +64,15 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// The ball in the frame of the contact.
     fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T>;
 
-    /// The state in space of a ball in the frame of the contact.
-    fn to_space(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T>;
+    /// The state in the world frame of a ball in the frame of the contact.
+    fn to_world(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T>;
 
-    /// Distances at a contact with the given compression and place.
+    /// Distances at a contact with the given compression and coordinates.
     fn distances(
         &self,
         ball: &BallParams<T>,
         compression: T,
-        place: &[T; 3],
+        coordinates: &[T; 3],
     ) -> ContactDistances<T>;
 
     /// How the frame turns. Not called for a flat solid.
@@ -89,8 +89,8 @@ pub(crate) trait Solid<T: Real>: Copy {
         motion: &ContactMotion<T>,
     ) -> ContactVector<T>;
 
-    /// Rates of [`ContactMotion::place`].
-    fn place_rates(
+    /// Rates of [`ContactMotion::coordinates`].
+    fn coordinate_rates(
         &self,
         motion: &ContactMotion<T>,
         distances: &ContactDistances<T>,

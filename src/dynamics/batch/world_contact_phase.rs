@@ -1,11 +1,11 @@
-//! The contacts of a batch in the frame of space: on a bracket, on an edge, on board and ring at once.
+//! The contacts of a batch in the world frame: on a bracket, on an edge, on board and ring at once.
 
 use super::batch_state::Batch;
 use super::lane_block::{LaneBlock, bit, lanes_in};
 use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::contact::other_solid_touch::approach_in_space;
-use crate::dynamics::contact::space_contact_step::{self, SpaceContact};
+use crate::dynamics::contact::other_solid_touch::approach_in_world;
+use crate::dynamics::contact::world_contact_step::{self, WorldContact};
 use crate::dynamics::end_rules::is_lodged;
 use crate::dynamics::outcome::Ending;
 use crate::math::real::{LaneBits, SimdReal};
@@ -14,18 +14,18 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 use fearless_simd::Simd;
 
-/// Steps the shots in contact in the frame of space until they fly, go on in the frame of a contact, or end.
+/// Steps the shots in contact in the world frame until they fly, go on in the frame of a contact, or end.
 ///
-/// The phases stand in separate modules, so that the compiler translates them in parallel.
+/// One module for each phase: they compile in parallel.
 #[inline(never)]
-pub(super) fn in_space<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
+pub(super) fn in_world<S, T, const WIDTH: u8>(batch: &mut Batch<S, WIDTH>)
 where
     S: Simd,
     T: SimdReal<Simd = S, Element = f64>,
 {
     batch.simd.vectorize(
         #[inline(always)]
-        || batch.contacts_in_space::<T>(),
+        || batch.contacts_in_world::<T>(),
     );
 }
 
@@ -44,9 +44,9 @@ struct StepResult {
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
-    fn contacts_in_space<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
+    fn contacts_in_world<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
-        let phase = Phase::InSpace;
+        let phase = Phase::InWorld;
         let mut block = LaneBlock::new();
         loop {
             self.refill::<T>(&mut block, phase);
@@ -54,18 +54,18 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 return;
             }
             if self.should_suspend::<T>(&block, phase) {
-                self.suspend_contacts_in_space(&mut block);
+                self.suspend_contacts_in_world(&mut block);
                 return;
             }
             let given_up = block.count_step(self.limits.max_steps);
-            let result = self.step_in_space(params, &mut block, given_up);
-            self.finish_contacts_in_space(&mut block, &result, given_up);
+            let result = self.step_in_world(params, &mut block, given_up);
+            self.finish_contacts_in_world(&mut block, &result, given_up);
         }
     }
 
     /// Steps every lane; those of `given_up` stay where they are.
     #[inline(always)]
-    fn step_in_space<T: SimdReal<Simd = S, Element = f64>>(
+    fn step_in_world<T: SimdReal<Simd = S, Element = f64>>(
         &self,
         params: &ModelParams<T>,
         block: &mut LaneBlock,
@@ -80,13 +80,13 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             block.load_friction(simd, SolidId::Ring),
         ];
         let touching = block.load_touching::<T>(simd);
-        let contact = SpaceContact {
+        let contact = WorldContact {
             touching,
             step_s: params.splat(self.limits.longest_step_s),
             share: block.load_step_shares(simd),
         };
         let mut next_friction = friction;
-        let step = space_contact_step::step(
+        let step = world_contact_step::step(
             params,
             solids,
             &mut shots.state,
@@ -94,7 +94,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             &contact,
         );
         let states = (&before, &shots.state);
-        let approach = approach_in_space(params, solids, touching, states, step.dt);
+        let approach = approach_in_world(params, solids, touching, states, step.dt);
         let given_up = T::mask_from_bits(simd, given_up);
         let stays = approach.again | given_up;
         let share = approach.share * (step.dt / contact.step_s);
@@ -104,7 +104,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             next_friction[i] = FrictionState::select(friction[i], stays, next_friction[i]);
         }
         let before_s = block.load_rolling_times(simd);
-        let rolling_times = space_contact_step::rolling_time(&next_friction, before_s, step.dt);
+        let rolling_times = world_contact_step::rolling_time(&next_friction, before_s, step.dt);
         let rolling_times = before_s.select(stays, rolling_times);
         let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & !stays;
         let end = shots.after_step(params, &before, (step.dt, !stays), self.limits.time_limit_s);
@@ -143,7 +143,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
 
     /// Takes the shots whose contacts have changed out of their lanes.
     #[inline(always)]
-    fn finish_contacts_in_space(
+    fn finish_contacts_in_world(
         &mut self,
         block: &mut LaneBlock,
         result: &StepResult,
@@ -178,14 +178,14 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                         shot.friction[i] = FrictionState::new(self.params);
                     }
                 }
-                shot.go_on_touching(self.params, touching);
+                shot.set_touching(self.params, touching);
                 self.workspace.enqueue(slot);
             }
         }
     }
 
     /// Takes all shots of a block out of their lanes and queues them again.
-    fn suspend_contacts_in_space(&mut self, block: &mut LaneBlock) {
+    fn suspend_contacts_in_world(&mut self, block: &mut LaneBlock) {
         for lane in lanes_in(block.occupied()) {
             let slot = block.slot(lane);
             let shot = &mut self.workspace.slots[slot as usize];

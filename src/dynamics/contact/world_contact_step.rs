@@ -1,4 +1,4 @@
-//! Contact in the frame of space, in long steps: with two solids at once, or with any part of one.
+//! Contact in the world frame, in long steps: with two solids at once, or with any part of one.
 //!
 //! Both normal forces obey linear equations as long as their directions and what does not depend on them are
 //! constant ([`super::coupled_oscillators`]). The motion with these forces is the base of a step. What they leave
@@ -25,7 +25,7 @@ const SLIP_REMAINDER: (f64, f64) = (0.2, 1e-3);
 const SHORTEST_STEP: f64 = 2e-4;
 
 /// The result of one step.
-pub(crate) struct SpaceContactStep<T: Real> {
+pub(crate) struct WorldContactStep<T: Real> {
     /// Length of the step, s.
     pub(crate) dt: T,
     /// Whether the ball leaves each solid at the end of the step.
@@ -56,7 +56,7 @@ struct BaseForces<T: Real> {
     oscillators: CoupledOscillators<T>,
     /// What a unit of each normal force does, together with the friction that slides.
     per_force: [Response<T>; 2],
-    /// The part of the friction in it.
+    /// The part of it that is the sliding friction.
     sliding: [Response<T>; 2],
     /// The friction that rolls.
     rolling: [Response<T>; 2],
@@ -74,7 +74,7 @@ struct StepEnd<T: Real> {
 
 /// What a ball in contact is on, for how long a step.
 #[derive(Clone, Copy)]
-pub(crate) struct SpaceContact<T: Real> {
+pub(crate) struct WorldContact<T: Real> {
     /// Whether the ball touches each solid.
     pub(crate) touching: [T::Mask; 2],
     /// The longest step, s, and the share of it that this one takes at most.
@@ -89,9 +89,9 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     solids: (&A, &B),
     state: &mut BallState<T>,
     friction: &mut [FrictionState<T>; 2],
-    contact: &SpaceContact<T>,
-) -> SpaceContactStep<T> {
-    let SpaceContact {
+    contact: &WorldContact<T>,
+) -> WorldContactStep<T> {
+    let WorldContact {
         touching, step_s, ..
     } = *contact;
     let mut pair = ContactPair::new(params, solids, state, touching);
@@ -159,8 +159,8 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     }
     *state = next;
     for i in [FIRST, SECOND] {
-        let (share, least) = SLIP_REMAINDER;
-        let left = Real::max(mode.slip_speeds[i] * share, params.splat(least));
+        let (share, min_remainder) = SLIP_REMAINDER;
+        let left = Real::max(mode.slip_speeds[i] * share, params.splat(min_remainder));
         let failed = friction[i].rolling_failed | mode.fails_now[i];
         friction[i] = FrictionState {
             rolling: mode.rolling[i],
@@ -168,7 +168,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
             slip_tolerance: left.select(end.ends_slip[i], params.splat(SLIP_TOLERANCE_M_S)),
         };
     }
-    SpaceContactStep {
+    WorldContactStep {
         dt,
         parts: end.parts,
         impulses,
@@ -176,7 +176,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
 }
 
 impl<T: Real> FrictionMode<T> {
-    /// The contacts at zero slip whose friction suffices roll. If it does not suffice for one, that one slides, and
+    /// A contact at zero slip rolls if its friction suffices. If it does not suffice for one, that one slides, and
     /// the other is solved for again.
     #[inline(always)]
     fn new(
@@ -356,7 +356,7 @@ fn first_event<T: Real>(
     pair: &ContactPair<T>,
     mode: &FrictionMode<T>,
     base: &BaseForces<T>,
-    contact: &SpaceContact<T>,
+    contact: &WorldContact<T>,
 ) -> StepEnd<T> {
     let one = params.one();
     let oscillators = &base.oscillators;
@@ -447,7 +447,7 @@ fn kick<T: Real>(state: &mut BallState<T>, (linear, angular): Response<T>, dt: T
     state.spin_rad_s = state.spin_rad_s.add_scaled(angular, dt);
 }
 
-/// What the forces of each contact at a stage are more than those of the base.
+/// The forces of each contact at a stage minus those of the base.
 #[inline(always)]
 fn remainder<T: Real, A: Solid<T>, B: Solid<T>>(
     params: &ModelParams<T>,

@@ -1,0 +1,91 @@
+//! `team`: players side by side, at their places and over a court.
+
+use super::support::{Answer, bankshot, file_names, small_profile, write_file};
+use std::fs;
+use tempfile::TempDir;
+
+const COURT: &str = r#"
+[sweep]
+name = "small court"
+shooter = "ann.toml"
+court = "ncaa"
+compute = ["direct", "bank"]
+region = "arcs"
+distances = ["8 ft", "14 ft"]
+angles = ["-50 deg", "50 deg"]
+angle_step = "50 deg"
+[grid]
+speed = 16
+pitch = 10
+polar = 10
+backspin = 3
+[search]
+standard_error = 0.01
+"#;
+
+#[test]
+fn contract_a_team_has_a_table_maps_and_posters() {
+    let folder = TempDir::new().unwrap();
+    let player = |file: &str, name: &str, pitch: &str| {
+        let text = small_profile()
+            .replace("college guard", name)
+            .replace("\"1.2 deg\"", pitch);
+        write_file(&folder, file, text);
+    };
+    player("ann.toml", "Ann", "\"1.2 deg\"");
+    player("bo.toml", "Bo <b>", "\"6 deg\"");
+    write_file(&folder, "court.toml", COURT);
+    let team = |more: &[&str]| {
+        let mut command = bankshot();
+        command.current_dir(folder.path());
+        command.args(["team", "ann.toml", "bo.toml", "--quiet"]);
+        Answer::of(command.args(more))
+    };
+    team(&[]).exits(0).prints("Ann").prints("13.7 ft, 0 deg");
+    let first = team(&["--sweep", "court.toml", "--out", "out"]).exits(0);
+    let out = folder.path().join("out");
+    assert_eq!(file_names(&out), ["ann", "bo-b", "team.csv"]);
+    for player in ["ann", "bo-b"] {
+        let files = file_names(&out.join(player));
+        for file in ["bank_and_direct.svg", "poster.html", "poster.png"] {
+            assert!(files.iter().any(|name| name == file), "{files:?}");
+        }
+        let html = fs::read_to_string(out.join(player).join("poster.html")).unwrap();
+        assert!(html.contains("Your surest place is") && !html.contains("<b>"));
+    }
+    let csv = fs::read_to_string(out.join("team.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 6);
+    // The steady player is the better one everywhere.
+    assert_eq!(csv.matches(",\"Ann\",").count(), 6);
+    // The same command again computes nothing and says the same.
+    let again = team(&["--sweep", "court.toml", "--out", "out"]).exits(0);
+    assert_eq!(again.stdout, first.stdout);
+}
+
+#[test]
+fn contract_two_players_of_one_name_and_a_court_with_a_shooter_are_refused() {
+    let folder = TempDir::new().unwrap();
+    write_file(&folder, "ann.toml", small_profile());
+    write_file(&folder, "bo.toml", small_profile());
+    write_file(&folder, "court.toml", COURT);
+    let team = |court: &str| {
+        let mut command = bankshot();
+        command.current_dir(folder.path());
+        command.args(["team", "ann.toml", "bo.toml", "--sweep", court, "--quiet"]);
+        Answer::of(&mut command).exits(2)
+    };
+    team("court.toml").says("two players have the name");
+    let (_, shooter) = small_profile().split_once("[shooter]").map_or_else(
+        || unreachable!("a profile has a shooter"),
+        |(a, b)| {
+            (
+                a.to_owned(),
+                b.split("[location]").next().unwrap().to_owned(),
+            )
+        },
+    );
+    let own = COURT.replace("shooter = \"ann.toml\"\n", "") + "[shooter]" + &shooter;
+    write_file(&folder, "own.toml", own);
+    team("own.toml").says("sweep.shooter");
+    assert_eq!(file_names(folder.path()).len(), 4);
+}
