@@ -74,13 +74,13 @@ fn read_correlation(
     let mut pairs = Vec::new();
     for (a, b, key) in PAIRS.iter() {
         let twice = PAIRS.iter().find(|(c, d, _)| (c, d) == (b, a));
-        if let Some((_, _, other)) =
-            twice.filter(|(_, _, other)| table.has(other) && table.has(key))
+        if let Some((_, _, other)) = twice
+            && *a < *b
+            && table.has(key)
+            && table.has(other)
         {
-            if *a < *b {
-                let message = format!("is given twice: {key} and {other} are the same");
-                diagnostics.push(table.diagnostic(other, message));
-            }
+            let message = format!("is given twice: {key} and {other} are the same");
+            diagnostics.push(table.diagnostic(other, message));
         }
         match table.quantity(key, Dimension::Number, diagnostics) {
             Some(value) if (-1.0..=1.0).contains(&value) => pairs.push((*a, *b, value)),

@@ -211,13 +211,11 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
     if let Some(gain) = sensitivity.backspin_gain() {
         line("backspin", format!("{} over no backspin", points(&gain)));
     }
-    let higher = sensitivity.heights.iter();
-    if let Some(height) = higher
-        .filter(|height| height.value > profile.shooter().release_height_m)
-        .next_back()
-    {
+    let own_m = profile.shooter().release_height_m;
+    let mut heights = sensitivity.heights.iter();
+    if let Some(height) = heights.rfind(|height| height.value > own_m) {
         let (long, metre) = units.length();
-        let by = (height.value - profile.shooter().release_height_m) / metre;
+        let by = (height.value - own_m) / metre;
         line(
             "height",
             format!("{} if released {by:.2} {long} higher", points(&height.gain)),

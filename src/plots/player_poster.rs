@@ -1,7 +1,7 @@
 //! One court map for a player's wall: makes in 100 shots at each place, and where to bank. It reads as well in black and
 //! white.
 
-use super::colormaps::sequential;
+use super::colormaps::{Rgb, sequential};
 use super::colour_key::{ColourKey, ColourScale};
 use super::svg::{Anchor, Plot, Svg};
 use super::sweep_results::{PlaceResults, SweepResults};
@@ -45,14 +45,18 @@ pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
     let mut svg = Svg::new(width, height + MAP_TOP);
     svg.heading((20.0, 22.0), 18.0, Anchor::Start, &results.shooter_name());
     let corner = (0.0, MAP_TOP);
-    let key = ColourKey::Scale(ColourScale::PROBABILITY);
+    let key = ColourKey::Scale(ColourScale {
+        name: "P",
+        range: (0.0, 1.0),
+        colour: &pale,
+    });
     results.draw_on(
         &map,
         &mut svg,
         corner,
         "makes in 100 shots",
         &key,
-        &|place| Some(sequential(p(place)?)),
+        &|place| Some(pale(p(place)?)),
     );
     map.draw_outline(&mut svg, corner, &bank);
     let numbers: Vec<((f64, f64), String, bool)> = found
@@ -88,6 +92,11 @@ pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
         caption: words.join(" "),
     };
     Some((plot, words))
+}
+
+/// The colour of a probability, so pale that black numbers stand out on it.
+fn pale(p: f64) -> Rgb {
+    sequential(p).map(|part| 140 + (u16::from(part) * 115 / 255) as u8)
 }
 
 fn bank_gain(results: &SweepResults<'_>, place: &PlaceResults) -> Option<Difference> {

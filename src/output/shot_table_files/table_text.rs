@@ -107,16 +107,14 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
     let cell = |shot: &TableShot, i: usize| {
         let (_, decimals, value, size) = &columns[i];
         let value = value(shot) / size;
-        // No negative zero.
-        let value = if value.abs() < 0.5 * f64::powi(0.1, *decimals as i32) {
-            0.0
-        } else {
-            value
-        };
         if value.is_nan() {
             "-".to_owned()
         } else {
-            format!("{value:.decimals$}")
+            let text = format!("{value:.decimals$}");
+            // No negative zero.
+            let is_zero =
+                text.starts_with('-') && !text.contains(|c: char| ('1'..='9').contains(&c));
+            if is_zero { text[1..].to_owned() } else { text }
         }
     };
     for (distance, angle, shot) in nodes(table, units) {
