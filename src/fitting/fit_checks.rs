@@ -239,8 +239,8 @@ pub struct ShapeTest {
     pub skewness_p: f64,
     /// p-value of the kurtosis.
     pub kurtosis_p: f64,
-    /// Whether the kurtosis is greater than that of a normal distribution.
-    pub is_heavy: bool,
+    /// The kurtosis over that of a normal distribution.
+    pub kurtosis_ratio: f64,
 }
 
 /// Mardia's tests (Biometrika 57 (1970) 519) of speed, pitch and polar angle, with the normal approximations of both
@@ -272,7 +272,7 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
         return ShapeTest {
             skewness_p: 1.0,
             kurtosis_p: 1.0,
-            is_heavy: false,
+            kurtosis_ratio: 1.0,
         };
     };
     let (mut skewness, mut kurtosis) = (0.0, 0.0);
@@ -299,17 +299,19 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
     ShapeTest {
         skewness_p: 1.0 - cdf(z),
         kurtosis_p: 2.0 * (1.0 - cdf(kurtosis_z.abs())),
-        is_heavy: kurtosis_z > 0.0,
+        kurtosis_ratio: kurtosis / count / expected,
     }
 }
 
-/// The distribution that the shots ask for: Student's t where their kurtosis is too great for normal ones. Of normal shots
-/// about one test in fifty is taken for heavy, which costs a little precision.
+/// The distribution that the shots ask for: Student's t where their kurtosis is too great for normal ones, and by so much that
+/// it matters (fewer than about 17 degrees of freedom). Of normal shots about one test in fifty is taken for heavy, which
+/// costs a little precision.
 #[must_use]
 pub fn tails_of(shots: &[MeasuredRelease], places: usize) -> Tails {
     const LEVEL: f64 = 0.04;
+    const LEAST_RATIO: f64 = 1.15;
     let shape = shape_test(shots, places);
-    if shape.is_heavy && shape.kurtosis_p < LEVEL {
+    if shape.kurtosis_ratio > LEAST_RATIO && shape.kurtosis_p < LEVEL {
         Tails::Student
     } else {
         Tails::Normal
