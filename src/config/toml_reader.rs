@@ -320,6 +320,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
         let Some(table) = self.table else { return };
         let mut known = self.asked.clone();
         known.sort_unstable();
+        known.dedup();
         let known_names = if known.len() > MOST_KNOWN_NAMES {
             format!("{}, ...", known[..3].join(", "))
         } else {

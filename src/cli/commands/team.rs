@@ -93,7 +93,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         table.add_row(vec![
             profile.shooter().name.clone(),
             format!(
-                "{:.1} {long}, {:.0} deg",
+                "{:.2} {long}, {:.0} deg",
                 location.distance_m / metre,
                 location.angle_rad / DEGREE_RAD
             ),
