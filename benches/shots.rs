@@ -1,8 +1,8 @@
-//! Times of both integrators by instruction set, of one table and one whole `best`, the agreement of the
-//! integrators, and the gain of a second thread: `cargo bench --bench shots`.
+//! Times of both integrators by instruction set, of one table and one whole `best`, the agreement
+//! of the integrators, and the gain of a second thread: `cargo bench --bench shots`.
 //!
-//! Variants that are compared run in turn, for several rounds, so that a machine that becomes slower or faster
-//! affects all of them. The time of a variant is the least of its rounds.
+//! Variants that are compared run in turn, for several rounds, so that a machine that becomes
+//! slower or faster affects all of them. The time of a variant is the least of its rounds.
 
 use bankshot::best_shot;
 use bankshot::config::parse_profile;
@@ -46,8 +46,8 @@ fn main() {
     compare_threads(&physics, &uniform(THREAD_SHOTS, 0.0, 0.0));
 }
 
-/// Uniform releases 13.75 ft away: speed 22..27 ft/s, pitch 40..65 deg, polar angle within 3 deg of its mean,
-/// backspin 0..5 rev/s.
+/// Uniform releases 13.75 ft away: speed 22..27 ft/s, pitch 40..65 deg, polar angle within 3 deg of
+/// its mean, backspin 0..5 rev/s.
 fn uniform(count: usize, court_deg: f64, polar_deg: f64) -> Vec<BallState> {
     releases(count, court_deg, polar_deg)
         .iter()
@@ -94,7 +94,8 @@ impl<'a> Variant<'a> {
     }
 }
 
-/// The least time of each variant, s. All variants run once in each round, after one round without measurement.
+/// The least time of each variant, s. All variants run once in each round, after one round without
+/// measurement.
 fn least_times_s(variants: &mut [Variant<'_>]) -> Vec<f64> {
     let mut least = vec![f64::INFINITY; variants.len()];
     for round in 0..=ROUNDS {
@@ -191,7 +192,8 @@ fn compare_integrators(physics: &Physics, sample: &str, starts: &[BallState]) {
     }
 }
 
-/// Shots per second under the preset `ncaa` (speeds 3 % higher) and under the paper's, by instruction set.
+/// Shots per second under the preset `ncaa` (speeds 3 % higher) and under the paper's, by
+/// instruction set.
 fn compare_presets(sample: &str, court_deg: f64, polar_deg: f64) {
     let in_play = Preset::named("ncaa").unwrap().physics();
     let releases = releases(SMALL_BATCH, court_deg, polar_deg);
@@ -220,8 +222,8 @@ fn compare_presets(sample: &str, court_deg: f64, polar_deg: f64) {
     }
 }
 
-/// Rates and the share of shots on which an integrator agrees with the event-driven one at tiny steps. The
-/// shortest step of the paper's integrator decreases until 99.9 % agree.
+/// Rates and the share of shots on which an integrator agrees with the event-driven one at tiny
+/// steps. The shortest step of the paper's integrator decreases until 99.9 % agree.
 fn compare_agreement(physics: &Physics, starts: &[BallState]) {
     let few = &starts[..SMALL_BATCH];
     let tiny_steps = Integrator::event_driven(1000);
@@ -255,7 +257,8 @@ fn made(simulator: &Simulator, starts: &[BallState]) -> Vec<bool> {
     verdicts.iter().map(|verdict| verdict.made).collect()
 }
 
-/// One table of the search, one table of a window, and one whole `best` of the free throw, on all threads.
+/// One table of the search, one table of a window, and one whole `best` of the free throw, on all
+/// threads.
 fn time_free_throw() {
     let text = include_str!("../configs/free_throw.toml");
     let profile = parse_profile(text, "free_throw.toml").unwrap();

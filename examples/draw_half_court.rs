@@ -1,5 +1,6 @@
-//! Draws `bank_and_direct.svg`, the map of the half court in the docs, from `docs/data/half_court.csv`:
-//! `cargo run --release --example draw_half_court [FOLDER]`. The default folder is `docs/pictures`.
+//! Draws `bank_and_direct.svg`, the map of the half court in the docs, from
+//! `docs/data/half_court.csv`: `cargo run --release --example draw_half_court [FOLDER]`. The
+//! default folder is `docs/pictures`.
 
 use bankshot::plots::sweep_bank_direct_map;
 use bankshot::plots::sweep_results::SweepResults;

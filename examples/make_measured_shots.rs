@@ -1,5 +1,6 @@
-//! Makes the measured shots of the docs: one made-up player, seen by a lab, by a gym sensor and by optical tracking.
-//! `cargo run --release --example make_measured_shots [FOLDER]`. The default folder is `docs/data`.
+//! Makes the measured shots of the docs: one made-up player, seen by a lab, by a gym sensor and by
+//! optical tracking. `cargo run --release --example make_measured_shots [FOLDER]`. The default
+//! folder is `docs/data`.
 //!
 //! The player's true profile stands here and in `docs/shooters_test.md`.
 

@@ -1,14 +1,15 @@
 //! bankshot: a parallel batch probability engine for the basketball shot.
 //!
-//! Data flows one way: a checked [`shooter::Profile`] (from TOML by [`config`]), the releases worth trying
-//! ([`search_space`]), the simulation ([`dynamics`]), probabilities ([`probability`]), what they depend on
-//! ([`analysis`]), the best shots ([`best_shot`]), and profiles fitted to measured shots ([`fitting`]). No module imports one further down the list below.
+//! Data flows one way: a checked [`shooter::Profile`] (from TOML by [`config`]), the releases worth
+//! trying ([`search_space`]), the simulation ([`dynamics`]), probabilities ([`probability`]), what
+//! they depend on ([`analysis`]), the best shots ([`best_shot`]), and profiles fitted to measured
+//! shots ([`fitting`]). No module imports one further down the list below.
 //!
 //! The model is that of "Numerical Analysis of the Basketball Shot" (J. Dyn. Sys. Meas. Control,
 //! DOI 10.1115/1.1636193), with its errata; `docs/model.md` has the equations.
 //!
-//! With `default-features = false` the crate is this engine alone. The feature `app` (default) adds the
-//! command line, tables, sweeps on disk, plots and reports.
+//! With `default-features = false` the crate is this engine alone. The feature `app` (default) adds
+//! the command line, tables, sweeps on disk, plots and reports.
 //!
 //! ```
 //! use bankshot::probability::Silent;

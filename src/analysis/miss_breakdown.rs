@@ -1,7 +1,8 @@
 //! How the shots about a nominal shot are missed.
 //!
-//! The kind of a miss needs the full outcome of a shot, which costs several times its verdict. So a part of the
-//! Sobol points is classified, and the shares are scaled to the share of misses of all points.
+//! The kind of a miss needs the full outcome of a shot, which costs several times its verdict. So a
+//! part of the Sobol points is classified, and the shares are scaled to the share of misses of all
+//! points.
 
 use crate::dynamics::{BatchWorkspace, OutcomeKind};
 use crate::math::sobol::ScrambleKey;
@@ -15,7 +16,8 @@ const CLASSIFIED: u32 = 16384;
 /// Shots that are simulated together.
 const BATCH: usize = 2048;
 
-/// Shares of all shots by the way they were missed. With the shares of the made shots they sum to 1.
+/// Shares of all shots by the way they were missed. With the shares of the made shots they sum to
+/// 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MissBreakdown {
     /// On the shooter's side of the hoop (a bank shot: between hoop and board).

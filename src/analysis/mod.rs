@@ -1,4 +1,5 @@
-//! What a shooter can learn from a shot: its aim, its sensitivity, how it is missed, and maps about it.
+//! What a shooter can learn from a shot: its aim, its sensitivity, how it is missed, and maps about
+//! it.
 
 pub mod aim_past_hoop;
 pub mod miss_breakdown;

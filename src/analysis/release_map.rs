@@ -1,9 +1,10 @@
-//! Outcomes and P over speed and pitch angle, the other nominal values fixed: the paper's Figs. 12 to 15, and
-//! what a shooter's errors make of them.
+//! Outcomes and P over speed and pitch angle, the other nominal values fixed: the paper's Figs. 12
+//! to 15, and what a shooter's errors make of them.
 //!
-//! P at a point is Eq. 25. Every cell, and the cells beyond the map's edges that errors reach, gets a few shots
-//! with errors in polar angle and backspin from a Kronecker sequence. The shares of made shots are averaged with
-//! the normal densities of speed and pitch angle. Other errors are left out.
+//! P at a point is Eq. 25. Every cell, and the cells beyond the map's edges that errors reach, gets
+//! a few shots with errors in polar angle and backspin from a Kronecker sequence. The shares of
+//! made shots are averaged with the normal densities of speed and pitch angle. Other errors are
+//! left out.
 
 use crate::dynamics::{BatchWorkspace, OutcomeKind, ReleaseWithoutSpeed};
 use crate::math::normal_distribution;
@@ -48,7 +49,8 @@ impl ReleaseCells {
     }
 }
 
-/// The outcome of the error-free shot at the centre of each cell, row by row from the lowest pitch angle.
+/// The outcome of the error-free shot at the centre of each cell, row by row from the lowest pitch
+/// angle.
 #[must_use]
 pub fn outcomes(profile: &Profile, nominal: &Nominal, cells: &ReleaseCells) -> Vec<OutcomeKind> {
     (0..cells.rows * cells.columns)
@@ -68,7 +70,8 @@ pub fn outcomes(profile: &Profile, nominal: &Nominal, cells: &ReleaseCells) -> V
         .collect()
 }
 
-/// P of the nominal shot at the centre of each cell under the four errors of Eq. 25, in the same order.
+/// P of the nominal shot at the centre of each cell under the four errors of Eq. 25, in the same
+/// order.
 #[must_use]
 pub fn probabilities(profile: &Profile, nominal: &Nominal, cells: &ReleaseCells) -> Vec<f64> {
     let map = ProbabilityMap::new(profile, nominal, cells);
@@ -179,7 +182,8 @@ impl<'a> ProbabilityMap<'a> {
             .collect()
     }
 
-    /// The values of [`ProbabilityMap::average_over_speed`], averaged over the error in pitch angle.
+    /// The values of [`ProbabilityMap::average_over_speed`], averaged over the error in pitch
+    /// angle.
     fn average_over_pitch(&self, by_row: &[Vec<f64>]) -> Vec<f64> {
         let sigma = self.profile.shooter().dispersion.c20_rad / self.step.1;
         let (_, rows) = self.size();

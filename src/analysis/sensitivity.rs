@@ -1,10 +1,11 @@
-//! How P depends on the errors of the shooter, on backspin and on the height of the release, and how wide the
-//! windows of a shot are.
+//! How P depends on the errors of the shooter, on backspin and on the height of the release, and
+//! how wide the windows of a shot are.
 //!
 //! Every comparison is between two shots, or two shooters, under the same Sobol points
-//! (`probability/shared_sample.rs`). Each scramble gives a difference, and the scatter of these gives its
-//! standard error. A shooter without an error, another backspin and another height are simulated. A shooter with a
-//! tenth less of an error, and other speeds of a shot, reuse the shots of the nearest simulated one.
+//! (`probability/shared_sample.rs`). Each scramble gives a difference, and the scatter of these
+//! gives its standard error. A shooter without an error, another backspin and another height are
+//! simulated. A shooter with a tenth less of an error, and other speeds of a shot, reuse the shots
+//! of the nearest simulated one.
 
 use super::aim_past_hoop::with_same_aim;
 use crate::probability::{MadeReleases, Progress, SharedSample, Silent};
@@ -47,7 +48,8 @@ impl Difference {
 pub struct ShotWindow {
     /// The variable.
     pub variable: NominalVariable,
-    /// Lowest and highest value, SI units; `None` if the error-free shot is missed, or was not computed.
+    /// Lowest and highest value, SI units; `None` if the error-free shot is missed, or was not
+    /// computed.
     pub ends: Option<(f64, f64)>,
 }
 
@@ -245,7 +247,8 @@ impl<'a> Comparison<'a> {
         }
         let most = shooter.max_backspin_rad_s;
         if topics.backspin && most > 0.0 {
-            // Evenly spaced, from none to the shooter's limit. (They do not change the kind of the shot.)
+            // Evenly spaced, from none to the shooter's limit. (They do not change the kind of the
+            // shot.)
             for i in 0..BACKSPINS {
                 let value = most * i as f64 / (BACKSPINS - 1) as f64;
                 let shot = nominal.with(NominalVariable::Backspin, value);
@@ -318,8 +321,8 @@ impl<'a> Comparison<'a> {
         difference(&shares, &own)
     }
 
-    /// The shares of a shot that is near a simulated one: from its shots, or from new ones if the two overlap too
-    /// little.
+    /// The shares of a shot that is near a simulated one: from its shots, or from new ones if the
+    /// two overlap too little.
     fn shares_near(
         &self,
         sample: &SharedSample,
@@ -337,8 +340,8 @@ impl<'a> Comparison<'a> {
             })
     }
 
-    /// Gain in P of a variant over `own`, at the best of a few speeds with which the shot is of the same kind,
-    /// direct or bank; `None` if there is no such speed.
+    /// Gain in P of a variant over `own`, at the best of a few speeds with which the shot is of the
+    /// same kind, direct or bank; `None` if there is no such speed.
     fn gain_re_optimised(
         &self,
         sample: &SharedSample,

@@ -9,8 +9,8 @@ const MAX_MOVES: u32 = 200;
 /// Times that the steps are halved.
 const HALVINGS: u32 = 2;
 
-/// First step along a variable, SI units. That of the speed is relative to the parabola through the hoop's
-/// centre.
+/// First step along a variable, SI units. That of the speed is relative to the parabola through the
+/// hoop's centre.
 fn first_step(variable: NominalVariable) -> f64 {
     match variable {
         NominalVariable::Speed => 0.06,
@@ -27,7 +27,8 @@ pub(super) struct Climb<'a> {
 }
 
 impl Climb<'_> {
-    /// Climbs from a start on `value`, the number of made shots; returns the local optimum of the same kind.
+    /// Climbs from a start on `value`, the number of made shots; returns the local optimum of the
+    /// same kind.
     pub(super) fn run(
         &self,
         kind: ShotKind,
@@ -64,8 +65,8 @@ impl Climb<'_> {
         best.1
     }
 
-    /// The nominal shot moved along one variable and kept within the limits. A move in pitch changes the
-    /// speed too, so that the path still passes the hoop at the same point.
+    /// The nominal shot moved along one variable and kept within the limits. A move in pitch
+    /// changes the speed too, so that the path still passes the hoop at the same point.
     fn moved(&self, from: &Nominal, variable: NominalVariable, by: f64) -> Nominal {
         let search = self.profile.search();
         let searches_speed = search.choice.includes(NominalVariable::Speed);

@@ -31,8 +31,8 @@ pub struct PhysicsRow {
     pub first_shot: Option<Estimate>,
 }
 
-/// The physics of a profile, every preset, and single changes: of the profile's own physics if it has air, of
-/// `ncaa` otherwise.
+/// The physics of a profile, every preset, and single changes: of the profile's own physics if it
+/// has air, of `ncaa` otherwise.
 #[must_use]
 pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
     let variant = |name: &str, physics: &Physics| PhysicsVariant {
@@ -86,7 +86,8 @@ fn set_restitution(physics: &mut Physics, restitution: f64) {
         .expect("between 0 and 1");
 }
 
-/// The best shots of a profile under each physics. One under which the profile is not valid is left out.
+/// The best shots of a profile under each physics. One under which the profile is not valid is left
+/// out.
 ///
 /// # Errors
 /// There is no plan under the first of them.

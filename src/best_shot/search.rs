@@ -1,11 +1,12 @@
 //! The search for the best shots, refined off the grid.
 //!
-//! For each kind, a coarse table of everything the shooter can intend gives a few starts, far apart. From each
-//! start a pattern search climbs on P itself, integrated with the same Sobol points everywhere (common random
-//! numbers). About the highest optimum a finer table, a window, gives P of all nominal shots to about 0.001.
-//! While its best shot lies at the window's edge, the window moves on. A parabola along each axis finds the
-//! optimum between the points of the table. P of the winner is computed again with independent scrambles, so it is
-//! not the largest of many noisy values.
+//! For each kind, a coarse table of everything the shooter can intend gives a few starts, far
+//! apart. From each start a pattern search climbs on P itself, integrated with the same Sobol
+//! points everywhere (common random numbers). About the highest optimum a finer table, a window,
+//! gives P of all nominal shots to about 0.001. While its best shot lies at the window's edge, the
+//! window moves on. A parabola along each axis finds the optimum between the points of the table. P
+//! of the winner is computed again with independent scrambles, so it is not the largest of many
+//! noisy values.
 
 use super::pattern_search::Climb;
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
@@ -80,10 +81,11 @@ pub struct BestShot {
     pub curves: Vec<ProbabilityCurve>,
     /// How P depends on errors, spin and height.
     pub sensitivity: Sensitivity,
-    /// Where the undisturbed path passes the plane of the hoop: past the centre along its own direction, m
-    /// (positive is long).
+    /// Where the undisturbed path passes the plane of the hoop: past the centre along its own
+    /// direction, m (positive is long).
     pub aim_past_centre_m: Option<f64>,
-    /// Upper bound of the probability that errors lead outside the table's pitch angles and backspins.
+    /// Upper bound of the probability that errors lead outside the table's pitch angles and
+    /// backspins.
     pub mass_outside: f64,
     /// Limits of the search that the shot lies at.
     pub at_limits: Vec<Limit>,
@@ -151,8 +153,8 @@ pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<BestShots, Bes
     Ok(BestShots { plan, direct, bank })
 }
 
-/// Finds the best shots of some kinds, in their order, with some topics of their sensitivity. The result of a
-/// kind does not depend on the others.
+/// Finds the best shots of some kinds, in their order, with some topics of their sensitivity. The
+/// result of a kind does not depend on the others.
 ///
 /// # Errors
 /// As [`find`].
@@ -185,8 +187,8 @@ pub fn find_kinds(
     Ok((plan, shots))
 }
 
-/// The side spins from which the search starts: the fixed one; or none and the limits. One limit is enough if
-/// the other is its mirror image.
+/// The side spins from which the search starts: the fixed one; or none and the limits. One limit is
+/// enough if the other is its mirror image.
 fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
     let most = profile.shooter().max_side_spin_rad_s;
     let is_searched = profile.search().choice.includes(NominalVariable::SideSpin);
@@ -275,7 +277,8 @@ impl BestShotSearch<'_> {
         let mut window = self.move_window(kind, start)?;
         let searches_side_spin = search.choice.includes(NominalVariable::SideSpin);
         if !self.profile.shooter().dispersion.is_of_eq_25() || searches_side_spin {
-            // The table has four independent errors and one side spin. The samples have all of them.
+            // The table has four independent errors and one side spin. The samples have all of
+            // them.
             let points = COMPARISON_FACTOR * search.climb_samples;
             window.nominal = self.climb(kind, window.nominal, &sampler, &scramble, points);
             window.plan = self.plan.window(self.profile, &window.nominal)?;
@@ -416,8 +419,8 @@ impl BestShotSearch<'_> {
         Ok(window)
     }
 
-    /// The top of the parabola through a table's best shot and two others, along each axis. If the parabola has
-    /// no top between them, or leads to the other kind, the table's best shot itself.
+    /// The top of the parabola through a table's best shot and two others, along each axis. If the
+    /// parabola has no top between them, or leads to the other kind, the table's best shot itself.
     fn between_points(
         &self,
         kind: ShotKind,
@@ -495,8 +498,8 @@ impl BestShotSearch<'_> {
     }
 }
 
-/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles away from those
-/// before.
+/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles away
+/// from those before.
 fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
     let mut order: Vec<(usize, Candidate)> = maxima
         .iter()

@@ -1,7 +1,9 @@
-//! The best shots of one kind for a grid of distances and court angles, for a program to interpolate in.
+//! The best shots of one kind for a grid of distances and court angles, for a program to
+//! interpolate in.
 
 use super::search::{BestShot, BestShotError, find_kinds};
 use crate::analysis::sensitivity::SensitivityTopics;
+use crate::dynamics::OutcomeKind;
 use crate::probability::{MAX_SHOTS, Progress, Sampler, Silent};
 use crate::search_space::PlanError;
 use crate::shooter::{
@@ -19,15 +21,19 @@ pub struct TableShot {
     pub probability: f64,
     /// Its standard error.
     pub standard_error: f64,
-    /// Time from the release until the error-free shot is made, s.
+    /// How the error-free shot goes in.
+    pub outcome: OutcomeKind,
+    /// Time from the release until the error-free shot is made, s. It includes all bounces.
     pub time_s: f64,
-    /// Angle at which the error-free shot falls through the plane of the hoop, rad.
+    /// Angle at which the error-free shot falls through the hoop at last, rad.
     pub entry_rad: Option<f64>,
-    /// Widths of the ranges of speed (m/s) and pitch angle (rad) in which an otherwise exact shot is made.
+    /// Widths of the ranges of speed (m/s) and pitch angle (rad) in which an otherwise exact shot
+    /// is made.
     pub tolerances: [f64; 2],
 }
 
-/// P of the shot that is interpolated between four nodes (two where there is one angle), against the best shot there.
+/// P of the shot that is interpolated between four nodes (two where there is one angle), against
+/// the best shot there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InterpolationCheck {
     /// The place.
@@ -121,6 +127,7 @@ impl ShotTable {
                     aim_rad: shot.nominal.polar_rad - angle_rad,
                     probability: shot.estimate.probability,
                     standard_error: shot.estimate.standard_error,
+                    outcome: shot.outcome.kind,
                     time_s: shot.outcome.verdict.time_s,
                     entry_rad: shot.outcome.entry.map(|entry| entry.angle_rad),
                     tolerances: [0, 1].map(|i| shot.sensitivity.windows[i].width()),
@@ -161,7 +168,8 @@ impl ShotTable {
         self.shots[angle * self.distances_m.len() + distance].as_ref()
     }
 
-    /// The shot at a place inside the table, linear in distance and court angle; `None` where a node has no shot.
+    /// The shot at a place inside the table, linear in distance and court angle; `None` where a
+    /// node has no shot.
     #[must_use]
     pub fn interpolated(&self, location: Location) -> Option<Nominal> {
         let (d, along) = cell(&self.distances_m, location.distance_m)?;
@@ -199,7 +207,8 @@ impl ShotTable {
     }
 }
 
-/// The cell of ascending values that a value is in, and how far into it, 0 to 1. One value alone is a cell of no width.
+/// The cell of ascending values that a value is in, and how far into it, 0 to 1. One value alone is
+/// a cell of no width.
 fn cell(values: &[f64], value: f64) -> Option<(usize, f64)> {
     let (first, last) = (*values.first()?, *values.last()?);
     if !(first..=last).contains(&value) {

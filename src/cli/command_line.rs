@@ -1,4 +1,5 @@
-//! The command line: the commands, and the flags that all of them have. Each command declares its own in its file.
+//! The command line: the commands, and the flags that all of them have. Each command declares its
+//! own in its file.
 
 use super::commands::advise::AdviseOptions;
 use super::commands::best::BestOptions;
@@ -70,7 +71,8 @@ pub(crate) enum Command {
     Team(TeamOptions),
     /// Make a table of best shots over distances and angles, for a machine.
     Table(TableOptions),
-    /// Fit a profile to measured shots: releases, landings of a gym sensor, or tracked trajectories.
+    /// Fit a profile to measured shots: releases, landings of a gym sensor, or tracked
+    /// trajectories.
     Fit(FitOptions),
     /// Say what a measured shooter should change and train, and how sure that is.
     Advise(AdviseOptions),
@@ -78,14 +80,15 @@ pub(crate) enum Command {
     CompareSessions(CompareSessionsOptions),
     /// Say what a shooting test of some size will tell.
     Design(DesignOptions),
-    /// Draw maps of bank and direct shots: over the court of a sweep, or over speed and pitch at one location.
+    /// Draw maps of bank and direct shots: over the court of a sweep, or over speed and pitch at
+    /// one location.
     Compare(CompareOptions),
     /// Check a profile or a sweep and list everything that is wrong with it.
     Check(CheckOptions),
     /// Compare the best shots under the presets of physics and under single changes of it.
     Physics(PhysicsOptions),
-    /// Say what `best` or `sweep` would simulate, how long it takes and how much memory it needs. For a profile,
-    /// also check that the search range misses no makes.
+    /// Say what `best` or `sweep` would simulate, how long it takes and how much memory it needs.
+    /// For a profile, also check that the search range misses no makes.
     Plan(PlanOptions),
     /// Compute the probability of making one nominal shot, under up to nine errors.
     Probability(ProbabilityOptions),
@@ -101,7 +104,8 @@ pub(crate) enum Command {
     Missing(MissingOptions),
     /// Join the shards of a sweep into its tables.
     Merge(MergeOptions),
-    /// Write one HTML page of a run: the answer, tables, maps, and the shots in a view that you can turn.
+    /// Write one HTML page of a run: the answer, tables, maps, and the shots in a view that you can
+    /// turn.
     Report(ReportOptions),
     /// Simulate one shot and list its events.
     Trace(TraceOptions),

@@ -8,7 +8,7 @@ use bankshot::config::{
 };
 use bankshot::dynamics::Integrator;
 use bankshot::model::{PRESETS, Physics, Preset};
-use bankshot::shooter::{Profile, implausible_values};
+use bankshot::shooter::{Profile, implausible_values, nominal_values_not_fixed};
 use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
@@ -75,7 +75,8 @@ pub(crate) fn load_profile_with_text(
     // The profile itself must be valid, with its own physics.
     let own = parse_profile(&text, &origin)?;
     if !quiet {
-        for words in implausible_values(&own) {
+        let not_fixed = nominal_values_not_fixed(&own);
+        for words in implausible_values(&own).into_iter().chain(not_fixed) {
             print_remark(&format!("warning: {words}"));
         }
     }

@@ -23,18 +23,21 @@ use std::path::{Path, PathBuf};
 pub(crate) struct MeasuredShotsOptions {
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
-    /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a TOML file with its
-    /// noise [default: lab for releases, noah for landings, optical_25hz for trajectories].
+    /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a
+    /// TOML file with its noise [default: lab for releases, noah for landings, optical_25hz for
+    /// trajectories].
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
-    /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed_ft_s=ReleaseSpeed:mph'; may be repeated.
+    /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
+    /// 'made=Result'; may be repeated.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
-    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre) or court_94x50 (from a corner).
+    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre) or court_94x50
+    /// (from a corner).
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
     pub(crate) frame: String,
-    /// Instead of --frame: where the hoop's centre is in the coordinates of the file, and the direction of x that leads
-    /// onto the court, such as '5.25 ft,25 ft,+x'.
+    /// Instead of --frame: where the hoop's centre is in the coordinates of the file, and the
+    /// direction of x that leads onto the court, such as '5.25 ft,25 ft,+x'.
     #[arg(long, value_name = "X,Y,DIRECTION", allow_hyphen_values = true)]
     pub(crate) hoop: Option<String>,
     /// Distance of the place from the hoop's centre, where the file has no column for it.
@@ -46,11 +49,13 @@ pub(crate) struct MeasuredShotsOptions {
     /// Height of the release above the floor.
     #[arg(long, value_name = "LENGTH")]
     pub(crate) release_height: Option<String>,
-    /// Backspin, where it was not measured [default: that of the population, 2.5 rev/s give or take 0.25].
+    /// Backspin, where it was not measured [default: that of the population, 2.5 rev/s give or take
+    /// 0.25].
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// Distribution of the releases about the aim: normal, student (heavier tails, as heavy as the shots ask for), or auto
-    /// (student where the kurtosis of the shots is too great for normal ones).
+    /// Distribution of the releases about the aim: normal, student (heavier tails, as heavy as the
+    /// shots ask for), or auto (student where the kurtosis of the shots is too great for normal
+    /// ones).
     #[arg(long, value_name = "NAME", default_value = "auto")]
     pub(crate) tails: TailsArg,
     /// Seed of the posterior's draws.

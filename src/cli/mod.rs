@@ -108,7 +108,8 @@ fn manual_page(command: Option<&str>) -> Result<String, Failure> {
     clap_mangen::Man::new(page)
         .render(&mut text)
         .map_err(|error| Failure::io("the manual page", &error))?;
-    // The page of a command is not installed under a name of its own: it is printed by `bankshot man COMMAND`.
+    // The page of a command is not installed under a name of its own: it is printed by `bankshot
+    // man COMMAND`.
     let mut text = String::from_utf8_lossy(&text).into_owned();
     for command in Arguments::command().get_subcommands() {
         let name = command.get_name().replace('-', "\\-");

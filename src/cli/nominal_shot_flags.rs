@@ -19,11 +19,12 @@ pub(crate) struct NominalOptions {
     /// Pitch angle of the release, such as '52 deg'.
     #[arg(long, allow_hyphen_values = true)]
     pitch: Option<String>,
-    /// Polar angle of the release, from the court's long axis like the court angle [default: the profile's, else
-    /// that towards the hoop's centre].
+    /// Polar angle of the release, from the court's long axis like the court angle [default: the
+    /// profile's, else that towards the hoop's centre].
     #[arg(long, allow_hyphen_values = true)]
     polar: Option<String>,
-    /// Instead of --polar: the angle of the release from the line to the hoop's centre, such as '0.3 deg'.
+    /// Instead of --polar: the angle of the release from the line to the hoop's centre, such as
+    /// '0.3 deg'.
     #[arg(long, allow_hyphen_values = true, conflicts_with = "polar")]
     aim: Option<String>,
     /// Backspin [default: the profile's, else none].

@@ -9,7 +9,8 @@ use bankshot::shooter::Profile;
 use bankshot::sweep::SweepConfig;
 use std::path::{Path, PathBuf};
 
-/// The file beside the plots of a sweep that names the sweep's folder, and that of the sweep it is compared with.
+/// The file beside the plots of a sweep that names the sweep's folder, and that of the sweep it is
+/// compared with.
 pub(crate) const SWEEP_LINK: &str = "of_sweep.json";
 /// The folder, in that of a comparison, of the best shots of the other shooter.
 pub(crate) const AGAINST_FOLDER: &str = "against";
@@ -27,8 +28,9 @@ const FILES: [&str; 7] = [
 /// The link, beside the numbered folders of a name, to the one that was written last.
 const LATEST: &str = "latest";
 
-/// The numbered folder of a run in `parent/NAME`: the first one that holds this very configuration, or nothing yet. So the
-/// same run again finds its folder, and another configuration of the same name never overwrites it.
+/// The numbered folder of a run in `parent/NAME`: the first one that holds this very configuration,
+/// or nothing yet. So the same run again finds its folder, and another configuration of the same
+/// name never overwrites it.
 fn numbered(parent: &Path, name: &str, hash: &str) -> PathBuf {
     let of_name = parent.join(safe_name(name));
     let mut number = 1;
@@ -144,7 +146,8 @@ pub(crate) fn write_best_shots(
     Ok(())
 }
 
-/// Removes the files that [`write_best_shots`] wrote into a folder, and the folder if nothing else is in it.
+/// Removes the files that [`write_best_shots`] wrote into a folder, and the folder if nothing else
+/// is in it.
 pub(crate) fn remove_best_shots(folder: &Path) {
     for name in FILES {
         // A file that does not exist needs no removal.

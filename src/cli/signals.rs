@@ -29,8 +29,8 @@ fn exit(exit_code: u8) -> ! {
 #[cfg(unix)]
 pub(crate) fn handle() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    // If the handler cannot be set, the default one ends the program too, but leaves temporary files.
-    // SIGHUP stays ignored if the parent process ignores it, as `nohup` does.
+    // If the handler cannot be set, the default one ends the program too, but leaves temporary
+    // files. SIGHUP stays ignored if the parent process ignores it, as `nohup` does.
     let handled = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
         .filter(|&signal| signal != SIGHUP || !is_ignored(signal));

@@ -24,7 +24,8 @@ pub(crate) fn print_remark(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
 }
 
-/// The text without characters that steer a terminal or turn the direction of text: a message can quote any file.
+/// The text without characters that steer a terminal or turn the direction of text: a message can
+/// quote any file.
 fn harmless(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {

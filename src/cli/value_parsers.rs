@@ -9,8 +9,8 @@ use clap::{Args, ValueEnum};
 /// Another physics than that of the file.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct PhysicsArg {
-    /// The physics: a preset (paper, ncaa, ncaa_women, nba, wnba, fiba, fiba_women, youth), or a TOML file with a
-    /// [physics] table.
+    /// The physics: a preset (paper, ncaa, ncaa_women, nba, wnba, fiba, fiba_women, youth), or a
+    /// TOML file with a [physics] table.
     #[arg(long, value_name = "PRESET|FILE")]
     pub(crate) physics: Option<String>,
 }

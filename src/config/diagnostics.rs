@@ -33,8 +33,8 @@ const MAX_SHOWN: usize = 50;
 const LONGEST_QUOTE: usize = 1000;
 
 impl ConfigError {
-    /// One error as text: what is wrong, and the line where. Only that line is given to the renderer, since it walks
-    /// through all of its text.
+    /// One error as text: what is wrong, and the line where. Only that line is given to the
+    /// renderer, since it walks through all of its text.
     fn render(&self, renderer: &Renderer, diagnostic: &Diagnostic) -> String {
         let title = if diagnostic.key.is_empty() {
             diagnostic.message.clone()

@@ -23,8 +23,8 @@ pub struct NamedLocations {
 /// Longest name of a location, in characters.
 const LONGEST_NAME: usize = 100;
 
-/// Parses the locations of a CSV text with the columns x and y, or distance and court_angle, with their
-/// units, and an optional column name. Other columns are ignored.
+/// Parses the locations of a CSV text with the columns x and y, or distance and court_angle, with
+/// their units, and an optional column name. Other columns are ignored.
 ///
 /// # Errors
 /// The columns are missing, or a row is wrong; its number is in the message.

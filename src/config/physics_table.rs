@@ -9,8 +9,8 @@ use crate::units::Dimension;
 /// Steps of the paper's integrator that a file can give, s.
 const PAPER_STEPS_S: std::ops::RangeInclusive<f64> = 1e-7..=0.1;
 
-/// Parses a file with a `[physics]` table; everything else in it is ignored. `origin` names the file in
-/// messages.
+/// Parses a file with a `[physics]` table; everything else in it is ignored. `origin` names the
+/// file in messages.
 ///
 /// # Errors
 /// Everything that is wrong with the table.
@@ -170,7 +170,8 @@ fn kelvin(text: &str) -> Option<f64> {
     }
 }
 
-/// The density of dry air with the pressure of the International Standard Atmosphere (ISO 2533) at an altitude.
+/// The density of dry air with the pressure of the International Standard Atmosphere (ISO 2533) at
+/// an altitude.
 fn density_of_air_kg_m3(altitude_m: f64, kelvin: f64) -> f64 {
     const GAS_CONSTANT: f64 = 287.053;
     let pressure_pa = 101_325.0 * libm::pow(1.0 - 2.255_77e-5 * altitude_m, 5.255_88);
@@ -219,8 +220,8 @@ impl ContactKeys {
     }
 }
 
-/// Reads the contacts with board and hoop. A `preset` whose contacts are defined by their restitutions keeps those
-/// when mass or stiffness change.
+/// Reads the contacts with board and hoop. A `preset` whose contacts are defined by their
+/// restitutions keeps those when mass or stiffness change.
 fn read_contacts(
     table: &mut TableReader<'_, '_>,
     physics: &mut Physics,
@@ -315,7 +316,8 @@ fn read_integrator(
 mod tests {
     use super::*;
 
-    /// Authority: the tables of ISO 2533 at 0 and 1500 m, and Denver's density as published for its summer.
+    /// Authority: the tables of ISO 2533 at 0 and 1500 m, and Denver's density as published for its
+    /// summer.
     #[test]
     fn val_density_of_air() {
         assert!((density_of_air_kg_m3(0.0, 288.15) - 1.225).abs() < 1e-3);

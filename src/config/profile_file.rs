@@ -77,8 +77,8 @@ pub(crate) fn read_settings(
     read_settings_of(root, settings, before, diagnostics)
 }
 
-/// Reads the tables besides shooter, nominal values, physics and location into `settings`, and checks all
-/// of them. The diagnostics from `before` on are those of this profile.
+/// Reads the tables besides shooter, nominal values, physics and location into `settings`, and
+/// checks all of them. The diagnostics from `before` on are those of this profile.
 pub(crate) fn read_settings_of(
     root: &mut TableReader<'_, '_>,
     mut settings: ProfileSettings,

@@ -58,8 +58,8 @@ impl<T: Real<Mask = bool>> ShotEndFlags<T> {
     }
 }
 
-/// How a shot ended, if it did, from the values of [`ShotEndFlags::map`]. If several rules apply, the first one
-/// counts.
+/// How a shot ended, if it did, from the values of [`ShotEndFlags::map`]. If several rules apply,
+/// the first one counts.
 #[inline(always)]
 pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<Ending> {
     if behind_board {
@@ -73,14 +73,15 @@ pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<
     }
 }
 
-/// Whether the centre is below `z = -(R + r)` (r the radius of the rod) and falls. The ring can no longer touch the ball, and the shot ends.
+/// Whether the centre is below `z = -(R + r)` (r the radius of the rod) and falls. The ring can no
+/// longer touch the ball, and the shot ends.
 #[inline(always)]
 pub(crate) fn fell_below_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     state.position_m.z.lt(-params.ring.reach) & state.velocity_m_s.z.is_negative()
 }
 
-/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -(R + r)` (r the radius of the rod). One that never
-/// rises so high ends at its highest point.
+/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -(R + r)`
+/// (r the radius of the rod). One that never rises so high ends at its highest point.
 #[inline(always)]
 pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     let height = params.splat(-1.0) * params.ring.reach - TOUCH_GAP_M;
@@ -90,8 +91,9 @@ pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T
 /// A ball faster than this is one that no accurate step gives, m/s.
 const LARGEST_SPEED_M_S: f64 = 1000.0;
 
-/// Whether the numerics have lost a ball: its speed is above the limit, or not a number. (Seen where gravity is a
-/// hundred times that of the earth, and a step of a contact crosses the whole hoop.) Such a shot is unresolved.
+/// Whether the numerics have lost a ball: its speed is above the limit, or not a number. (Seen
+/// where gravity is a hundred times that of the earth, and a step of a contact crosses the whole
+/// hoop.) Such a shot is unresolved.
 #[inline(always)]
 pub(crate) fn has_diverged<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     let largest = params.splat(LARGEST_SPEED_M_S * LARGEST_SPEED_M_S);

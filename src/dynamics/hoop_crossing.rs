@@ -1,10 +1,11 @@
-//! How the ball crosses the plane of the hoop: with the contacts, this decides between made and missed.
+//! How the ball crosses the plane of the hoop: with the contacts, this decides between made and
+//! missed.
 //!
-//! A shot is made if it falls through `z = -R` inside the ring, has been above the plane of the hoop, and
-//! its centre never rose through the hoop from below. The last condition is the paper's, taken literally: a ball that
-//! dips below the plane inside the ring and bounces up through it again is missed, even if it then falls
-//! in (6 of 1000 shots that would count as made without this condition are missed with it; `docs/model.md`
-//! gives the measured effect).
+//! A shot is made if it falls through `z = -R` inside the ring, has been above the plane of the
+//! hoop, and its centre never rose through the hoop from below. The last condition is the paper's,
+//! taken literally: a ball that dips below the plane inside the ring and bounces up through it
+//! again is missed, even if it then falls in (6 of 1000 shots that would count as made without this
+//! condition are missed with it; `docs/model.md` gives the measured effect).
 
 use super::flight::FlightSegment;
 use crate::math::real::Real;
@@ -51,8 +52,8 @@ impl<T: Real> HoopCrossing<T> {
         self.has_been_above = self.has_been_above | (segment.rises & flying);
     }
 
-    /// Updates the crossings after a step in contact to `after`, in the lanes of `stepped`; `was_below` tells where
-    /// the centre was below the plane of the hoop.
+    /// Updates the crossings after a step in contact to `after`, in the lanes of `stepped`;
+    /// `was_below` tells where the centre was below the plane of the hoop.
     #[inline(always)]
     pub(crate) fn after_step(
         &mut self,

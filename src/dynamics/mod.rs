@@ -1,8 +1,9 @@
 //! The ball in flight and in contact: from a release to made or missed.
 //!
 //! [`Simulator`] is the interface. Behind it are two integrators: the default
-//! [`Integrator::EventDriven`], and the paper's own method, [`Integrator::PaperRk4`]. Both use the same
-//! solids, normal force and sliding friction (Eqs. 2-14 of the paper); the default adds rolling.
+//! [`Integrator::EventDriven`], and the paper's own method, [`Integrator::PaperRk4`]. Both use the
+//! same solids, normal force and sliding friction (Eqs. 2-14 of the paper); the default adds
+//! rolling.
 //!
 //! # Terms
 //!
@@ -24,9 +25,10 @@
 //! | block | the shots in the lanes of one step |
 //! | phase | the kind of segment that a shot waits for |
 //!
-//! The type parameter `T` is the number type: `f64` for one shot, a SIMD number for one shot a lane. A constant
-//! in all lanes needs a token of the vector instructions, which every SIMD number holds: so `x.zero()` is zero in
-//! the lanes of `x`. `a.select(mask, b)` is `a` where `mask` holds and `b` elsewhere.
+//! The type parameter `T` is the number type: `f64` for one shot, a SIMD number for one shot a
+//! lane. A constant in all lanes needs a token of the vector instructions, which every SIMD number
+//! holds: so `x.zero()` is zero in the lanes of `x`. `a.select(mask, b)` is `a` where `mask` holds
+//! and `b` elsewhere.
 
 mod batch;
 mod contact;

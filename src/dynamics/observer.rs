@@ -1,7 +1,7 @@
 //! Observers of a running shot.
 //!
-//! The integrators report to an [`Observer`]. The silent one, `()`, costs nothing. So the loop that feeds a
-//! probability and the one that records a trajectory are the same code.
+//! The integrators report to an [`Observer`]. The silent one, `()`, costs nothing. So the loop that
+//! feeds a probability and the one that records a trajectory are the same code.
 
 use super::flight::FlightPath;
 use crate::math::vector::Vec3;

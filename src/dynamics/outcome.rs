@@ -1,15 +1,16 @@
 //! How a shot ended: made or missed, in what way, and what it touched.
 //!
-//! The types build on each other. An [`Ending`] says why the simulation stopped. A [`Verdict`] adds made or
-//! missed, and the contacts: all that a probability needs, and all that a batch computes. An [`Outcome`] adds
-//! what people ask about one shot: its [`OutcomeKind`] (swish, long, in-and-out ...), its entry and its apex.
+//! The types build on each other. An [`Ending`] says why the simulation stopped. A [`Verdict`] adds
+//! made or missed, and the contacts: all that a probability needs, and all that a batch computes.
+//! An [`Outcome`] adds what people ask about one shot: its [`OutcomeKind`] (swish, long, in-and-out
+//! ...), its entry and its apex.
 
 use crate::model::SolidId;
 use serde::Serialize;
 use std::fmt;
 
-/// The contacts of a shot in order: the first [`ContactSequence::KEPT`] by name, and the number with each
-/// solid.
+/// The contacts of a shot in order: the first [`ContactSequence::KEPT`] by name, and the number
+/// with each solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactSequence {
     /// Two bits for each contact, from the lowest.
@@ -98,7 +99,8 @@ pub enum Ending {
     Lodged,
     /// The time limit was reached.
     TimeLimit,
-    /// The numerics gave up: an iteration limit was reached. The shot counts neither as made nor as missed.
+    /// The numerics gave up: an iteration limit was reached. The shot counts neither as made nor as
+    /// missed.
     Unresolved,
 }
 
@@ -137,8 +139,8 @@ pub enum OutcomeKind {
     Wide,
     /// Missed: the ball went behind the board ([`Ending::BehindBoard`]), over it or past its edge.
     OverBoard,
-    /// Missed: the ball never came off ring and board ([`Ending::Lodged`]), or was still in play at the time
-    /// limit.
+    /// Missed: the ball never came off ring and board ([`Ending::Lodged`]), or was still in play at
+    /// the time limit.
     Lodged,
     /// Missed without touching anything.
     Airball,
@@ -233,7 +235,7 @@ pub struct Outcome {
     pub first_touch_s: Option<f64>,
     /// Position of the centre at the first touch of the board (x, y, z), m.
     pub board_point_m: Option<(f64, f64, f64)>,
-    /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop:
-    /// distance to the right of the centre, facing the hoop (a bank shot: the board), m.
+    /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the
+    /// hoop: distance to the right of the centre, facing the hoop (a bank shot: the board), m.
     pub right_of_centre_m: f64,
 }

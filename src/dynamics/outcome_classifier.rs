@@ -1,5 +1,5 @@
-//! Derives the full [`Outcome`] of a shot from what an observer sees: how it was made or missed, its entry
-//! and its apex.
+//! Derives the full [`Outcome`] of a shot from what an observer sees: how it was made or missed,
+//! its entry and its apex.
 
 use super::flight::{FlightPath, falls_through, highest_point_m};
 use super::observer::{Impulses, Observer};
@@ -19,9 +19,11 @@ pub(crate) struct OutcomeClassifier {
     apex_m: f64,
     was_inside: bool,
     board_point_m: Option<(f64, f64, f64)>,
-    /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the hoop.
+    /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the
+    /// hoop.
     undisturbed_crossing_m: Option<(f64, f64)>,
-    /// The next flight is the one from the release, or the one off the board after a first contact there.
+    /// The next flight is the one from the release, or the one off the board after a first contact
+    /// there.
     awaits_flight: bool,
 }
 
@@ -57,8 +59,8 @@ impl OutcomeClassifier {
         self.was_inside |= (x * x + y * y).sqrt() < self.ring_radius_m;
     }
 
-    /// The point [`OutcomeClassifier::undisturbed_crossing_m`] relative to the hoop's centre: beyond it and to its right,
-    /// facing the hoop (a bank shot: the board), m.
+    /// The point [`OutcomeClassifier::undisturbed_crossing_m`] relative to the hoop's centre:
+    /// beyond it and to its right, facing the hoop (a bank shot: the board), m.
     fn aim_beyond_and_right(&self) -> (f64, f64) {
         let (x, y) = self.undisturbed_crossing_m.unwrap_or((0.0, 0.0));
         let (ahead_x, ahead_y) = self.towards_hoop;
@@ -110,7 +112,8 @@ impl OutcomeClassifier {
 impl Observer for OutcomeClassifier {
     fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, path: &FlightPath) {
         self.apex_m = self.apex_m.max(highest_point_m(params, path, dt));
-        // Once for each flight, not for each segment: every part of a hovering one would be followed to the end.
+        // Once for each flight, not for each segment: every part of a hovering one would be
+        // followed to the end.
         let is_wanted = std::mem::take(&mut self.awaits_flight);
         let (z, vz) = path.height_and_rate(dt);
         let crosses = z <= 0.0 && vz < 0.0;

@@ -4,7 +4,8 @@ use crate::math::vector::Vec3;
 use crate::model::BallState;
 use serde::Serialize;
 
-/// How and where the ball leaves the hand: the nine parameters of Eq. 18, in SI units. All must be finite.
+/// How and where the ball leaves the hand: the nine parameters of Eq. 18, in SI units. All must be
+/// finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Release {
     /// Horizontal distance r0 of the ball's centre from the hoop's axis, m.
@@ -17,10 +18,11 @@ pub struct Release {
     pub speed_m_s: f64,
     /// Pitch angle alpha0 above the horizontal, rad.
     pub pitch_rad: f64,
-    /// Polar angle beta0 of the vertical plane of flight, rad. It equals the court angle when the shot is
-    /// aimed at the hoop's axis.
+    /// Polar angle beta0 of the vertical plane of flight, rad. It equals the court angle when the
+    /// shot is aimed at the hoop's axis.
     pub polar_rad: f64,
-    /// Backspin omega_beta0, about the horizontal axis across the flight, rad/s; positive is backwards.
+    /// Backspin omega_beta0, about the horizontal axis across the flight, rad/s; positive is
+    /// backwards.
     pub backspin_rad_s: f64,
     /// Rifle spin omega_r0, about the horizontal flight direction, rad/s.
     pub rifle_spin_rad_s: f64,
@@ -58,7 +60,8 @@ impl Release {
     }
 }
 
-/// A release without its speed and backspin. Its sines and cosines are computed once for many shots.
+/// A release without its speed and backspin. Its sines and cosines are computed once for many
+/// shots.
 #[derive(Clone, Copy, Debug)]
 pub struct ReleaseWithoutSpeed {
     position_m: Vec3<f64>,

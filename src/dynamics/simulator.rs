@@ -66,8 +66,8 @@ impl Integrator {
     }
 
     /// # Errors
-    /// Zero steps per contact, a shortest step below 1e-9 s, a longest step below the shortest, or a step that
-    /// is not finite: shots would never end.
+    /// Zero steps per contact, a shortest step below 1e-9 s, a longest step below the shortest, or
+    /// a step that is not finite: shots would never end.
     pub(crate) fn check(self) -> Result<(), SimulatorError> {
         let refuse = |key, value, allowed| {
             Err(SimulatorError::Integrator {
@@ -98,8 +98,8 @@ impl Integrator {
 /// The numbers in which contacts are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Precision {
-    /// Single precision where that gives the same shares of made shots: for at most 16 steps per contact and a
-    /// ball like one in play. Double precision elsewhere.
+    /// Single precision where that gives the same shares of made shots: for at most 16 steps per
+    /// contact and a ball like one in play. Double precision elsewhere.
     #[serde(rename = "auto")]
     Automatic,
     /// Double precision.
@@ -110,9 +110,9 @@ pub enum Precision {
 /// More steps than this are taken for accuracy, so they are in double precision.
 const MAX_SINGLE_STEPS: u32 = 16;
 
-/// Whether rounding to single precision stays below the error of the steps: for a ball and a ring of about the size
-/// of those in play, and a bounce that is neither a hundred times shorter nor longer, nor nearly without
-/// rebound or loss.
+/// Whether rounding to single precision stays below the error of the steps: for a ball and a ring
+/// of about the size of those in play, and a bounce that is neither a hundred times shorter nor
+/// longer, nor nearly without rebound or loss.
 fn suits_single_precision(physics: &Physics) -> bool {
     (0.05..=0.5).contains(&physics.ball_radius_m)
         && (0.1..=1.0).contains(&physics.ring_radius_m)
@@ -126,10 +126,11 @@ fn suits_single_precision(physics: &Physics) -> bool {
 /// Steps in the world frame over the steps per contact. (Two solids together are stiffer.)
 const WORLD_STEP_FACTOR: f64 = 1.5;
 
-/// Steps in contact after which a shot is given up. A swirl of three seconds takes about 2,000 at the default
-/// steps; some constants that are far from any ball would take steps without end.
+/// Steps in contact after which a shot is given up. A swirl of three seconds takes about 1,000 at
+/// the default steps (four a contact of some 13 ms); some constants that are far from any ball would
+/// take steps without end. So many steps take 30 ms at most.
 fn max_steps(integrator: Integrator) -> u32 {
-    const STEPS: u32 = 20_000;
+    const STEPS: u32 = 10_000;
     const AT_STEPS_PER_CONTACT: u32 = 4;
     match integrator {
         Integrator::EventDriven {
@@ -229,8 +230,8 @@ impl Simulator {
     /// A simulator with the given integrator.
     ///
     /// # Errors
-    /// The first constant of `physics` that cannot be simulated, or steps of the integrator with which
-    /// shots would never end.
+    /// The first constant of `physics` that cannot be simulated, or steps of the integrator with
+    /// which shots would never end.
     pub fn with_integrator(
         physics: &Physics,
         integrator: Integrator,
@@ -265,8 +266,8 @@ impl Simulator {
         })
     }
 
-    /// The same simulator with other vector instructions for [`Simulator::verdicts`] (by default, the widest
-    /// of the machine). No result depends on them.
+    /// The same simulator with other vector instructions for [`Simulator::verdicts`] (by default,
+    /// the widest of the machine). No result depends on them.
     #[must_use]
     pub fn with_instructions(mut self, instructions: InstructionSet) -> Self {
         self.instructions = instructions;
@@ -285,15 +286,15 @@ impl Simulator {
         self.integrator
     }
 
-    /// The state of a ball that flies for `seconds` and touches nothing; negative for the past. The values must be
-    /// finite.
+    /// The state of a ball that flies for `seconds` and touches nothing; negative for the past. The
+    /// values must be finite.
     #[must_use]
     pub fn undisturbed_state(&self, start: &BallState, seconds: f64) -> BallState {
         state_after(&self.params, start, seconds)
     }
 
-    /// The state in which a ball that touches nothing falls through the height of the hoop, and the time until then, s.
-    /// `None` if it does not rise so high. The values must be finite.
+    /// The state in which a ball that touches nothing falls through the height of the hoop, and the
+    /// time until then, s. `None` if it does not rise so high. The values must be finite.
     #[must_use]
     pub fn undisturbed_fall_to_hoop(&self, start: &BallState) -> Option<(BallState, f64)> {
         falls_through(&self.params, start, 0.0)
@@ -315,8 +316,8 @@ impl Simulator {
         Ok(self.outcome(check_finite(0, start)?))
     }
 
-    /// The outcomes of many shots, in parallel on the current rayon pool. They are in the order of the
-    /// releases, and do not depend on the number of threads.
+    /// The outcomes of many shots, in parallel on the current rayon pool. They are in the order of
+    /// the releases, and do not depend on the number of threads.
     ///
     /// # Errors
     /// The first release with a NaN or infinite value.
@@ -333,11 +334,11 @@ impl Simulator {
             .collect()
     }
 
-    /// The verdicts of many shots from their nine state variables, on the current thread. This is the fast
-    /// form, in SIMD lanes; each verdict equals that of [`Simulator::simulate_state`] bit for bit. Give it
-    /// many shots at once: twenty thousand run a tenth slower than two hundred thousand, because the last
-    /// shots of a call leave lanes empty. The workspace takes a third of a megabyte, and 48 bytes for each
-    /// verdict.
+    /// The verdicts of many shots from their nine state variables, on the current thread. This is
+    /// the fast form, in SIMD lanes; each verdict equals that of [`Simulator::simulate_state`] bit
+    /// for bit. Give it many shots at once: twenty thousand run a tenth slower than two hundred
+    /// thousand, because the last shots of a call leave lanes empty. The workspace takes a third of
+    /// a megabyte, and 48 bytes for each verdict.
     ///
     /// # Errors
     /// The first state with a NaN or infinite value.
@@ -352,8 +353,8 @@ impl Simulator {
         Ok(self.finite_verdicts(starts, workspace))
     }
 
-    /// One shot with its events and its trajectory: a sample every `interval_s` in flight, and at every
-    /// step in contact.
+    /// One shot with its events and its trajectory: a sample every `interval_s` in flight, and at
+    /// every step in contact.
     ///
     /// # Errors
     /// The release has a NaN or infinite value.
@@ -376,7 +377,8 @@ impl Simulator {
         Ok(recorder.into_trace(classifier.outcome(verdict)))
     }
 
-    /// What the ball touches first in flight; `None` if nothing, or if it comes beside the board first.
+    /// What the ball touches first in flight; `None` if nothing, or if it comes beside the board
+    /// first.
     #[must_use]
     pub fn first_touch(&self, release: &Release) -> Option<SolidId> {
         let mut state = release.state();
@@ -393,8 +395,8 @@ impl Simulator {
         }
     }
 
-    /// Where an undisturbed shot falls through the plane of the hoop: its horizontal distance from the release, m;
-    /// `None` if it stays below that plane.
+    /// Where an undisturbed shot falls through the plane of the hoop: its horizontal distance from
+    /// the release, m; `None` if it stays below that plane.
     pub(crate) fn length_to_hoop_plane_m(&self, release: &Release) -> Option<f64> {
         let start = release.state();
         let (state, _) = falls_through(&self.params, &start, 0.0)?;
@@ -402,8 +404,8 @@ impl Simulator {
         Some((moved.x * moved.x + moved.y * moved.y).sqrt())
     }
 
-    /// Speed of the undisturbed shot that passes the height `z_m` at the horizontal distance `length_m`, m/s, in the
-    /// direction and with the spin of `release`; `None` if there is none.
+    /// Speed of the undisturbed shot that passes the height `z_m` at the horizontal distance
+    /// `length_m`, m/s, in the direction and with the spin of `release`; `None` if there is none.
     pub(crate) fn speed_through_m_s(
         &self,
         release: &Release,

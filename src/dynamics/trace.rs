@@ -64,7 +64,8 @@ pub struct Trace {
     pub outcome: Outcome,
     /// Release, touches, ends of contacts, and the end, in order.
     pub events: Vec<Event>,
-    /// The trajectory in order of time: evenly spaced in flight, and at least every millisecond in contact.
+    /// The trajectory in order of time: evenly spaced in flight, and at least every millisecond in
+    /// contact.
     pub samples: Vec<Sample>,
 }
 
@@ -85,8 +86,8 @@ pub(crate) struct Recorder {
 /// Longest time between two samples in contact, s.
 const CONTACT_INTERVAL_S: f64 = 1e-3;
 
-/// The state at a share of a step: the cubic with the positions and velocities of both ends. The spin changes
-/// evenly.
+/// The state at a share of a step: the cubic with the positions and velocities of both ends. The
+/// spin changes evenly.
 fn within_step((from, to): (&BallState, &BallState), dt: f64, share: f64) -> BallState {
     let (v_0, v_1) = (from.velocity_m_s, to.velocity_m_s);
     let mean = (to.position_m - from.position_m) / dt.max(f64::MIN_POSITIVE);

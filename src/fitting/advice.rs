@@ -12,7 +12,8 @@ use rayon::prelude::*;
 
 /// Draws that advice is computed for, at most.
 const DRAWS: usize = 400;
-/// Shots of each sample: for the shots that are compared, and for the mixtures of usual and best shot.
+/// Shots of each sample: for the shots that are compared, and for the mixtures of usual and best
+/// shot.
 const SHOTS: usize = 32_768;
 const MIXTURE_SHOTS: usize = 8_192;
 /// What "a tenth less scatter" multiplies a standard deviation with.
@@ -39,7 +40,8 @@ pub struct CauseOfGap {
     pub cause: Cause,
     /// The usual value (mean over the draws) and the best one, SI units.
     pub values: (f64, f64),
-    /// Its share of the gap in P: the mean over all orders in which the causes can be removed (Shapley's value).
+    /// Its share of the gap in P: the mean over all orders in which the causes can be removed
+    /// (Shapley's value).
     pub gain: Interval,
 }
 
@@ -117,7 +119,8 @@ pub fn usual_probabilities(
     )
 }
 
-/// Advice from the posterior at one of its places; `profile` is that of [`super::fitted_profile`] there.
+/// Advice from the posterior at one of its places; `profile` is that of [`super::fitted_profile`]
+/// there.
 ///
 /// # Errors
 /// No shot from there can go in, or the search would be too large.

@@ -1,7 +1,7 @@
 //! Whether chains have converged, and what they are worth.
 //!
-//! Gelman et al., *Bayesian Data Analysis* (3rd edition, 2013), section 11.4; the autocorrelation of an ensemble as in
-//! Foreman-Mackey et al., Publ. Astron. Soc. Pac. 125 (2013) 306.
+//! Gelman et al., *Bayesian Data Analysis* (3rd edition, 2013), section 11.4; the autocorrelation
+//! of an ensemble as in Foreman-Mackey et al., Publ. Astron. Soc. Pac. 125 (2013) 306.
 
 /// The values of one parameter.
 pub(super) struct ParameterChains {
@@ -85,7 +85,8 @@ mod tests {
     use rand::rngs::ChaCha12Rng;
     use rand::{RngExt, SeedableRng};
 
-    /// Authority: an autoregressive process of order 1 has the autocorrelation time (1 + a)/(1 - a).
+    /// Authority: an autoregressive process of order 1 has the autocorrelation time (1 + a)/(1 -
+    /// a).
     #[test]
     fn val_effective_sample_size_of_an_autoregressive_process() {
         let (chains, steps, walkers) = (4, 2000, 8);

@@ -1,9 +1,10 @@
 //! The posterior density of a shooter's dispersion, with the means integrated out.
 //!
-//! The parameters are the logarithms of the standard deviations, Fisher's z of the partial correlations, and the growth of
-//! the speed's standard deviation with the speed. Given them, the measurements are normal and the means, whose prior
-//! is flat, have a closed form. Measurements with the same noise at the same place count through their number, mean and
-//! scatter alone, so a density costs the same for 30 shots and for 3000.
+//! The parameters are the logarithms of the standard deviations, Fisher's z of the partial
+//! correlations, and the growth of the speed's standard deviation with the speed. Given them, the
+//! measurements are normal and the means, whose prior is flat, have a closed form. Measurements
+//! with the same noise at the same place count through their number, mean and scatter alone, so a
+//! density costs the same for 30 shots and for 3000.
 
 use super::measured_release::MeasuredRelease;
 use super::population::{PopulationPrior, Spread};
@@ -42,7 +43,8 @@ pub(super) trait ReleaseModel<const D: usize>: Model<Params = Vec<f64>> + Sync {
     /// One over the degrees of freedom of the releases; 0 where they are normal.
     fn tail_weight(&self, point: &[f64]) -> f64;
 
-    /// The aim at each place; what the point leaves open is drawn with independent standard normals.
+    /// The aim at each place; what the point leaves open is drawn with independent standard
+    /// normals.
     fn means(&self, point: &[f64], normal: &mut dyn FnMut() -> f64)
     -> Option<Vec<SVector<f64, D>>>;
 }
@@ -64,12 +66,13 @@ const LEAST_SPEED_STEP: f64 = 0.03;
 const LEAST_FACTOR: f64 = 0.05;
 /// The greatest speed of a profile, m/s.
 const MAX_SPEED_M_S: f64 = 40.0;
-/// No standard deviation of the speed is greater than this at any speed, m/s. A profile may have 10 m/s; the middle of the
-/// draws is a little greater than their mean.
+/// No standard deviation of the speed is greater than this at any speed, m/s. A profile may have 10
+/// m/s; the middle of the draws is a little greater than their mean.
 const MAX_SPEED_SD_M_S: f64 = 6.0;
 
-/// Whether a scatter of the speed makes sense at every speed of a profile, not at the measured ones alone: the factor
-/// `1 + x (g + h x)` of its standard deviation, with `x = v/v0 - 1`, is positive, and the standard deviation not too great.
+/// Whether a scatter of the speed makes sense at every speed of a profile, not at the measured ones
+/// alone: the factor `1 + x (g + h x)` of its standard deviation, with `x = v/v0 - 1`, is positive,
+/// and the standard deviation not too great.
 #[must_use]
 pub fn is_speed_scatter_possible(
     sd_m_s: f64,
@@ -171,8 +174,8 @@ impl<const D: usize> DispersionPosterior<D> {
     /// The dispersion of a point of the parameter space.
     pub(super) fn dispersion(&self, point: &[f64]) -> Dispersion<D> {
         let sds = SVector::from_fn(|i, _| libm::exp(point[i]));
-        // From partial correlations, row by row: every point gives a valid matrix (Lewandowski, Kurowicka and Joe,
-        // J. Multivariate Anal. 100 (2009) 1989).
+        // From partial correlations, row by row: every point gives a valid matrix (Lewandowski,
+        // Kurowicka and Joe, J. Multivariate Anal. 100 (2009) 1989).
         let mut factor = SMatrix::<f64, D, D>::zeros();
         let mut next = D;
         for i in 0..D {
@@ -213,8 +216,9 @@ impl<const D: usize> DispersionPosterior<D> {
         SMatrix::from_diagonal(&sds) * dispersion.correlation_factor
     }
 
-    /// The logarithm of the density of the measurements, and of each place the mean of the aim and the Cholesky
-    /// factorisation of its inverse covariance. `None` where a covariance is not positive definite.
+    /// The logarithm of the density of the measurements, and of each place the mean of the aim and
+    /// the Cholesky factorisation of its inverse covariance. `None` where a covariance is not
+    /// positive definite.
     fn likelihood(
         &self,
         dispersion: &Dispersion<D>,
@@ -254,8 +258,8 @@ impl<const D: usize> DispersionPosterior<D> {
         Some((sum, means))
     }
 
-    /// The logarithm of the prior density of a point, and its dispersion. `None` where the posterior density
-    /// vanishes.
+    /// The logarithm of the prior density of a point, and its dispersion. `None` where the
+    /// posterior density vanishes.
     pub(super) fn log_prior(
         &self,
         point: &[f64],

@@ -1,11 +1,13 @@
-//! The probability of making a shot for each draw of the posterior, from one sample of simulated shots.
+//! The probability of making a shot for each draw of the posterior, from one sample of simulated
+//! shots.
 //!
-//! The shots are drawn once, about one aim and with a wider scatter than that of the draws. For each draw, a shot
-//! counts with the ratio of the densities (self-normalised importance sampling; Owen, *Monte Carlo theory, methods
-//! and examples*, 2013, chapter 9). All draws share the shots, so their differences hardly have a numerical error.
+//! The shots are drawn once, about one aim and with a wider scatter than that of the draws. For
+//! each draw, a shot counts with the ratio of the densities (self-normalised importance sampling;
+//! Owen, *Monte Carlo theory, methods and examples*, 2013, chapter 9). All draws share the shots,
+//! so their differences hardly have a numerical error.
 //!
-//! Where draws have heavier tails than normal ones, the shots are a mixture of three normal distributions, two of
-//! them wider, so that no far shot has a great weight.
+//! Where draws have heavier tails than normal ones, the shots are a mixture of three normal
+//! distributions, two of them wider, so that no far shot has a great weight.
 
 use super::interval::Interval;
 use super::measured_release::{Values, nominal_of};
@@ -21,8 +23,8 @@ use rayon::prelude::*;
 const REPLICATES: usize = 8;
 /// How much wider the scatter of the sample is than that of a draw with a wide one.
 const WIDENING: f64 = 1.1;
-/// For heavy tails: how much wider still the parts of the sample are, and the shares of the shots, each a run of Sobol
-/// points of a power of two.
+/// For heavy tails: how much wider still the parts of the sample are, and the shares of the shots,
+/// each a run of Sobol points of a power of two.
 const TAIL_WIDENINGS: [f64; 3] = [1.0, 2.0, 4.5];
 const TAIL_SHARES: [f64; 3] = [0.5, 0.25, 0.25];
 
@@ -119,8 +121,8 @@ impl DrawProbabilities {
 }
 
 impl WeightedShots {
-    /// Simulates about `shots` shots from the profile's location about the aims `means`, with the scatter of the widest
-    /// draws at a place and that of the aims together.
+    /// Simulates about `shots` shots from the profile's location about the aims `means`, with the
+    /// scatter of the widest draws at a place and that of the aims together.
     #[must_use]
     pub fn simulate(
         profile: &Profile,
@@ -135,7 +137,8 @@ impl WeightedShots {
         for i in 0..4 {
             let of_means = Interval::of(means.iter().map(|mean| mean[i]).collect());
             centre[i] = of_means.mean;
-            // A sample narrower than a draw has few shots, with great weights, where that draw has many.
+            // A sample narrower than a draw has few shots, with great weights, where that draw has
+            // many.
             let wide = Interval::of(sds.iter().map(|sds| sds[i]).collect()).high;
             scales[i] = WIDENING * (wide * wide + of_means.sd * of_means.sd).sqrt();
         }
@@ -184,7 +187,8 @@ impl WeightedShots {
         }
     }
 
-    /// P of each draw, with the aim `mean` and the Cholesky factor `factor` that the functions give for it.
+    /// P of each draw, with the aim `mean` and the Cholesky factor `factor` that the functions give
+    /// for it.
     pub fn probabilities(
         &self,
         draws: &[Draw],

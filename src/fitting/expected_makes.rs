@@ -91,7 +91,8 @@ pub struct ExpectedMakes {
     pub brier: f64,
     /// Mean logarithmic loss.
     pub log_loss: f64,
-    /// The probability that a made shot had the greater chance than a missed one; where there are both.
+    /// The probability that a made shot had the greater chance than a missed one; where there are
+    /// both.
     pub area_under_curve: Option<f64>,
     /// Shots that were predicted to be a swish, and how many of them went in.
     pub swishes: (usize, usize),
@@ -116,8 +117,9 @@ pub(super) fn release_given(
         values[3] = mean[3];
     }
     if draw.tail_weight > 0.0 {
-        // The farther a shot, the wider the normal part of the mixture that it comes from: with d values and n degrees of
-        // freedom the expected inverse scale is (n + d)/(n + squared distance).
+        // The farther a shot, the wider the normal part of the mixture that it comes from: with d
+        // values and n degrees of freedom the expected inverse scale is (n + d)/(n + squared
+        // distance).
         let dimension = if is_spin_measured { 4.0 } else { 3.0 };
         let freedom = 1.0 / draw.tail_weight;
         prior *= 1.0 - 2.0 * draw.tail_weight;

@@ -1,4 +1,5 @@
-//! Checks of measured shots: before a fit, whether it makes sense; after it, whether the model holds.
+//! Checks of measured shots: before a fit, whether it makes sense; after it, whether the model
+//! holds.
 
 use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
 use super::posterior::{Draw, SpinSource, Tails};
@@ -127,7 +128,8 @@ fn least_speed_m_s(physics: &Physics, place: &Place) -> f64 {
     (physics.gravity_m_s2 * (rise + reach)).max(0.0).sqrt()
 }
 
-/// Refuses shots that no fit can make sense of. `speed_unit` is that of the file and its size in m/s.
+/// Refuses shots that no fit can make sense of. `speed_unit` is that of the file and its size in
+/// m/s.
 ///
 /// # Errors
 /// The first reason.
@@ -163,7 +165,8 @@ pub fn check_releases(
     Ok(())
 }
 
-/// Refuses speeds that look like another unit. `speed_unit` is that of the file and its size in m/s.
+/// Refuses speeds that look like another unit. `speed_unit` is that of the file and its size in
+/// m/s.
 ///
 /// # Errors
 /// The median speed at a place cannot be a shot from there.
@@ -205,8 +208,8 @@ pub fn check_speed_unit(
     Ok(())
 }
 
-/// Shots that are far from the others at their place: farther than `most` robust standard deviations (from the median
-/// absolute deviation) in any value.
+/// Shots that are far from the others at their place: farther than `most` robust standard
+/// deviations (from the median absolute deviation) in any value.
 #[must_use]
 pub fn far_shots(shots: &[MeasuredRelease], places: usize, values: usize, most: f64) -> Vec<bool> {
     let mut is_far = vec![false; shots.len()];
@@ -243,8 +246,8 @@ pub struct ShapeTest {
     pub kurtosis_ratio: f64,
 }
 
-/// Mardia's tests (Biometrika 57 (1970) 519) of speed, pitch and polar angle, with the normal approximations of both
-/// statistics. Each shot is taken from its own place's mean.
+/// Mardia's tests (Biometrika 57 (1970) 519) of speed, pitch and polar angle, with the normal
+/// approximations of both statistics. Each shot is taken from its own place's mean.
 #[must_use]
 pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
     const D: f64 = 3.0;
@@ -285,8 +288,8 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
         let square = along.dot(a);
         kurtosis += square * square;
     }
-    // n b1/6 is about chi-square with d (d + 1) (d + 2)/6 = 10 degrees of freedom (Wilson and Hilferty's cube root), with
-    // Mardia's correction for few shots.
+    // n b1/6 is about chi-square with d (d + 1) (d + 2)/6 = 10 degrees of freedom (Wilson and
+    // Hilferty's cube root), with Mardia's correction for few shots.
     let correction =
         (D + 1.0) * (count + 1.0) * (count + 3.0) / (count * ((count + 1.0) * (D + 1.0) - 6.0));
     let chi_square = correction * skewness / (6.0 * count);
@@ -303,9 +306,9 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
     }
 }
 
-/// The distribution that the shots ask for: Student's t where their kurtosis is too great for normal ones, and by so much that
-/// it matters (fewer than about 17 degrees of freedom). Of normal shots about one test in fifty is taken for heavy, which
-/// costs a little precision.
+/// The distribution that the shots ask for: Student's t where their kurtosis is too great for
+/// normal ones, and by so much that it matters (fewer than about 17 degrees of freedom). Of normal
+/// shots about one test in fifty is taken for heavy, which costs a little precision.
 #[must_use]
 pub fn tails_of(shots: &[MeasuredRelease], places: usize) -> Tails {
     const LEVEL: f64 = 0.04;
@@ -410,8 +413,8 @@ pub fn warnings(
     warnings
 }
 
-/// A warning where tracked flights fit worse, or better, than the tracker's noise says: the sums of the squared
-/// residuals and of their expectations.
+/// A warning where tracked flights fit worse, or better, than the tracker's noise says: the sums of
+/// the squared residuals and of their expectations.
 #[must_use]
 pub fn noise_warning(chi_squares: &[(f64, f64)]) -> Option<FitWarning> {
     let seen: f64 = chi_squares.iter().map(|(seen, _)| seen).sum();

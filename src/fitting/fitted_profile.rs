@@ -6,7 +6,8 @@ use crate::model::Physics;
 use crate::shooter::{Profile, ProfileError, ProfileSettings, Shooter};
 use crate::units::REV_RAD;
 
-/// The search tries nominal backspins up to this, or to that of the shooter where it is greater, rad/s.
+/// The search tries nominal backspins up to this, or to that of the shooter where it is greater,
+/// rad/s.
 const USUAL_MAX_BACKSPIN_RAD_S: f64 = 3.0 * REV_RAD;
 
 /// The profile of a shooter with the dispersion of a draw, at a place.

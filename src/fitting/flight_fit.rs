@@ -1,9 +1,10 @@
 //! A flight fitted to a tracked trajectory.
 //!
-//! The unknowns are position and velocity at the highest tracked point. The model is the product's own undisturbed
-//! flight; the errors of a coordinate are normal and correlated from frame to frame, and outliers are weighed down
-//! (Huber, *Robust Statistics*, 1981). Where free flight begins and ends is found: from the highest point the
-//! fit is extended, point by point, until two in a row are not where the ball would be.
+//! The unknowns are position and velocity at the highest tracked point. The model is the product's
+//! own undisturbed flight; the errors of a coordinate are normal and correlated from frame to
+//! frame, and outliers are weighed down (Huber, *Robust Statistics*, 1981). Where free flight
+//! begins and ends is found: from the highest point the fit is extended, point by point, until two
+//! in a row are not where the ball would be.
 
 use super::measured_release::{Covariance, Place, Values};
 use super::tracker::TrackerNoise;
@@ -25,7 +26,8 @@ pub struct TrackedPoint {
 /// A fitted flight and the release on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightFit {
-    /// Speed, pitch, polar angle and the given backspin where the ball rises through the height of release.
+    /// Speed, pitch, polar angle and the given backspin where the ball rises through the height of
+    /// release.
     pub values: Values,
     /// The covariance of the errors of the first three.
     pub covariance: Covariance,
@@ -66,7 +68,8 @@ const LEAST_POINTS: usize = 6;
 const FIRST_HALF_S: f64 = 0.25;
 /// A point farther from the flight than this many standard deviations does not belong to it.
 const LARGEST_RESIDUAL: f64 = 4.0;
-/// The acceleration of a ball in a hand or at the hoop beyond that of flight, about, m/s^2: 7 m/s in a third of a second.
+/// The acceleration of a ball in a hand or at the hoop beyond that of flight, about, m/s^2: 7 m/s
+/// in a third of a second.
 const OTHER_ACCELERATION_M_S2: f64 = 20.0;
 /// From here on a residual counts linearly (Huber's k), in standard deviations.
 const HUBER: f64 = 2.5;
@@ -125,8 +128,8 @@ impl Track<'_> {
             .collect()
     }
 
-    /// A matrix that makes the errors of one coordinate independent with unit variance: each less what the one
-    /// before predicts.
+    /// A matrix that makes the errors of one coordinate independent with unit variance: each less
+    /// what the one before predicts.
     fn whitened(&self, indices: &[usize], rows: &[f64]) -> Vec<f64> {
         let sigma = self.noise.position_m;
         let mut whitened = Vec::with_capacity(rows.len());
@@ -277,7 +280,8 @@ impl Track<'_> {
         Some(parameters)
     }
 
-    /// Extends the fit from its last index outwards, point by point; returns whether it ended before the track did.
+    /// Extends the fit from its last index outwards, point by point; returns whether it ended
+    /// before the track did.
     fn extend(&self, indices: &mut Vec<usize>, solution: &mut Solution, forwards: bool) -> bool {
         let radius = self.simulator.physics().ball_radius_m;
         let mut skipped = 0;
@@ -318,15 +322,17 @@ impl Track<'_> {
     }
 
     /// How many points at an end can be of a hand or a touch without being seen: there the ball has
-    /// [`OTHER_ACCELERATION_M_S2`] more than in flight, and needs this long to be off by [`LARGEST_RESIDUAL`]. (To choose the
-    /// end that fits best would make the errors greater than the covariance says, by a third.)
+    /// [`OTHER_ACCELERATION_M_S2`] more than in flight, and needs this long to be off by
+    /// [`LARGEST_RESIDUAL`]. (To choose the end that fits best would make the errors greater than
+    /// the covariance says, by a third.)
     fn margin(&self) -> usize {
         let off_m = LARGEST_RESIDUAL * self.noise.position_m;
         let unseen_s = (2.0 * off_m / OTHER_ACCELERATION_M_S2).sqrt();
         (unseen_s * self.noise.frames_per_s).ceil() as usize
     }
 
-    /// Speed, pitch, polar angle, aim, distance and court angle where the fitted ball rises through a height.
+    /// Speed, pitch, polar angle, aim, distance and court angle where the fitted ball rises through
+    /// a height.
     fn release(&self, parameters: &Parameters, height_m: f64) -> Option<[f64; 6]> {
         let start = self.state(parameters);
         let mut state = start;
@@ -610,8 +616,8 @@ mod tests {
         }
     }
 
-    /// The errors of 400 shots against their stated covariances. A correct fit fails one run in a thousand; the
-    /// random numbers are fixed.
+    /// The errors of 400 shots against their stated covariances. A correct fit fails one run in a
+    /// thousand; the random numbers are fixed.
     #[test]
     fn val_releases_of_tracked_flights_err_as_stated() {
         let physics = Preset::named("ncaa").unwrap().physics();

@@ -21,7 +21,8 @@ impl Interval {
         let mean = values.iter().sum::<f64>() / count;
         let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
         values.sort_by(f64::total_cmp);
-        // Between such order statistics of independent draws lie 95 % of the distribution on average.
+        // Between such order statistics of independent draws lie 95 % of the distribution on
+        // average.
         let at = |p: f64| {
             let place = (p * (count + 1.0) - 1.0).clamp(0.0, count - 1.0);
             let below = place.floor() as usize;

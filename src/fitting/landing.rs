@@ -7,8 +7,8 @@ use crate::shooter::Nominal;
 use crate::units::INCH_M;
 use nalgebra::{Matrix3, Vector3};
 
-/// Where and how steeply the ball's centre falls through the height of the hoop, without any touch. Gym sensors report
-/// this of a shot.
+/// Where and how steeply the ball's centre falls through the height of the hoop, without any touch.
+/// Gym sensors report this of a shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Landing {
     /// Distance from the front of the ring along the line from the release to the hoop's centre, m.
@@ -24,7 +24,8 @@ pub struct Landing {
 #[error("no release from this place lands like this")]
 pub struct LandingError;
 
-/// Depth at the hoop's centre in the sensors' scale, m: it runs from 0 at the front to 18 in at the back.
+/// Depth at the hoop's centre in the sensors' scale, m: it runs from 0 at the front to 18 in at the
+/// back.
 pub const CENTRE_DEPTH_M: f64 = 9.0 * INCH_M;
 
 /// Steps of Newton's method, and where they end: a landing as near as this, m and rad.
@@ -87,8 +88,8 @@ fn jacobian(simulator: &Simulator, place: &Place, values: &Values) -> Option<Mat
     Some(columns)
 }
 
-/// The release from a place, with this backspin, that has a landing, and the covariance of its values where those of
-/// the landing err independently by `noise` (m, m, rad).
+/// The release from a place, with this backspin, that has a landing, and the covariance of its
+/// values where those of the landing err independently by `noise` (m, m, rad).
 ///
 /// # Errors
 /// No release lands like this.

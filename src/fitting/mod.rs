@@ -1,12 +1,13 @@
 //! The shooter's test: from measured shots to the distribution of the releases, and how sure it is.
 //!
-//! A measured release is the true one plus the error of the tracker, `y = x + e`; the true ones of a shooter at a place
-//! are normal about the shooter's aim there, `x ~ N(mu, Sigma)`, and the covariance of `e` is known for each shot. The
-//! answer is a sample of the posterior distribution of `mu` and `Sigma` ([`Posterior`]); every probability that follows
-//! from it is computed for each draw ([`DrawProbabilities`]), so it has an interval.
+//! A measured release is the true one plus the error of the tracker, `y = x + e`; the true ones of
+//! a shooter at a place are normal about the shooter's aim there, `x ~ N(mu, Sigma)`, and the
+//! covariance of `e` is known for each shot. The answer is a sample of the posterior distribution
+//! of `mu` and `Sigma` ([`Posterior`]); every probability that follows from it is computed for each
+//! draw ([`DrawProbabilities`]), so it has an interval.
 //!
-//! The values of a release are `[speed, pitch, polar angle, backspin]`, m/s, rad, rad, rad/s ([`Values`]).
-//! `docs/shooters_test.md` has the model, its prior and how it was checked.
+//! The values of a release are `[speed, pitch, polar angle, backspin]`, m/s, rad, rad, rad/s
+//! ([`Values`]). `docs/shooters_test.md` has the model, its prior and how it was checked.
 
 mod advice;
 mod chain_diagnostics;

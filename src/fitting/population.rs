@@ -1,9 +1,11 @@
 //! What is known of shooters before any shot is measured: the prior.
 //!
-//! Shooters' standard deviations were measured as 0.15 to 0.45 ft/s (speed), 1.0 to 2.7 deg (pitch angle) and 0.8 to
-//! 1.5 deg (polar angle), the correlation of speed and pitch angle as -0.25 to 0.5, and no growth of the
-//! scatter with the speed from 4.2 to 6.75 m. Those of the backspin are assumed. The prior is wider: a shooter in twenty is
-//! outside 0.31 to 3.2 times the middle of the measured range, and its correlations go far beyond theirs, so that a test of some tens of shots decides for itself.
+//! Shooters' standard deviations were measured as 0.15 to 0.45 ft/s (speed), 1.0 to 2.7 deg (pitch
+//! angle) and 0.8 to 1.5 deg (polar angle), the correlation of speed and pitch angle as -0.25 to
+//! 0.5, and no growth of the scatter with the speed from 4.2 to 6.75 m. Those of the backspin are
+//! assumed. The prior is wider: a shooter in twenty is outside 0.31 to 3.2 times the middle of the
+//! measured range, and its correlations go far beyond theirs, so that a test of some tens of shots
+//! decides for itself.
 
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 
@@ -27,8 +29,8 @@ pub struct PopulationPrior {
     pub speed_pitch: Spread,
     /// The same of the other partial correlations.
     pub other_correlations: Spread,
-    /// Relative growth of the speed's standard deviation for a relative growth of the speed, and the same of
-    /// the square.
+    /// Relative growth of the speed's standard deviation for a relative growth of the speed, and
+    /// the same of the square.
     pub growth: Spread,
     /// Mean backspin of a shooter whose spin is not measured, rad/s.
     pub backspin: Spread,

@@ -137,8 +137,8 @@ impl Draw {
         }
     }
 
-    /// The same with heavier tails: `tail_weight` is one over the degrees of freedom, below 1/2. The standard deviations
-    /// stay those of the releases.
+    /// The same with heavier tails: `tail_weight` is one over the degrees of freedom, below 1/2.
+    /// The standard deviations stay those of the releases.
     #[must_use]
     pub fn with_tail_weight(self, tail_weight: f64) -> Self {
         Self {
@@ -221,7 +221,8 @@ pub struct Posterior {
     pub effective_sample_size: f64,
     /// The share of the information on each standard deviation that comes from the population.
     pub prior_weights: Values,
-    /// Terms of the growth of the speed's scatter that the places tell apart: 0, 1 (c11) or 2 (c11, c12).
+    /// Terms of the growth of the speed's scatter that the places tell apart: 0, 1 (c11) or 2 (c11,
+    /// c12).
     pub growth_terms: usize,
     /// The number of shots.
     pub shots: usize,
@@ -233,8 +234,8 @@ impl Posterior {
         Interval::of(self.draws.iter().map(value).collect())
     }
 
-    /// The draw in the middle: means, and root mean squares of the standard deviations, so that its releases have the
-    /// covariance of all draws' releases.
+    /// The draw in the middle: means, and root mean squares of the standard deviations, so that its
+    /// releases have the covariance of all draws' releases.
     #[must_use]
     pub fn typical(&self) -> Draw {
         let count = self.draws.len() as f64;
@@ -287,7 +288,8 @@ pub enum FitError {
     NoScatter,
 }
 
-/// Steps along the difference of two walkers (ter Braak, Stat. Comput. 16 (2006) 239), and every fourth time a stretch.
+/// Steps along the difference of two walkers (ter Braak, Stat. Comput. 16 (2006) 239), and every
+/// fourth time a stretch.
 struct DifferenceOrStretch {
     scale: f64,
     stretch: Stretch,
@@ -519,7 +521,8 @@ fn draws_of<const D: usize>(
         .collect()
 }
 
-/// A draw; `unseen` are standard normals for the mean and the scatter of a backspin that was not measured.
+/// A draw; `unseen` are standard normals for the mean and the scatter of a backspin that was not
+/// measured.
 fn draw_of<const D: usize>(
     model: &DispersionPosterior<D>,
     dispersion: &Dispersion<D>,

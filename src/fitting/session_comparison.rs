@@ -15,8 +15,8 @@ pub struct SessionComparison {
     pub change: Interval,
     /// The probability that it has grown.
     pub grew: f64,
-    /// Shots in each session that would decide about a change of this size (95 % level, 80 % power), if the
-    /// present ones do not.
+    /// Shots in each session that would decide about a change of this size (95 % level, 80 %
+    /// power), if the present ones do not.
     pub shots_to_decide: Option<f64>,
 }
 

@@ -1,9 +1,11 @@
-//! The posterior density where the releases have heavier tails than normal ones: a multivariate t distribution.
+//! The posterior density where the releases have heavier tails than normal ones: a multivariate t
+//! distribution.
 //!
-//! A release is `mu + sqrt((1 - 2 t)/w) L z` with standard normals `z` and one `w` a shot, gamma distributed with shape and
-//! rate `1/(2 t)`. `t`, the tail weight, is one over the degrees of freedom; `L L^T` is the covariance whatever `t` is. The
-//! tracker's error is normal, so given `w` a measurement is normal, and `w` is integrated out by the trapezoidal
-//! rule in its logarithm. The means have no closed form here: they are parameters.
+//! A release is `mu + sqrt((1 - 2 t)/w) L z` with standard normals `z` and one `w` a shot, gamma
+//! distributed with shape and rate `1/(2 t)`. `t`, the tail weight, is one over the degrees of
+//! freedom; `L L^T` is the covariance whatever `t` is. The tracker's error is normal, so given `w`
+//! a measurement is normal, and `w` is integrated out by the trapezoidal rule in its logarithm. The
+//! means have no closed form here: they are parameters.
 
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::measured_release::MeasuredRelease;
@@ -31,7 +33,8 @@ struct NoiseGroup<const D: usize> {
 pub(super) struct StudentPosterior<const D: usize> {
     normal: DispersionPosterior<D>,
     groups: Vec<NoiseGroup<D>>,
-    /// Of each place the means of the measurements and their standard errors, the unit of the parameters.
+    /// Of each place the means of the measurements and their standard errors, the unit of the
+    /// parameters.
     means: Vec<[Spread; D]>,
 }
 
@@ -186,7 +189,7 @@ mod tests {
     use super::*;
 
     /// Authority: the closed form of the one-dimensional t density, by its ratio to that at 0:
-    /// `(1 + x^2/n)^(-(n + 1)/2)`. Without a tracker's error the integral over `w` is the t density.
+    /// `(1 + x^2/n)^(-(n + 1)/2)`. Without a tracker's error the integral over `w` is it.
     #[test]
     fn val_mixture_is_the_t_distribution() {
         for freedom in [3.0, 5.0, 12.0, 60.0, 1000.0] {

@@ -13,7 +13,8 @@ use rayon::prelude::*;
 const RELEASES: u32 = 256;
 /// Values at which the likelihood is computed.
 const VALUES: usize = 17;
-/// Twice the logarithm of the likelihood ratio at the ends of a 95 % interval (chi-square, one degree of freedom).
+/// Twice the logarithm of the likelihood ratio at the ends of a 95 % interval (chi-square, one
+/// degree of freedom).
 const RATIO_95: f64 = 3.841_458_820_694_124;
 
 /// The parameters that made and missed shots can tell.
@@ -136,7 +137,8 @@ pub fn likelihood_curve(
             .map(|value| Ok((value, log_likelihood(value)?)))
             .collect::<Result<Vec<_>, ProfileError>>()
     };
-    // Over the whole range, and again where the likelihood is: steps as wide as the interval would make it too narrow.
+    // Over the whole range, and again where the likelihood is: steps as wide as the interval would
+    // make it too narrow.
     let (low, high) = parameter.range();
     let coarse = curve(parameter, tabulate(low, high)?);
     let step = (high - low) / (VALUES - 1) as f64;

@@ -1,7 +1,8 @@
 //! The arithmetic and logical operators of the SIMD types, written once.
 
-/// Implements `+ - * /` (with the type itself and, except `/`, with `f64`), `+= -= *=` and unary minus for
-/// a tuple struct of numbers (`narrow number` if its fields take `f32`), and `& | !` for a tuple struct of masks, field by field.
+/// Implements `+ - * /` (with the type itself and, except `/`, with `f64`), `+= -= *=` and unary
+/// minus for a tuple struct of numbers (`narrow number` if its fields take `f32`), and `& | !` for
+/// a tuple struct of masks, field by field.
 macro_rules! elementwise_operators {
     (number [$($generics:tt)*] $type:ty { $($field:tt)+ }) => {
         $crate::math::arithmetic_operators::elementwise_operators!(@number [$($generics)*] $type { $($field)+ } other => other);

@@ -117,8 +117,8 @@ pub fn quantile(p: f64) -> f64 {
     }
 }
 
-/// Replaces probabilities by their quantiles; the same as [`quantile`] for each. The loop over the centre has no
-/// branch, so the compiler makes vectors of it; one value in seven is in the tails.
+/// Replaces probabilities by their quantiles; the same as [`quantile`] for each. The loop over the
+/// centre has no branch, so the compiler makes vectors of it; one value in seven is in the tails.
 pub(crate) fn quantiles(values: &mut [f64]) {
     const CHUNK: usize = 64;
     for chunk in values.chunks_mut(CHUNK) {

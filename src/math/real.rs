@@ -1,9 +1,9 @@
 //! The number type of the equations: one `f64` or `f32`, or several in SIMD lanes.
 //!
-//! The equations of motion are written once, generic over [`Real`]. With `f64` they are the readable
-//! scalar form. With a [`SimdReal`] the same operations run on several shots at once. The trait has only
-//! operations that IEEE 754 rounds correctly (`+ - * /`, square root, comparisons), and nothing is
-//! fused. So every lane count gives the same bits.
+//! The equations of motion are written once, generic over [`Real`]. With `f64` they are the
+//! readable scalar form. With a [`SimdReal`] the same operations run on several shots at once. The
+//! trait has only operations that IEEE 754 rounds correctly (`+ - * /`, square root, comparisons),
+//! and nothing is fused. So every lane count gives the same bits.
 
 use fearless_simd::Simd;
 use std::fmt::Debug;
@@ -62,9 +62,9 @@ pub trait Real:
     /// `self` where `condition` holds, `other` elsewhere.
     fn select(self, condition: Self::Mask, other: Self) -> Self;
 
-    /// The result of `f`, which is compiled for the instruction set of `self` in a function of its own. (A function that is
-    /// not inlined is not compiled for the vector instructions of its caller; and one that is inlined in many places
-    /// takes long to compile.)
+    /// The result of `f`, which is compiled for the instruction set of `self` in a function of its
+    /// own. (A function that is not inlined is not compiled for the vector instructions of its
+    /// caller; and one that is inlined in many places takes long to compile.)
     #[inline(always)]
     fn outlined<Value>(self, f: impl FnOnce() -> Value) -> Value {
         f()

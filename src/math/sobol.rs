@@ -1,12 +1,12 @@
 //! Sobol points under random linear scrambles and digital shifts.
 //!
-//! Direction numbers: S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635-2654,
-//! DOI 10.1137/070709359 (set new-joe-kuo-6), the first nine dimensions. Scrambling: J. Matousek,
-//! J. Complexity 14 (1998) 527-556, DOI 10.1006/jcom.1998.0489: a random lower triangular matrix of
-//! bits and a shift per dimension. Every point is uniform, and the variance of a mean is that of Owen's
-//! nested scrambling (Owen, ACM TOMACS 13 (2003) 363-378, DOI 10.1145/945511.945518). Point `i` is computed
-//! without the points before it. So any sample can be computed alone, and no result depends on the number of
-//! threads.
+//! Direction numbers: S. Joe and F. Y. Kuo, SIAM J. Sci. Comput. 30 (2008) 2635-2654, DOI
+//! 10.1137/070709359 (set new-joe-kuo-6), the first nine dimensions. Scrambling: J. Matousek, J.
+//! Complexity 14 (1998) 527-556, DOI 10.1006/jcom.1998.0489: a random lower triangular matrix of
+//! bits and a shift per dimension. Every point is uniform, and the variance of a mean is that of
+//! Owen's nested scrambling (Owen, ACM TOMACS 13 (2003) 363-378, DOI 10.1145/945511.945518). Point
+//! `i` is computed without the points before it. So any sample can be computed alone, and no result
+//! depends on the number of threads.
 
 use rand::rngs::ChaCha12Rng;
 use rand::{Rng, SeedableRng};
@@ -118,7 +118,8 @@ pub struct Scramble {
     shifts: [u32; DIMENSIONS],
 }
 
-/// The points of a scramble one after the other: each follows from the one before by one exclusive or.
+/// The points of a scramble one after the other: each follows from the one before by one exclusive
+/// or.
 #[derive(Clone, Debug)]
 pub(crate) struct Sequence<'a> {
     scramble: &'a Scramble,
@@ -224,8 +225,8 @@ mod tests {
 
     #[test]
     fn prop_replicates_are_uniform_and_uncorrelated() {
-        // Over 4000 replicates: mean 1/2 of each point, and no correlation between two points or two
-        // dimensions; each within 5 standard errors (false alarm: 18 comparisons, 1e-5).
+        // Over 4000 replicates: mean 1/2 of each point, and no correlation between two points or
+        // two dimensions; each within 5 standard errors (false alarm: 18 comparisons, 1e-5).
         let sobol = Sobol::new();
         let n = 4000;
         let points: Vec<[f64; 3]> = (0..n)

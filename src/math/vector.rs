@@ -1,8 +1,8 @@
 //! Vectors: nalgebra's, over any `Real`.
 //!
-//! nalgebra's operators and constructors serve the SIMD lanes as they are. Its products and norms ask for a
-//! zero without a value at hand, which a SIMD number cannot give. [`RealVector`] has those under the
-//! same names, and for `f64` they have the same bits.
+//! nalgebra's operators and constructors serve the SIMD lanes as they are. Its products and norms
+//! ask for a zero without a value at hand, which a SIMD number cannot give. [`RealVector`] has
+//! those under the same names, and for `f64` they have the same bits.
 
 use super::real::Real;
 

@@ -1,6 +1,7 @@
 //! The columns of a file of measured shots: what they mean, and their units.
 //!
-//! A column is `QUANTITY_UNIT`, such as `speed_ft_s`; columns of other names are named with `--map`.
+//! A column is `QUANTITY_UNIT`, such as `speed_ft_s`; columns of other names are named with
+//! `--map`.
 
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
 
@@ -101,6 +102,12 @@ impl Quantity {
         }
     }
 
+    /// The suffixes of its units.
+    #[must_use]
+    pub fn unit_names(self) -> Vec<&'static str> {
+        self.units().iter().map(|(name, _)| *name).collect()
+    }
+
     fn units(self) -> &'static [Unit] {
         match self {
             Self::Speed => SPEED_UNITS,
@@ -183,11 +190,10 @@ fn meaning(name: &str, unit: Option<&str>) -> Result<Option<Meaning>, String> {
         };
         let chosen = match (unit, own) {
             (Some(given), _) => known(given).ok_or_else(|| {
-                let names: Vec<&str> = units.iter().map(|(name, _)| *name).collect();
                 format!(
                     "{}: {given} is not one of its units ({})",
                     quantity.name(),
-                    names.join(", ")
+                    quantity.unit_names().join(", ")
                 )
             })?,
             (None, Some(own)) => own,
@@ -199,8 +205,8 @@ fn meaning(name: &str, unit: Option<&str>) -> Result<Option<Meaning>, String> {
 }
 
 impl Columns {
-    /// The columns of a header. `maps` are of the form `speed_ft_s=ReleaseSpeed:mph`: the quantity, the name of the
-    /// column, and its unit where that is not the suffix of the quantity.
+    /// The columns of a header. `maps` are of the form `speed_ft_s=ReleaseSpeed:mph`: the quantity,
+    /// the name of the column, and its unit where that is not the suffix of the quantity.
     ///
     /// # Errors
     /// A map that cannot be followed, or a quantity given twice.
@@ -267,11 +273,21 @@ impl Columns {
             }
         };
         let meaning = meaning(target.trim(), unit)?.ok_or_else(|| {
+            let target = target.trim();
+            let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
+            if let Some(quantity) = quantity {
+                let names = quantity.unit_names();
+                return format!(
+                    "give its unit: '{target}={}:{}' (or {})",
+                    source.trim(),
+                    names[0],
+                    names[1..].join(", ")
+                );
+            }
             let mut names: Vec<&str> = Quantity::ALL.iter().map(|q| q.name()).collect();
             names.extend(LABELS.iter().map(|(name, _)| *name));
             format!(
-                "{} is not a quantity with its unit, such as speed_ft_s; the quantities are {}",
-                target.trim(),
+                "{target} is not a quantity; the quantities are {}",
                 names.join(", ")
             )
         })?;
@@ -310,6 +326,12 @@ impl Columns {
     pub fn label(&self, label: Label) -> Option<usize> {
         let found = self.labels.iter().find(|(l, _)| *l == label);
         found.map(|(_, index)| *index)
+    }
+
+    /// The names of all columns.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 
     /// The name of a column.
@@ -390,7 +412,8 @@ mod tests {
             assert!(errors.contains(part), "{errors}");
         };
         refused(&[], "both give the speed");
-        refused(&["pitch=a"], "not a quantity with its unit");
+        refused(&["pitch=a"], "give its unit: 'pitch=a:deg'");
+        refused(&["loft=a"], "loft is not a quantity");
         refused(&["pitch_deg=b"], "there is no column b");
         refused(&["pitch_deg=a:mph"], "not one of its units (deg, rad)");
         refused(&["pitch_deg"], "must be QUANTITY=COLUMN");

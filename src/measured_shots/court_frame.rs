@@ -29,7 +29,8 @@ impl CourtFrame {
         }
     }
 
-    /// Points on the floor in coordinates from the hoop that the track ends near: along the court and across.
+    /// Points on the floor in coordinates from the hoop that the track ends near: along the court
+    /// and across.
     #[must_use]
     pub fn from_hoop(&self, track: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let (x0, y0, sign) = match *self {

@@ -2,6 +2,7 @@
 
 use super::columns::{Columns, Label, Quantity, QuantityColumn, parse_made};
 use super::court_frame::CourtFrame;
+use super::map_proposal::map_proposal;
 use super::table::Table;
 use crate::dynamics::Simulator;
 use crate::fitting::{
@@ -68,10 +69,11 @@ impl Source {
         {
             return Ok(Self::Releases);
         }
-        Err("needs the columns of releases (speed, pitch and polar or aim), of landings (entry_angle, depth, left_right) or of \
-             trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s; name \
-             columns of other names with --map 'speed_ft_s=ReleaseSpeed:mph'"
-            .to_owned())
+        Err(format!(
+            "needs the columns of releases (speed, pitch and polar or aim), of landings (entry_angle, depth, left_right) or of \
+             trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s{}",
+            map_proposal(columns)
+        ))
     }
 }
 
@@ -132,7 +134,8 @@ enum Raw {
     Flight(Box<FlightFit>, Vec<TrackedPoint>),
 }
 
-/// A shot that is farther than this from the hoop's centre where it falls through its height is not aimed at it, m.
+/// A shot that is farther than this from the hoop's centre where it falls through its height is not
+/// aimed at it, m.
 const FARTHEST_LANDING_M: f64 = 1.5;
 /// Depths that a sensor can report: half a foot before and behind the ring, m.
 const DEPTHS_M: (f64, f64) = (-9.0 * INCH_M, 27.0 * INCH_M);
@@ -628,7 +631,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The covariance of releases from landings at each place: that of its mean landing, so that it is the same for all.
+    /// The covariance of releases from landings at each place: that of its mean landing, so that it
+    /// is the same for all.
     fn noise_of_landings(
         &self,
         raw: &[RawShot],

@@ -17,8 +17,8 @@ pub(crate) struct BallParams<T = f64> {
     pub(crate) inverse_gravity: T,
     /// Deceleration by drag over the square of the speed, 1/m.
     pub(crate) drag: T,
-    /// `k^(1/4)/g^(1/2)` with k the drag: its fourth power times that of a speed is the deviation of a path by drag while
-    /// gravity changes the velocity by that speed, m.
+    /// `k^(1/4)/g^(1/2)` with k the drag: its fourth power times that of a speed is the deviation
+    /// of a path by drag while gravity changes the velocity by that speed, m.
     pub(crate) drag_strength: T,
     /// Acceleration by lift over the product of spin and speed.
     pub(crate) lift: T,
@@ -68,8 +68,8 @@ impl<T: Real> BallParams<T> {
         self.gravity.splat_mask(value)
     }
 
-    /// The acceleration by drag and lift of a ball with the given velocity and spin, in any right-handed frame.
-    /// It is zero without air.
+    /// The acceleration by drag and lift of a ball with the given velocity and spin, in any
+    /// right-handed frame. It is zero without air.
     #[inline(always)]
     pub(crate) fn air_acceleration(&self, velocity: Vec3<T>, spin: Vec3<T>) -> Vec3<T> {
         let (v, w) = (velocity, spin);

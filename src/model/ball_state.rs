@@ -52,7 +52,8 @@ impl<T: Real> BallState<T> {
         }
     }
 
-    /// The state after a classical Runge-Kutta step of `dt` with the derivatives of its four stages.
+    /// The state after a classical Runge-Kutta step of `dt` with the derivatives of its four
+    /// stages.
     #[inline(always)]
     pub(crate) fn runge_kutta_step(&self, stages: [&StateDerivative<T>; 4], dt: T) -> Self {
         let [k1, k2, k3, k4] = stages;

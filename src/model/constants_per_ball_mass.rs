@@ -1,5 +1,5 @@
-//! The constants of [`Physics`] in the form that the equations use: per unit of ball mass, and one copy
-//! for each lane.
+//! The constants of [`Physics`] in the form that the equations use: per unit of ball mass, and one
+//! copy for each lane.
 
 use super::ball_params::BallParams;
 use super::physics::{BoardEdge, Physics};
@@ -53,8 +53,8 @@ impl ModelParams {
 }
 
 impl<T: Real> ModelParams<T> {
-    /// Whether arcs of flight are parabolas that end at the paper's solids: then the first touch has nearly a closed
-    /// form.
+    /// Whether arcs of flight are parabolas that end at the paper's solids: then the first touch
+    /// has nearly a closed form.
     #[inline(always)]
     pub(crate) fn has_paper_flight(&self) -> bool {
         !self.ball.has_air && !self.board.has_edges && !self.ring.has_bracket

@@ -127,8 +127,8 @@ impl Court {
             || (x_m * x_m + y_m * y_m).sqrt() <= self.three_radius_m + ON_LINE_M
     }
 
-    /// Locations along the three-point line from one corner to the other, `step_m` apart along the line
-    /// and symmetric about its top: (x, y), m.
+    /// Locations along the three-point line from one corner to the other, `step_m` apart along the
+    /// line and symmetric about its top: (x, y), m.
     #[must_use]
     pub fn along_three(&self, step_m: f64) -> Vec<(f64, f64)> {
         let (break_x, corner_y, radius) = (

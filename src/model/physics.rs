@@ -1,7 +1,8 @@
 //! The physical constants of ball, ring and board, and their checks.
 //!
-//! All values are in SI units. The defaults are those of "Numerical Analysis of the Basketball Shot"
-//! (J. Dyn. Sys. Meas. Control, DOI 10.1115/1.1636193), called *the paper* throughout this crate.
+//! All values are in SI units. The defaults are those of "Numerical Analysis of the Basketball
+//! Shot" (J. Dyn. Sys. Meas. Control, DOI 10.1115/1.1636193), called *the paper* throughout this
+//! crate.
 
 use super::restitution::{contact_time_s, damping_for_restitution_kg_s, restitution_of_damping};
 use super::solids::SolidId;
@@ -48,14 +49,14 @@ pub struct Physics {
     pub air: Air,
     /// A shot that has not ended after this time counts as lodged, s.
     pub time_limit_s: f64,
-    /// A ball that rolls without slip on two solids at once for this long is lodged, s. With 0 such a
-    /// ball is simulated up to the time limit.
+    /// A ball that rolls without slip on two solids at once for this long is lodged, s. With 0 such
+    /// a ball is simulated up to the time limit.
     pub lodged_after_s: f64,
 }
 
 impl Physics {
-    /// The paper's constants (its nomenclature), with its printed damping of 1.53 lb s/ft: a ring without
-    /// thickness, no bracket, no air.
+    /// The paper's constants (its nomenclature), with its printed damping of 1.53 lb s/ft: a ring
+    /// without thickness, no bracket, no air.
     #[must_use]
     pub fn paper() -> Self {
         let contact = ContactLaw {
@@ -85,8 +86,8 @@ impl Physics {
         }
     }
 
-    /// The paper's constants with another coefficient of restitution of a head-on bounce, above 0 and
-    /// at most 1.
+    /// The paper's constants with another coefficient of restitution of a head-on bounce, above 0
+    /// and at most 1.
     ///
     /// # Errors
     /// `restitution` is not in that range.
@@ -96,7 +97,8 @@ impl Physics {
         Ok(physics)
     }
 
-    /// Sets the damping of both contacts that gives a coefficient of restitution at their stiffness.
+    /// Sets the damping of both contacts that gives a coefficient of restitution at their
+    /// stiffness.
     ///
     /// # Errors
     /// `restitution` is not above 0 and at most 1.
@@ -156,7 +158,8 @@ impl Physics {
         self
     }
 
-    /// Coefficient of restitution of a head-on bounce off a solid, `exp(-pi alpha/omega)` (Appendix 1).
+    /// Coefficient of restitution of a head-on bounce off a solid, `exp(-pi alpha/omega)` (Appendix
+    /// 1).
     #[must_use]
     pub fn restitution_on(&self, solid: SolidId) -> f64 {
         let contact = self.contact(solid);
@@ -225,7 +228,8 @@ impl Physics {
         self.half_air_mass_per_m() * self.air.drag_coefficient
     }
 
-    /// Acceleration by lift over the product of spin and speed, `rho A R C/(2 m)` for `C_L = C R w/v`.
+    /// Acceleration by lift over the product of spin and speed, `rho A R C/(2 m)` for `C_L = C R
+    /// w/v`.
     #[must_use]
     pub fn lift_factor(&self) -> f64 {
         self.half_air_mass_per_m() * self.ball_radius_m * self.air.lift_slope
@@ -252,8 +256,8 @@ impl Physics {
         with_common_keys(errors)
     }
 
-    /// The range of each constant. They are wide: what is outside is a slip of units, or a body whose bounces the
-    /// integrator would follow without end.
+    /// The range of each constant. They are wide: what is outside is a slip of units, or a body
+    /// whose bounces the integrator would follow without end.
     fn ranges(&self) -> [(&'static str, f64, (f64, f64), &'static str); 23] {
         const LENGTH: (f64, f64) = (0.01, 10.0);
         const LENGTH_TEXT: &str = "from 0.01 m to 10 m";
@@ -538,8 +542,8 @@ impl PhysicsError {
     }
 }
 
-/// The same errors, where one of the board's contact and one of the hoop's with the same value become one of the key
-/// that sets both.
+/// The same errors, where one of the board's contact and one of the hoop's with the same value
+/// become one of the key that sets both.
 fn with_common_keys(mut errors: Vec<PhysicsError>) -> Vec<PhysicsError> {
     const COMMON: [(&str, &str, &str); 3] = [
         ("stiffness", "board_stiffness", "hoop_stiffness"),

@@ -1,8 +1,8 @@
 //! The physics of real balls, boards and hoops, by rule book.
 //!
-//! What comes from where: sizes and masses from the rule books; the restitution of ball and board from the rules'
-//! drop test; drag from measured three-point shots; friction, the hoop's restitution, the bracket and the board's
-//! edges are assumed (`docs/model.md` has the sources).
+//! What comes from where: sizes and masses from the rule books; the restitution of ball and board
+//! from the rules' drop test; drag from measured three-point shots; friction, the hoop's
+//! restitution, the bracket and the board's edges are assumed (`docs/model.md` has the sources).
 
 use super::physics::{Air, BoardEdge, ContactLaw, Physics};
 use super::solids::SolidId;
@@ -113,7 +113,8 @@ const INCH_BOARD: Sizes = Sizes {
     hoop_height: 10.0 * FOOT_M,
 };
 
-/// FIBA: inner diameter 450 to 459 mm, its edge 151 mm from the board, whose lower edge is 2900 mm high.
+/// FIBA: inner diameter 450 to 459 mm, its edge 151 mm from the board, whose lower edge is 2900 mm
+/// high.
 const FIBA_BOARD: Sizes = Sizes {
     ring_radius: 0.5 * 0.4545 + 0.009,
     tube_diameter: 0.018,

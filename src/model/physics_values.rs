@@ -1,4 +1,5 @@
-//! The values of a physics in words: what each one is, and whether it is measured, from a rule book or assumed.
+//! The values of a physics in words: what each one is, and whether it is measured, from a rule book
+//! or assumed.
 
 use super::physics::{BoardEdge, ContactLaw, Physics};
 use super::restitution::restitution_of_damping;

@@ -148,7 +148,8 @@ pub fn same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Refuses a path that exists and is no regular file: a link would lead elsewhere, and a pipe would be waited for.
+/// Refuses a path that exists and is no regular file: a link would lead elsewhere, and a pipe would
+/// be waited for.
 ///
 /// # Errors
 /// It is a link, whatever it leads to, a pipe, a device or a folder.

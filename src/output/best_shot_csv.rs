@@ -91,9 +91,9 @@ pub fn curves_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
     csv.into_bytes()
 }
 
-/// The sensitivity of the best shots, with the columns of [`SENSITIVITY_HEADER`]. The gains are differences of
-/// P. The topic is `window_low` or `window_high` (no gain), `without` or `a_tenth_less` error in the variable,
-/// or another `backspin` or `release_height`.
+/// The sensitivity of the best shots, with the columns of [`SENSITIVITY_HEADER`]. The gains are
+/// differences of P. The topic is `window_low` or `window_high` (no gain), `without` or
+/// `a_tenth_less` error in the variable, or another `backspin` or `release_height`.
 #[must_use]
 pub fn sensitivity_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
     let (long, metre) = units.length();

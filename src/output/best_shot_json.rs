@@ -70,7 +70,8 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: UnitSystem) -> Rec
     ]
 }
 
-/// The name of a nominal variable with the suffix of its unit, and the size of the unit in SI units.
+/// The name of a nominal variable with the suffix of its unit, and the size of the unit in SI
+/// units.
 pub(super) fn name_with_unit(variable: NominalVariable, units: UnitSystem) -> (String, f64) {
     let (long, metre) = units.length();
     let name = variable.name();

@@ -143,7 +143,8 @@ fn table_row(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> 
     ]
 }
 
-/// Where a shot is aimed, in short lines: on the board for a bank shot, else relative to the hoop's centre.
+/// Where a shot is aimed, in short lines: on the board for a bank shot, else relative to the hoop's
+/// centre.
 fn aim_lines(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
     let (short, short_metre) = units.short_length();
     match (kind, shot.outcome.board_point_m, shot.aim_past_centre_m) {

@@ -17,7 +17,8 @@ pub fn object(record: Record) -> Value {
     Value::Object(record.into_iter().collect())
 }
 
-/// The program, its version and commit, and the hash of the configuration: every result carries them.
+/// The program, its version and commit, and the hash of the configuration: every result carries
+/// them.
 #[must_use]
 pub fn provenance(hash: &str) -> Record {
     vec![

@@ -1,5 +1,5 @@
-//! Results for people and programs: tables and records with units in their names, and files that are complete or
-//! absent.
+//! Results for people and programs: tables and records with units in their names, and files that
+//! are complete or absent.
 
 pub mod atomic_file;
 pub mod best_shot_csv;

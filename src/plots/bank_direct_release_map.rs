@@ -1,8 +1,8 @@
-//! The best bank and the best direct shot of a location in release space: maps over speed and pitch angle
-//! about them, and the difference of these maps.
+//! The best bank and the best direct shot of a location in release space: maps over speed and pitch
+//! angle about them, and the difference of these maps.
 //!
-//! Each map has the polar angle and the spins of its own shot. If both shots have nearly the same, one map
-//! shows both.
+//! Each map has the polar angle and the spins of its own shot. If both shots have nearly the same,
+//! one map shows both.
 
 use super::colormaps::{NOT_SIGNIFICANT, Rgb, diverging};
 use super::colour_key::ColourScale;
@@ -17,8 +17,8 @@ use std::f64::consts::SQRT_2;
 
 /// Cells of a map along speed and pitch angle.
 const CELLS: (usize, usize) = (400, 300);
-/// Range of a map on each side of a shot: the speed in standard deviations, but at least this many m/s; the
-/// pitch angle in rad.
+/// Range of a map on each side of a shot: the speed in standard deviations, but at least this many
+/// m/s; the pitch angle in rad.
 const SPEED_MARGIN_SIGMAS: f64 = 6.0;
 const MIN_SPEED_MARGIN_M_S: f64 = 0.5;
 const PITCH_MARGIN_RAD: f64 = 12.0 * DEGREE_RAD;
@@ -29,8 +29,8 @@ const MIN_SIGNIFICANT: f64 = 2.0 * CELL_STANDARD_ERROR * SQRT_2;
 /// y of the maps, px; the title stands above them.
 const MAPS_TOP: f64 = 34.0;
 
-/// Draws the outcomes of error-free shots about the best shots, `cond` in Eq. 21 of the paper, one pixel
-/// for each shot; `None` if there are no shots.
+/// Draws the outcomes of error-free shots about the best shots, `cond` in Eq. 21 of the paper, one
+/// pixel for each shot; `None` if there are no shots.
 #[must_use]
 pub fn draw_outcomes(profile: &Profile, shots: &[PlottedShot]) -> Option<Plot> {
     let maps = BestShotMaps::new(profile, shots)?;
@@ -53,7 +53,8 @@ pub fn draw_outcomes(profile: &Profile, shots: &[PlottedShot]) -> Option<Plot> {
     })
 }
 
-/// Draws P about the best shots, and the difference of bank and direct; `None` if there are no shots.
+/// Draws P about the best shots, and the difference of bank and direct; `None` if there are no
+/// shots.
 #[must_use]
 pub fn draw_probabilities(profile: &Profile, shots: &[PlottedShot]) -> Option<Plot> {
     let maps = BestShotMaps::new(profile, shots)?;

@@ -1,7 +1,7 @@
 //! Colours that people with any colour vision can tell apart.
 //!
-//! Sources: viridis, and the purple-orange scale of ColorBrewer, both from the crate colorous; the eight
-//! categorical colours of Okabe and Ito 2008.
+//! Sources: viridis, and the purple-orange scale of ColorBrewer, both from the crate colorous; the
+//! eight categorical colours of Okabe and Ito 2008.
 
 use crate::dynamics::OutcomeKind;
 
@@ -48,7 +48,8 @@ pub fn diverging(fraction: f64) -> Rgb {
     [colour.r, colour.g, colour.b]
 }
 
-/// The colour of an outcome. All missed shots have the colour of [`NO_VALUE`], so the made ones stand out.
+/// The colour of an outcome. All missed shots have the colour of [`NO_VALUE`], so the made ones
+/// stand out.
 #[must_use]
 pub fn of_outcome(kind: OutcomeKind) -> Rgb {
     MADE_KINDS

@@ -39,7 +39,8 @@ impl ColourScale<'static> {
 }
 
 impl ColourScale<'_> {
-    /// Draws a colour bar of a given height from its upper left corner, with its numbers to the right.
+    /// Draws a colour bar of a given height from its upper left corner, with its numbers to the
+    /// right.
     pub fn draw(&self, svg: &mut Svg, (x, y): (f64, f64), height: f64) {
         let range = self.range;
         let colours: Vec<[u8; 4]> = (0..BAR_STEPS)

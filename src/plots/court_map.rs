@@ -118,7 +118,8 @@ impl CourtMap<'_> {
         }
     }
 
-    /// Writes a short text on places (x, y), m, of a grid whose squares are wide enough; bold where asked.
+    /// Writes a short text on places (x, y), m, of a grid whose squares are wide enough; bold where
+    /// asked.
     pub fn draw_numbers(
         &self,
         svg: &mut Svg,
@@ -146,12 +147,18 @@ impl CourtMap<'_> {
         }
     }
 
-    /// Outlines an area of grid places (x, y), m: draws the sides of its squares that have no neighbour in
-    /// the area. Without a grid, draws nothing.
+    /// Outlines an area of grid places (x, y), m: draws the sides of its squares that have no
+    /// neighbour in the area. Without a grid, draws a circle around each place.
     pub fn draw_outline(&self, svg: &mut Svg, corner: (f64, f64), area: &[(f64, f64)]) {
-        let Some(step_m) = self.step_m else { return };
         let axes = self.axes(corner);
         let (_, unit_m) = self.units.length();
+        let Some(step_m) = self.step_m else {
+            let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\"");
+            for &(x_m, y_m) in area {
+                svg.circle(axes.pixel((y_m / unit_m, x_m / unit_m)), 9.0, &style);
+            }
+            return;
+        };
         let index = |v: f64| (v / step_m).round() as i64;
         let cells: BTreeSet<(i64, i64)> = area.iter().map(|&(x, y)| (index(x), index(y))).collect();
         let pixel = |i: f64, j: f64| axes.pixel((j * step_m / unit_m, i * step_m / unit_m));

@@ -14,8 +14,8 @@ use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 
 /// Spacing of the trajectories in flight, s.
 const INTERVAL_S: f64 = 0.005;
-/// Steps of the swirl per head-on contact time: more than for a shot, because the ball stays in contact for
-/// several turns.
+/// Steps of the swirl per head-on contact time: more than for a shot, because the ball stays in
+/// contact for several turns.
 const SWIRL_STEPS: u32 = 64;
 /// Downward speed that ends the swirl of Fig. 11, m/s. Without any disturbance it would go on.
 const SWIRL_DISTURBANCE_M_S: f64 = 1e-6;
@@ -142,9 +142,9 @@ fn draw_shot(name: &str, profile: &Profile, title: &str) -> Result<Plot, FigureE
     ))
 }
 
-/// The state of a ball that swirls steadily around the inside of the ring (section IV of the paper) with the
-/// tilt delta, and with the spin of a ball that rolls. The paper prints its sign and lever arm wrong; see
-/// `docs/model.md`.
+/// The state of a ball that swirls steadily around the inside of the ring (section IV of the paper)
+/// with the tilt delta, and with the spin of a ball that rolls. The paper prints its sign and lever
+/// arm wrong; see `docs/model.md`.
 fn swirl_start(physics: &Physics, delta_rad: f64) -> BallState {
     let (sin, cos) = libm::sincos(delta_rad);
     let weight_n = physics.ball_mass_kg * physics.gravity_m_s2;

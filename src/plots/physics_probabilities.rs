@@ -7,7 +7,8 @@ use crate::best_shot::PhysicsRow;
 /// Colours of the best direct shot, of the best bank shot, and of the first row's shot.
 const DIRECT_COLOUR: &str = "#0072b2";
 const BANK_COLOUR: &str = "#d55e00";
-/// Width of the drawing, left edge and width of the scale, top of the first row and height of a row, px.
+/// Width of the drawing, left edge and width of the scale, top of the first row and height of a
+/// row, px.
 const WIDTH: f64 = 980.0;
 const LEFT: f64 = 350.0;
 const SCALE_WIDTH: f64 = 590.0;

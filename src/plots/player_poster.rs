@@ -1,45 +1,37 @@
-//! One court map for a player's wall: makes in 100 shots at each place, and where to bank. It reads as well in black and
-//! white.
+//! One court map for a player's wall: makes in 100 shots at each place, and where to bank. It reads
+//! as well in black and white.
 
 use super::colormaps::{Rgb, sequential};
 use super::colour_key::{ColourKey, ColourScale};
 use super::svg::{Anchor, Plot, Svg};
-use super::sweep_results::{PlaceResults, SweepResults};
+use super::sweep_results::SweepResults;
 use crate::analysis::sensitivity::Difference;
-use crate::best_shot::ShotKind;
-use crate::sweep::bank_direct_difference::{difference, is_significant};
 use crate::sweep::columns;
-use crate::units::FOOT_M;
+use crate::sweep::place_chances::{PlaceChances, Preference};
+use crate::units::UnitSystem;
 
 /// y of the map, px.
 const MAP_TOP: f64 = 30.0;
 
-/// The map, and what it says in three sentences, two numbers each; `None` if nothing can be made from any place.
+/// The map, and what it says in three sentences, two numbers each; `None` if nothing can be made
+/// from any place.
 #[must_use]
 pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
-    let p = |place: &PlaceResults| place.best()?.real(columns::PROBABILITY);
-    let found: Vec<(f64, &PlaceResults)> = results
-        .places()
+    let found: Vec<(f64, &PlaceChances)> = results
+        .chances()
         .iter()
-        .filter_map(|place| Some((p(place)?, place)))
+        .filter_map(|place| Some((place.best()?.value, place)))
         .collect();
-    let best = found
-        .iter()
-        .copied()
-        .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
-    let worst = found
-        .iter()
-        .copied()
-        .reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-    let is_bank = |place: &PlaceResults| {
-        bank_gain(results, place).is_some_and(|gain| is_significant(gain) && gain.value > 0.0)
-    };
-    let bank: Vec<(f64, f64)> = results
-        .places()
-        .iter()
-        .filter(|place| is_bank(place))
-        .map(|results| (results.place.x_m, results.place.y_m))
-        .collect();
+    let first = found.first().copied()?;
+    let best = found.iter().copied();
+    let best = best.fold(first, |a, b| if b.0 > a.0 { b } else { a });
+    let worst = found.iter().copied();
+    let worst = worst.fold(first, |a, b| if b.0 < a.0 { b } else { a });
+    let is_bank = |place: &PlaceChances| place.preference() == Some(Preference::Bank);
+    let at = |place: &PlaceChances| (place.place.x_m, place.place.y_m);
+    let bank = results.chances().iter().filter(|place| is_bank(place));
+    let bank: Vec<&PlaceChances> = bank.collect();
+    let outlined: Vec<(f64, f64)> = bank.iter().map(|place| at(place)).collect();
     let map = results.court_map();
     let (width, height) = map.size();
     let mut svg = Svg::new(width, height + MAP_TOP);
@@ -56,33 +48,25 @@ pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
         corner,
         "makes in 100 shots",
         &key,
-        &|place| Some(pale(p(place)?)),
+        &|place| Some(pale(place.best()?.real(columns::PROBABILITY)?)),
     );
-    map.draw_outline(&mut svg, corner, &bank);
+    map.draw_outline(&mut svg, corner, &outlined);
     let numbers: Vec<((f64, f64), String, bool)> = found
         .iter()
-        .map(|(p, results)| {
-            let at = (results.place.x_m, results.place.y_m);
-            (at, format!("{:.0}", 100.0 * p), is_bank(results))
-        })
+        .map(|(p, place)| (at(place), format!("{:.0}", 100.0 * p), is_bank(place)))
         .collect();
     map.draw_numbers(&mut svg, corner, &numbers);
-    let far =
-        |place: &PlaceResults| format!("{:.0} ft", place.place.location().distance_m / FOOT_M);
+    let units = results.units();
     let words = [
         format!(
-            "Your surest place is {} from the hoop: {:.0} of 100 go in.",
-            far(best.1),
+            "Your surest place is {}: {:.0} of 100 go in.",
+            best.1.in_words(units),
             100.0 * best.0
         ),
+        bank_in_words(&bank, units),
         format!(
-            "Bank the ball where the map has an outline: at {} of {} places.",
-            bank.len(),
-            found.len()
-        ),
-        format!(
-            "Your hardest place is {} from the hoop: {:.0} of 100 go in.",
-            far(worst.1),
+            "Your hardest place is {}: {:.0} of 100 go in.",
+            worst.1.in_words(units),
             100.0 * worst.0
         ),
     ];
@@ -99,8 +83,22 @@ fn pale(p: f64) -> Rgb {
     sequential(p).map(|part| 140 + (u16::from(part) * 115 / 255) as u8)
 }
 
-fn bank_gain(results: &SweepResults<'_>, place: &PlaceResults) -> Option<Difference> {
-    let direct = results.probability(place, ShotKind::Direct)?;
-    let bank = results.probability(place, ShotKind::Bank)?;
-    Some(difference(bank, direct))
+/// Where banking helps most, and how to.
+fn bank_in_words(bank: &[&PlaceChances], units: UnitSystem) -> String {
+    let gain = |place: &PlaceChances| place.bank_gain().map_or(1.0, |gain| gain.value);
+    let most = bank
+        .iter()
+        .reduce(|a, b| if gain(b) > gain(a) { b } else { a });
+    let Some(most) = most else {
+        return "Shoot direct: no place is surely better off the board.".to_owned();
+    };
+    let in_hundred = |p: Option<Difference>| p.map(|p| format!("{:.0}", 100.0 * p.value));
+    let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));
+    let aim = most.board_aim_in_words(units);
+    format!(
+        "Bank the ball where the map has an outline; it helps most {}: {} of 100 go in{direct}. Aim {}.",
+        most.in_words(units),
+        in_hundred(most.bank).unwrap_or_default(),
+        aim.unwrap_or_else(|| "at the board".to_owned())
+    )
 }

@@ -1,6 +1,7 @@
 //! SVG to PNG, and grids of colours as PNG.
 //!
-//! Text uses the fonts in `assets/` and never those of the machine, so the pixels are the same everywhere.
+//! Text uses the fonts in `assets/` and never those of the machine, so the pixels are the same
+//! everywhere.
 
 use std::sync::{Arc, LazyLock};
 
@@ -45,8 +46,8 @@ pub fn to_png(svg: &str, scale: f32) -> Result<Vec<u8>, RasteriseError> {
         .map_err(|error| RasteriseError(error.to_string()))
 }
 
-/// A grid of colours (red, green, blue, opacity) as PNG, row by row from the top; `None` if the number of
-/// colours does not fit.
+/// A grid of colours (red, green, blue, opacity) as PNG, row by row from the top; `None` if the
+/// number of colours does not fit.
 pub(super) fn encode_pixels(columns: usize, rows: usize, colours: &[[u8; 4]]) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, columns as u32, rows as u32);

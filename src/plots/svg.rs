@@ -31,8 +31,8 @@ pub enum Anchor {
     End,
 }
 
-/// A drawing. Coordinates are in pixels from the upper left corner, y down; `style` is a list of SVG
-/// attributes.
+/// A drawing. Coordinates are in pixels from the upper left corner, y down; `style` is a list of
+/// SVG attributes.
 #[derive(Clone, Debug)]
 pub struct Svg {
     width: f64,
@@ -178,7 +178,8 @@ impl Svg {
         );
     }
 
-    /// Draws a grid of colours (red, green, blue, opacity), row by row from the top, with sharp edges.
+    /// Draws a grid of colours (red, green, blue, opacity), row by row from the top, with sharp
+    /// edges.
     pub fn pixels(
         &mut self,
         (x, y): (f64, f64),

@@ -11,14 +11,14 @@ use crate::sweep::bank_direct_difference::{
     BankAdvantage, SIGNIFICANT_SIGMAS, difference, is_significant,
 };
 
-/// Limits of the colour scale of the difference. Larger differences have the colour of the largest on the
-/// scale.
+/// Limits of the colour scale of the difference. Larger differences have the colour of the largest
+/// on the scale.
 const SCALE_LIMITS: (f64, f64) = (0.02, 0.1);
 /// y of the maps, px; the title stands above them.
 const MAPS_TOP: f64 = 34.0;
 
-/// Draws P of direct and bank shots and their difference, with an outline where bank shots are better;
-/// `None` if the sweep does not have both kinds.
+/// Draws P of direct and bank shots and their difference, with an outline where bank shots are
+/// better; `None` if the sweep does not have both kinds.
 #[must_use]
 pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     if !results.has_both_kinds() {

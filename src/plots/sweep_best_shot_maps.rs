@@ -1,5 +1,5 @@
-//! The best shot of either kind over the court, one map for each of its values: P, kind, pitch angle,
-//! backspin, gain from backspin, and the costliest error.
+//! The best shot of either kind over the court, one map for each of its values: P, kind, pitch
+//! angle, backspin, gain from backspin, and the costliest error.
 
 use super::colormaps::{OKABE_ITO, Rgb, sequential};
 use super::colour_key::{ColourKey, ColourScale};

@@ -9,14 +9,14 @@ use crate::analysis::sensitivity::Difference;
 use crate::sweep::bank_direct_difference::{SIGNIFICANT_SIGMAS, difference};
 use std::collections::BTreeMap;
 
-/// Limits of the colour scale of the difference. Larger differences have the colour of the largest on the
-/// scale.
+/// Limits of the colour scale of the difference. Larger differences have the colour of the largest
+/// on the scale.
 const SCALE_LIMITS: (f64, f64) = (0.02, 0.5);
 /// y of the maps, px; the title stands above them.
 const MAPS_TOP: f64 = 34.0;
 
-/// Draws the best shots of two sweeps and their difference, `second` minus `first`; `None` if they share no
-/// place with results.
+/// Draws the best shots of two sweeps and their difference, `second` minus `first`; `None` if they
+/// share no place with results.
 #[must_use]
 pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot> {
     let second_places = places_by_position(second);

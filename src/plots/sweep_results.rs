@@ -10,8 +10,10 @@ use crate::model::league_courts::Court;
 use crate::sweep::bank_direct_difference::is_significant;
 use crate::sweep::columns;
 use crate::sweep::job_list::Jobs;
+use crate::sweep::place_chances::PlaceChances;
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::{CourtPlace, Region, SweepConfig};
+use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 
 /// The results at one place.
@@ -38,6 +40,7 @@ pub struct SweepResults<'a> {
     config: &'a SweepConfig,
     court: Court,
     places: Vec<PlaceResults>,
+    chances: Vec<PlaceChances>,
     kinds: Vec<ShotKind>,
 }
 
@@ -67,12 +70,23 @@ impl<'a> SweepResults<'a> {
             config,
             court: config.league.court(),
             places,
+            chances: PlaceChances::of_sweep(config, rows),
             kinds: jobs.kinds,
         }
     }
 
     pub(super) fn places(&self) -> &[PlaceResults] {
         &self.places
+    }
+
+    /// The chances at each place.
+    pub(super) fn chances(&self) -> &[PlaceChances] {
+        &self.chances
+    }
+
+    /// Units of the axes and of words.
+    pub(super) fn units(&self) -> UnitSystem {
+        self.config.settings.output.units
     }
 
     /// Whether the sweep has bank and direct shots.

@@ -1,16 +1,16 @@
 //! The normal weights of Eq. 25 on the axes of a table, and the shifts of its points.
 //!
-//! An axis may be shifted by a fraction of a cell that depends on the cells of the axes that are summed after
-//! it: the backspins of each pair of angles, the polar angles of each pitch angle, and the speeds of every
-//! line. The points are then a lattice in four dimensions. Without the shifts the thin surfaces between made
-//! and missed alias with the grid (errors up to 0.018 in P).
+//! An axis may be shifted by a fraction of a cell that depends on the cells of the axes that are
+//! summed after it: the backspins of each pair of angles, the polar angles of each pitch angle, and
+//! the speeds of every line. The points are then a lattice in four dimensions. Without the shifts
+//! the thin surfaces between made and missed alias with the grid (errors up to 0.018 in P).
 
 use crate::math::evenly_spaced::CellAxis;
 use crate::math::normal_distribution;
 
-/// Shift of the speeds from line to line, in cells, per cell of pitch angle, polar angle and backspin. These
-/// and the next two were the best of 60 random draws, judged by the error of P at 72 nominal shots of six
-/// shooters and locations. Half of the 60 had at most 1.7 times that error.
+/// Shift of the speeds from line to line, in cells, per cell of pitch angle, polar angle and
+/// backspin. These and the next two were the best of 60 random draws, judged by the error of P at
+/// 72 nominal shots of six shooters and locations. Half of the 60 had at most 1.7 times that error.
 const SPEED_SHIFT: [f64; 3] = [0.267, 0.891, 0.564];
 /// Shift of the backspins per cell of pitch angle and polar angle.
 const SPIN_SHIFT: [f64; 2] = [0.224, 0.082];
@@ -18,8 +18,9 @@ const SPIN_SHIFT: [f64; 2] = [0.224, 0.082];
 const POLAR_SHIFT: f64 = 0.571;
 /// Weights beyond this many standard deviations are omitted. (They sum to 4e-8.)
 const REACH_SIGMAS: f64 = 5.5;
-/// A standard deviation below this fraction of a cell is widened to it: a narrower weight would fall between
-/// the points. This affects the search only; a reported probability is computed without a table.
+/// A standard deviation below this fraction of a cell is widened to it: a narrower weight would
+/// fall between the points. This affects the search only; a reported probability is computed
+/// without a table.
 const MIN_SIGMA_CELLS: f64 = 0.6;
 
 /// Shift of the polar angles of a pitch angle, 0 to 1 cells.

@@ -1,8 +1,8 @@
-//! P of one nominal shot by Eq. 25 on grids: exactly as the paper prints it, on one common grid, and on grids
-//! that are shifted from line to line.
+//! P of one nominal shot by Eq. 25 on grids: exactly as the paper prints it, on one common grid,
+//! and on grids that are shifted from line to line.
 //!
-//! Both serve to check the Sobol estimate, which needs a hundredth of the shots. Only the four errors of Eq.
-//! 25 can be integrated like this.
+//! Both serve to check the Sobol estimate, which needs a hundredth of the shots. Only the four
+//! errors of Eq. 25 can be integrated like this.
 
 use super::gaussian_cell_weights::{Gaussian, polar_shift, speed_shift, spin_shift, weight};
 use super::probability_and_error::{Estimate, standard_error_of_mean};
@@ -31,8 +31,8 @@ pub struct GridSum {
     pub shots: u64,
 }
 
-/// Eq. 25 as printed: `n` values of each of speed, pitch, polar angle and backspin over all that can be made
-/// from the location, on one common grid.
+/// Eq. 25 as printed: `n` values of each of speed, pitch, polar angle and backspin over all that
+/// can be made from the location, on one common grid.
 #[must_use]
 pub fn common_grid(
     profile: &Profile,
@@ -67,8 +67,8 @@ pub fn common_grid(
     Grid::new(profile, plan, nominal, axes, None).sum(progress)
 }
 
-/// Eq. 25 on four shifted grids of `n` to the fourth points each, which reach 4.5 standard deviations about
-/// the nominal shot. The scatter of the four gives the standard error.
+/// Eq. 25 on four shifted grids of `n` to the fourth points each, which reach 4.5 standard
+/// deviations about the nominal shot. The scatter of the four gives the standard error.
 #[must_use]
 pub fn shifted_grids(
     profile: &Profile,

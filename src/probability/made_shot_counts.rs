@@ -1,4 +1,5 @@
-//! Counts of made shots. They are whole numbers, so the order in which blocks finish changes nothing.
+//! Counts of made shots. They are whole numbers, so the order in which blocks finish changes
+//! nothing.
 
 use crate::dynamics::{Ending, OutcomeKind, Verdict};
 

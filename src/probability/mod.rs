@@ -1,11 +1,12 @@
 //! The probability of making a shot (Eqs. 20-28 of the paper).
 //!
-//! [`NominalTable`] gives P of all nominal shots of a plan from one table of shots (Eq. 25). [`Sampler`]
-//! integrates one nominal shot with scrambled Sobol points. [`monte_carlo`] and [`grid_integration`] are
-//! independent methods to check them against.
+//! [`NominalTable`] gives P of all nominal shots of a plan from one table of shots (Eq. 25).
+//! [`Sampler`] integrates one nominal shot with scrambled Sobol points. [`monte_carlo`] and
+//! [`grid_integration`] are independent methods to check them against.
 //!
-//! An *unresolved* shot (the numerics gave up) counts neither as made nor as missed. P is the number of made
-//! shots over that of all shots, and the interval of P is widened upwards by the share of unresolved shots.
+//! An *unresolved* shot (the numerics gave up) counts neither as made nor as missed. P is the
+//! number of made shots over that of all shots, and the interval of P is widened upwards by the
+//! share of unresolved shots.
 
 mod gaussian_cell_weights;
 pub mod grid_integration;

@@ -1,8 +1,9 @@
-//! The probability of one nominal shot by plain Monte Carlo. It is slow, and independent of the Sobol points,
-//! the inverse normal distribution and the table: the other methods are checked against it.
+//! The probability of one nominal shot by plain Monte Carlo. It is slow, and independent of the
+//! Sobol points, the inverse normal distribution and the table: the other methods are checked
+//! against it.
 //!
-//! Each block of samples has a random stream of its own, keyed by (seed, block), so no result depends on the
-//! number of threads.
+//! Each block of samples has a random stream of its own, keyed by (seed, block), so no result
+//! depends on the number of threads.
 
 use super::made_shot_counts::Counts;
 use super::probability_and_error::{Estimate, standard_error};
@@ -20,8 +21,8 @@ const BLOCK: u64 = 4096;
 /// Samples of the pilot run that predicts the number of samples.
 const PILOT: u64 = 4 * BLOCK;
 
-/// P with at most the standard error `target`, from at most `budget` samples. A pilot run, the beginning of the
-/// same streams, predicts how many it takes.
+/// P with at most the standard error `target`, from at most `budget` samples. A pilot run, the
+/// beginning of the same streams, predicts how many it takes.
 #[must_use]
 pub fn estimate_within(
     profile: &Profile,
@@ -96,8 +97,8 @@ fn stream(seed: u64, block: u64) -> ChaCha12Rng {
     random
 }
 
-/// Draws nine normals for every sample, needed or not, so that an error of a sample does not depend on which
-/// other errors there are.
+/// Draws nine normals for every sample, needed or not, so that an error of a sample does not depend
+/// on which other errors there are.
 fn draw(distribution: &ReleaseDistribution, random: &mut ChaCha12Rng) -> Release {
     distribution.from_normal(std::array::from_fn(|_| StandardNormal.sample(random)))
 }

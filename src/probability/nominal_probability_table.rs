@@ -1,8 +1,8 @@
 //! P of all nominal shots of a plan from one table of shots.
 //!
-//! Whether a release is made does not depend on the nominal values. So one table serves all of them, and Eq.
-//! 25 factors into small matrices, one axis after the other: entry (nominal, cell) is the normal density in
-//! the cell, times the width of the cell.
+//! Whether a release is made does not depend on the nominal values. So one table serves all of
+//! them, and Eq. 25 factors into small matrices, one axis after the other: entry (nominal, cell) is
+//! the normal density in the cell, times the width of the cell.
 
 use super::gaussian_cell_weights::{
     Gaussian, WeightMatrix, add_weighted, polar_shift, speed_shift, spin_shift, weight,
@@ -16,19 +16,20 @@ use crate::search_space::{NominalGrid, TablePlan};
 use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseDispersion};
 use rayon::prelude::*;
 
-/// Least and greatest number of shots that are simulated together. More shots fill the lanes better; fewer
-/// take less memory.
+/// Least and greatest number of shots that are simulated together. More shots fill the lanes
+/// better; fewer take less memory.
 const MIN_BATCH_SHOTS: usize = 2048;
 /// See [`MIN_BATCH_SHOTS`].
 const MAX_BATCH_SHOTS: usize = 65_536;
 /// Greatest memory of a thread's batch, bytes.
 pub const MAX_BATCH_BYTES: usize =
     MAX_BATCH_SHOTS * (size_of::<BallState>() + size_of::<Verdict>() + size_of::<f64>());
-/// Batches for each thread, so that all threads end at about the same time. (No result depends on it.)
+/// Batches for each thread, so that all threads end at about the same time. (No result depends on
+/// it.)
 const BATCHES_PER_THREAD: usize = 8;
 
-/// The made shots of a plan, summed over speed and backspin with the weights of every nominal speed and
-/// backspin.
+/// The made shots of a plan, summed over speed and backspin with the weights of every nominal speed
+/// and backspin.
 #[derive(Clone, Debug)]
 pub struct NominalTable {
     plan: TablePlan,
@@ -211,7 +212,8 @@ struct TableSimulation<'a> {
 }
 
 impl TableSimulation<'_> {
-    /// Simulates the lines of some cells together, and sums those of each cell over speed and backspin.
+    /// Simulates the lines of some cells together, and sums those of each cell over speed and
+    /// backspin.
     fn run_cells<'a>(
         &self,
         cells: impl Iterator<Item = Cell> + Clone,
@@ -254,8 +256,8 @@ impl TableSimulation<'_> {
         }
     }
 
-    /// Adds the shots of a cell: a line of speeds for each backspin, or none if no speed of the plan is in
-    /// the bracket.
+    /// Adds the shots of a cell: a line of speeds for each backspin, or none if no speed of the
+    /// plan is in the bracket.
     fn add_shots(&self, (pitch, polar): Cell, memory: &mut CellBatch) {
         let plan = self.plan;
         let pitch_rad = plan.pitch.value(pitch, 0.5);
@@ -314,8 +316,9 @@ fn polar_weights(
     matrix
 }
 
-/// Applies a matrix along the middle axis of `[outer][cells][inner]`; returns `[outer][rows][inner]`. Each
-/// outer index may have its own matrix. Each output row is summed in the order of the cells.
+/// Applies a matrix along the middle axis of `[outer][cells][inner]`; returns
+/// `[outer][rows][inner]`. Each outer index may have its own matrix. Each output row is summed in
+/// the order of the cells.
 fn apply_along_axis<'a>(
     input: Vec<f64>,
     cells: usize,

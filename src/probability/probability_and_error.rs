@@ -42,9 +42,10 @@ impl MadeShares {
 }
 
 impl Estimate {
-    /// The 95 % interval of P. It comes from the scatter of the replicates; where few shots were made, or few
-    /// missed, it is Wilson's interval for the number of independent shots with the same standard error. Its upper
-    /// end is raised by the share of unresolved shots, for these could have been made.
+    /// The 95 % interval of P. It comes from the scatter of the replicates; where few shots were
+    /// made, or few missed, it is Wilson's interval for the number of independent shots with the
+    /// same standard error. Its upper end is raised by the share of unresolved shots, for these
+    /// could have been made.
     #[must_use]
     pub fn interval_95(&self) -> (f64, f64) {
         let shots = self.shots.max(1) as f64;
@@ -92,7 +93,8 @@ impl Estimate {
     }
 }
 
-/// Shots of the rarer outcome, made or missed, below which the scatter of the replicates is not trusted alone.
+/// Shots of the rarer outcome, made or missed, below which the scatter of the replicates is not
+/// trusted alone.
 const RARE: f64 = 200.0;
 /// Shots of the rarer outcome at which the scatter and the binomial variance have the same weight.
 const EVEN_WEIGHT: f64 = 2.5;
@@ -107,8 +109,9 @@ fn shrunk(probability: f64, shots: f64) -> f64 {
     (probability * shots + 2.0) / (shots + 4.0)
 }
 
-/// The standard error of P. Sobol points gain little where few shots are made or few missed, and the scatter of few
-/// counts says little: there it is drawn towards the binomial standard error, the more the fewer they are.
+/// The standard error of P. Sobol points gain little where few shots are made or few missed, and
+/// the scatter of few counts says little: there it is drawn towards the binomial standard error,
+/// the more the fewer they are.
 pub(super) fn standard_error(scatter: f64, probability: f64, shots: f64) -> f64 {
     if !is_rare(probability, shots) {
         return scatter;

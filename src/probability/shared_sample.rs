@@ -1,10 +1,10 @@
-//! The same random numbers for many nominal shots and shooters: their differences are then known much better
-//! than each P.
+//! The same random numbers for many nominal shots and shooters: their differences are then known
+//! much better than each P.
 //!
-//! The normal errors are drawn once. They are turned into releases of every distribution, and all of these
-//! releases are simulated in common batches. Where two distributions overlap well, the shots of one also tell about
-//! the other: each counts with the ratio of the two densities (importance sampling; Owen, *Monte Carlo theory,
-//! methods and examples*, 2013, chapter 9).
+//! The normal errors are drawn once. They are turned into releases of every distribution, and all
+//! of these releases are simulated in common batches. Where two distributions overlap well, the
+//! shots of one also tell about the other: each counts with the ratio of the two densities
+//! (importance sampling; Owen, *Monte Carlo theory, methods and examples*, 2013, chapter 9).
 
 use super::progress::Progress;
 use super::sobol_integration::{REPLICATES, Sampler};
@@ -16,7 +16,8 @@ use rayon::prelude::*;
 
 /// Points of each scramble.
 const POINTS: u32 = 512;
-/// Scrambles whose shots are simulated together: enough shots for the lanes, and few enough for the threads.
+/// Scrambles whose shots are simulated together: enough shots for the lanes, and few enough for the
+/// threads.
 const SCRAMBLES_PER_BATCH: usize = 16;
 /// Least effective number of shots, as a share of all, for which densities may be exchanged.
 const MIN_EFFECTIVE_SHARE: f64 = 0.5;
@@ -53,7 +54,8 @@ impl SharedSample {
         }
     }
 
-    /// Simulates the releases of some nominal shots, each of a shooter; the physics are those of `simulator`.
+    /// Simulates the releases of some nominal shots, each of a shooter; the physics are those of
+    /// `simulator`.
     pub(crate) fn simulate(
         &self,
         simulator: &Simulator,
@@ -100,8 +102,8 @@ impl SharedSample {
             .collect()
     }
 
-    /// The share that would be made under each scramble with another distribution; `None` if the two overlap too
-    /// little.
+    /// The share that would be made under each scramble with another distribution; `None` if the
+    /// two overlap too little.
     pub(crate) fn shares_of_other(
         &self,
         releases: &MadeReleases,
@@ -155,8 +157,8 @@ mod tests {
 
     #[test]
     fn val_weighted_shots_give_the_p_of_another_distribution() {
-        // Six comparisons with a separate simulation, at 5 standard errors: false alarm 4e-6. The errors are
-        // correlated.
+        // Six comparisons with a separate simulation, at 5 standard errors: false alarm 4e-6. The
+        // errors are correlated.
         let text = include_str!("../../configs/errors_in_all_nine_variables.toml");
         let profile = parse_profile(text, "").unwrap();
         let shot = Nominal {

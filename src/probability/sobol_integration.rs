@@ -1,9 +1,10 @@
 //! The probability of one nominal shot by scrambled Sobol points, transformed to normal errors.
 //!
-//! [`REPLICATES`] independent scrambles with the same number of points each give one mean. The mean of these
-//! is P, and their scatter gives its standard error (Owen 1997). Points are doubled until the error is small
-//! enough. If a doubling reduces the error to less than half, the scatter was small by chance: no rule for
-//! made and missed shots gains that much. Then half of the last error is reported.
+//! [`REPLICATES`] independent scrambles with the same number of points each give one mean. The mean
+//! of these is P, and their scatter gives its standard error (Owen 1997). Points are doubled until
+//! the error is small enough. If a doubling reduces the error to less than half, the scatter was
+//! small by chance: no rule for made and missed shots gains that much. Then half of the last error
+//! is reported.
 
 use super::made_shot_counts::Counts;
 use super::probability_and_error::Estimate;
@@ -22,8 +23,8 @@ pub const MIN_SHOTS: u64 = 2 * REPLICATES;
 pub const MAX_SHOTS: u64 = REPLICATES << 21;
 /// Points of the first round of each replicate.
 const FIRST_POINTS: u32 = 512;
-/// Least and greatest number of points of one parallel block: small enough to keep every thread busy, large
-/// enough for the lanes.
+/// Least and greatest number of points of one parallel block: small enough to keep every thread
+/// busy, large enough for the lanes.
 const MIN_BLOCK: u32 = 256;
 /// See [`MIN_BLOCK`].
 const MAX_BLOCK: u32 = 16_384;
@@ -107,8 +108,8 @@ impl<'a> Sampler<'a> {
             .reduce(Counts::default, Counts::plus)
     }
 
-    /// P of a nominal shot with at most the standard error `target`. The points are doubled until it is met,
-    /// or until [`MAX_SHOTS`] are reached: look at the standard error.
+    /// P of a nominal shot with at most the standard error `target`. The points are doubled until
+    /// it is met, or until [`MAX_SHOTS`] are reached: look at the standard error.
     #[must_use]
     pub fn estimate(
         &self,

@@ -1,4 +1,5 @@
-//! One HTML page of a run: the answer first, the shots in a view that turns, tables that sort, and the plots.
+//! One HTML page of a run: the answer first, the shots in a view that turns, tables that sort, and
+//! the plots.
 //!
 //! The page loads nothing from elsewhere, and all names in it are escaped.
 

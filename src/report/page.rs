@@ -36,7 +36,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// Adds the answer, the tables and the plots of another page, and a plot of the difference if there is one.
+    /// Adds the answer, the tables and the plots of another page, and a plot of the difference if
+    /// there is one.
     pub fn add_comparison(&mut self, other: Self, difference: Option<Plot>) {
         self.answer = format!(
             "{}: {} {}: {}",
@@ -111,7 +112,8 @@ fn figure_html(plot: &Plot) -> String {
     html
 }
 
-/// Replaces each `{{name}}` of a template by its part. One pass over the template: braces inside a part stay.
+/// Replaces each `{{name}}` of a template by its part. One pass over the template: braces inside a
+/// part stay.
 fn fill_template(template: &str, parts: &[(&str, String)]) -> String {
     let mut page = String::new();
     let mut rest = template;

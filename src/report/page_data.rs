@@ -90,8 +90,8 @@ impl Scene {
         record
     }
 
-    /// The path of the error-free shot: `[t, x, y, z]` to the millisecond and the centimetre, about every
-    /// [`INTERVAL_S`] and at each event.
+    /// The path of the error-free shot: `[t, x, y, z]` to the millisecond and the centimetre, about
+    /// every [`INTERVAL_S`] and at each event.
     fn path(&self, shot: &ReportShot) -> Result<Value, StateError> {
         let trace = self.simulator.trace(&self.release(shot), INTERVAL_S)?;
         let events = trace.events.iter();

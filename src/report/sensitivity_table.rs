@@ -2,8 +2,8 @@
 
 use super::html_table::{HtmlTable, format_cell};
 
-/// The table of `sensitivity.csv` (kind, topic, variable, unit, value, gain, standard_error; the header
-/// first), the gains in points of P; `None` if the file has no rows.
+/// The table of `sensitivity.csv` (kind, topic, variable, unit, value, gain, standard_error; the
+/// header first), the gains in points of P; `None` if the file has no rows.
 pub(super) fn sensitivity_table(rows: &[Vec<String>]) -> Option<HtmlTable> {
     let rows: Vec<_> = rows
         .iter()

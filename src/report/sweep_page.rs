@@ -64,7 +64,8 @@ pub fn sweep_page(
     })
 }
 
-/// All shots that were found. The computed ones come first, so that their mirror images can refer to them.
+/// All shots that were found. The computed ones come first, so that their mirror images can refer
+/// to them.
 fn list_shots(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Vec<ReportShot> {
     let mut shots: Vec<ReportShot> = Vec::new();
     // The index of the shot of each job.

@@ -1,14 +1,16 @@
 //! The releases that can go in, from geometry alone.
 //!
-//! A shot that goes in must come within reach of the ring (a circle of radius R_H + R about the hoop's
-//! axis) at or above `z = -R`, and its centre must not pass over the top of the board. Both bound the
-//! speed for each pitch angle. Its direction must lead within reach of the ring, or to a point on the board
-//! from which a bounce can. A bounce keeps between about half and all of its sideways velocity (3/5 for a
-//! rigid ball that rolls at the end), and the restitution's share of the velocity towards the board.
+//! A shot that goes in must come within reach of the ring (a circle of radius R_H + R about the
+//! hoop's axis) at or above `z = -R`, and its centre must not pass over the top of the board. Both
+//! bound the speed for each pitch angle. Its direction must lead within reach of the ring, or to a
+//! point on the board from which a bounce can. A bounce keeps between about half and all of its
+//! sideways velocity (3/5 for a rigid ball that rolls at the end), and the restitution's share of
+//! the velocity towards the board.
 //!
-//! With air the speeds are those of the paths under drag. A faster path in the same direction lies above a slower one
-//! all along, with drag too; and the path in a vacuum lies above both. Lift depends on the spin: the bounds are those for
-//! the greatest backspin and the greatest forward spin that errors bring about.
+//! With air the speeds are those of the paths under drag. A faster path in the same direction lies
+//! above a slower one all along, with drag too; and the path in a vacuum lies above both. Lift
+//! depends on the spin: the bounds are those for the greatest backspin and the greatest forward
+//! spin that errors bring about.
 
 use crate::dynamics::{Release, Simulator};
 use crate::model::BoardEdge;
@@ -113,7 +115,8 @@ impl Bracket {
         self.axis_offset(polar) < self.reach_m && libm::cos(polar - self.location.angle_rad) > 0.0
     }
 
-    /// Whether the horizontal path meets the board where a bounce can lead within reach of the ring.
+    /// Whether the horizontal path meets the board where a bounce can lead within reach of the
+    /// ring.
     fn banks_to_ring(&self, polar: f64, restitution: f64) -> bool {
         let (sin, cos) = libm::sincos(polar);
         if cos <= 1e-6 {
@@ -146,7 +149,8 @@ impl Bracket {
         (cos > 1e-6 && across.abs() < near).then_some(length)
     }
 
-    /// Least and greatest speed with which a shot in this direction can go in, m/s; `None` if there is none.
+    /// Least and greatest speed with which a shot in this direction can go in, m/s; `None` if there
+    /// is none.
     #[must_use]
     pub fn speeds_m_s(&self, pitch_rad: f64, polar_rad: f64) -> Option<(f64, f64)> {
         let near = (self.location.distance_m - self.reach_m).max(1e-3);
@@ -156,8 +160,8 @@ impl Bracket {
         let lengths =
             (0..=PATH_POINTS).map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS));
         let least = self.least_speed_through(lengths, -self.contact_m, pitch_rad);
-        // A faster shot passes above the far side of the ring, and above the board both where the ball
-        // would touch it (on the way up) and at its face (on the way down).
+        // A faster shot passes above the far side of the ring, and above the board both where the
+        // ball would touch it (on the way up) and at its face (on the way down).
         let over_ring = self.speed_through(far, self.contact_m, pitch_rad);
         let over_board = self.path_to_board(polar_rad).map_or(0.0, |face| {
             let touch = face - self.ball_radius_m / libm::cos(polar_rad);
@@ -198,8 +202,8 @@ impl Bracket {
         least
     }
 
-    /// The greatest speed of the paths that pass the height `z` at the horizontal distance `s`; infinite if there is
-    /// none.
+    /// The greatest speed of the paths that pass the height `z` at the horizontal distance `s`;
+    /// infinite if there is none.
     fn speed_through(&self, s: f64, z: f64, pitch_rad: f64) -> f64 {
         if self.air.is_some() {
             let [slow, fast] = self.speeds_in_air(s, z, pitch_rad);
@@ -238,8 +242,8 @@ impl Bracket {
         }
     }
 
-    /// Speed of the parabola that passes the height `z` at the horizontal distance `s`; infinite if there is
-    /// none.
+    /// Speed of the parabola that passes the height `z` at the horizontal distance `s`; infinite if
+    /// there is none.
     fn parabola_speed_through(&self, s: f64, z: f64, pitch_rad: f64) -> f64 {
         let (sin, cos) = libm::sincos(pitch_rad);
         let over = self.start_height_m - z + s * sin / cos;
@@ -260,7 +264,8 @@ impl Bracket {
     }
 }
 
-/// The simulator of a profile with drag or lift, and the least and the greatest backspin whose lift counts, rad/s.
+/// The simulator of a profile with drag or lift, and the least and the greatest backspin whose lift
+/// counts, rad/s.
 fn paths_in_air(profile: &Profile) -> Option<(Simulator, [f64; 2])> {
     /// Standard deviations of the errors in spin that are counted.
     const DEVIATIONS: f64 = 4.0;

@@ -24,8 +24,9 @@ pub struct WideSample {
     pub made_outside: u64,
 }
 
-/// Draws `shots` uniformly: speeds from half to 1.3 times those of the bracket, all its pitch angles and
-/// backspins, and 20 degrees more of polar angle on both sides. Simulates those outside the bracket.
+/// Draws `shots` uniformly: speeds from half to 1.3 times those of the bracket, all its pitch
+/// angles and backspins, and 20 degrees more of polar angle on both sides. Simulates those outside
+/// the bracket.
 #[must_use]
 pub fn sample_wide(profile: &Profile, plan: &TablePlan, shots: u64) -> WideSample {
     let (polar_low, polar_high) = plan.bracket.polar_rad;

@@ -10,8 +10,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Standard deviations by which pitch and backspin are widened beyond the nominal values.
 pub const MARGIN_SIGMAS: f64 = 4.5;
-/// The same for all axes of a window. The probability beyond, 3e-5 on each side for a nominal shot at an
-/// end and far less for the others, does not matter.
+/// The same for all axes of a window. The probability beyond, 3e-5 on each side for a nominal shot
+/// at an end and far less for the others, does not matter.
 const WINDOW_MARGIN_SIGMAS: f64 = 4.0;
 /// Least margin of the backspin, rad/s.
 const MIN_SPIN_MARGIN_RAD_S: f64 = 0.3;
@@ -36,9 +36,9 @@ type Range = (f64, f64);
 
 /// The plan of a table of shots.
 ///
-/// [`TablePlan::for_search`] covers everything the shooter can intend, coarsely, to find where the good
-/// shots are. [`TablePlan::window`] covers what the errors can lead to from the nominal shots about one of
-/// them, finely.
+/// [`TablePlan::for_search`] covers everything the shooter can intend, coarsely, to find where the
+/// good shots are. [`TablePlan::window`] covers what the errors can lead to from the nominal shots
+/// about one of them, finely.
 #[derive(Clone, Debug, Serialize)]
 pub struct TablePlan {
     /// The releases that can go in.
@@ -53,8 +53,8 @@ pub struct TablePlan {
     pub speeds_per_line: usize,
     /// Least and greatest speed of the lines, m/s. The bracket can make a line shorter.
     pub speed_m_s: Range,
-    /// Straight in front of the hoop a shot and its mirror image end alike, so one side is simulated for
-    /// both.
+    /// Straight in front of the hoop a shot and its mirror image end alike, so one side is
+    /// simulated for both.
     pub mirrored: bool,
     /// The nominal shots.
     pub nominal: NominalGrid,
@@ -167,8 +167,8 @@ impl TablePlan {
         .with_size(&grid)
     }
 
-    /// A window about a nominal shot: all that the errors can lead to from nominal shots within a standard
-    /// deviation of it, on the points of the profile's grid.
+    /// A window about a nominal shot: all that the errors can lead to from nominal shots within a
+    /// standard deviation of it, on the points of the profile's grid.
     ///
     /// # Errors
     /// The table would be too large.
@@ -276,8 +276,8 @@ impl TablePlan {
         })
     }
 
-    /// Upper bound of the probability that the errors take this nominal shot outside the table's pitch
-    /// angles and backspins, where shots are not simulated but can go in.
+    /// Upper bound of the probability that the errors take this nominal shot outside the table's
+    /// pitch angles and backspins, where shots are not simulated but can go in.
     #[must_use]
     pub fn mass_outside(&self, profile: &Profile, nominal: &Nominal) -> f64 {
         let dispersion = &profile.shooter().dispersion;
@@ -367,8 +367,8 @@ fn search_polar_angles(profile: &Profile, bracket: &Bracket, mirrored: bool) -> 
     }
 }
 
-/// Margins of pitch angle and backspin in the table of the search, rad and rad/s. A fixed value without an
-/// error would leave its axis no width.
+/// Margins of pitch angle and backspin in the table of the search, rad and rad/s. A fixed value
+/// without an error would leave its axis no width.
 fn search_margins(profile: &Profile) -> (f64, f64) {
     let dispersion = &profile.shooter().dispersion;
     let min_pitch = if profile.search().choice.includes(NominalVariable::Pitch) {
@@ -387,8 +387,8 @@ fn search_margins(profile: &Profile) -> (f64, f64) {
     )
 }
 
-/// The nominal speeds: every speed of the bracket within the nominal pitch angles, about half a standard
-/// deviation apart.
+/// The nominal speeds: every speed of the bracket within the nominal pitch angles, about half a
+/// standard deviation apart.
 fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Linspace> {
     const PITCHES: u32 = 70;
     let search = profile.search();

@@ -1,7 +1,7 @@
 //! Which characters a name may have.
 
-/// Whether a character steers a terminal or the direction of text: a name with one could show itself, or what stands
-/// after it, as something else.
+/// Whether a character steers a terminal or the direction of text: a name with one could show
+/// itself, or what stands after it, as something else.
 #[must_use]
 pub fn is_control_or_direction(c: char) -> bool {
     c.is_control()

@@ -11,7 +11,8 @@ type Matrix = SMatrix<f64, N, N>;
 /// A pivot below this counts as zero; below minus this, the matrix is not positive semi-definite.
 const ZERO_PIVOT: f64 = 1e-10;
 
-/// The correlation matrix of the errors, with the Cholesky factor that correlated errors are drawn with.
+/// The correlation matrix of the errors, with the Cholesky factor that correlated errors are drawn
+/// with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correlation {
     /// Symmetric, 1 on the diagonal.
@@ -68,8 +69,8 @@ impl Correlation {
         is_correlated: false,
     };
 
-    /// From the coefficients (-1 to 1) of pairs of variables. `None` if they are impossible together: the
-    /// matrix is not positive semi-definite.
+    /// From the coefficients (-1 to 1) of pairs of variables. `None` if they are impossible
+    /// together: the matrix is not positive semi-definite.
     #[must_use]
     pub fn new(pairs: &[(ReleaseVariable, ReleaseVariable, f64)]) -> Option<Self> {
         let coefficients = matrix_of(pairs);
@@ -114,8 +115,8 @@ impl Correlation {
         })
     }
 
-    /// Independent normals from correlated ones: the inverse of [`Correlation::apply`]. Not numbers if a variable is
-    /// fully determined by others.
+    /// Independent normals from correlated ones: the inverse of [`Correlation::apply`]. Not numbers
+    /// if a variable is fully determined by others.
     #[must_use]
     pub(crate) fn independent_of(&self, correlated: &[f64; N]) -> [f64; N] {
         if !self.is_correlated {
@@ -148,8 +149,8 @@ fn smallest_pivot(factor: &Matrix) -> f64 {
     least * least
 }
 
-/// The lower triangular factor of a positive semi-definite matrix, with a zero column for each zero pivot:
-/// correlations of exactly 1 or -1, which nalgebra's Cholesky decomposition refuses.
+/// The lower triangular factor of a positive semi-definite matrix, with a zero column for each zero
+/// pivot: correlations of exactly 1 or -1, which nalgebra's Cholesky decomposition refuses.
 fn semi_definite_factor(matrix: &Matrix) -> Option<Matrix> {
     let mut factor = Matrix::zeros();
     for k in 0..N {

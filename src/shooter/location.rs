@@ -1,7 +1,7 @@
 //! A location on the court.
 
 use crate::model::Physics;
-use crate::units::FOOT_M;
+use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 use serde::Serialize;
 
 /// Greatest distance of a location from the hoop, m.
@@ -12,7 +12,8 @@ const FARTHEST_M: f64 = 40.0;
 pub struct Location {
     /// Horizontal distance from the hoop's centre, m.
     pub distance_m: f64,
-    /// Court angle theta0 from the court's long axis, rad; -pi/2 to pi/2 is in front of the hoop's centre.
+    /// Court angle theta0 from the court's long axis, rad; -pi/2 to pi/2 is in front of the hoop's
+    /// centre.
     pub angle_rad: f64,
 }
 
@@ -50,6 +51,22 @@ impl LocationError {
 }
 
 impl Location {
+    /// The place in words, such as `12 ft from the hoop, 45 deg to the right` (facing the board).
+    #[must_use]
+    pub fn in_words(&self, units: UnitSystem) -> String {
+        let (long, metre) = units.length();
+        let angle_deg = self.angle_rad / DEGREE_RAD;
+        let side = match angle_deg {
+            angle if angle.abs() < 0.5 => "straight in front".to_owned(),
+            angle if angle > 0.0 => format!("{angle:.0} deg to the right"),
+            angle => format!("{:.0} deg to the left", -angle),
+        };
+        // Two decimals at most, and no more than are needed.
+        let distance = format!("{:.2}", self.distance_m / metre);
+        let distance = distance.trim_end_matches('0').trim_end_matches('.');
+        format!("{distance} {long} from the hoop, {side}")
+    }
+
     /// From the coordinates x (from the board towards midcourt) and y, m.
     #[must_use]
     pub fn from_xy(x_m: f64, y_m: f64) -> Self {

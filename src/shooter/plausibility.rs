@@ -1,6 +1,7 @@
 //! Values that a profile may have, but that no player is known to have.
 
 use super::profile::Profile;
+use super::release_variable::NominalVariable;
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 
 /// The speed that the scatter of speeds is looked at, m/s: that of a free throw.
@@ -8,8 +9,8 @@ const USUAL_SPEED_M_S: f64 = 7.4;
 
 /// What is implausible about a profile, each as a sentence; nothing for a profile of a player.
 ///
-/// Measured scatters are 0.15 to 0.45 ft/s and 0.8 to 2.7 deg; the limits here are three times and more that. The heights
-/// of release and the distances are those of people on a court.
+/// Measured scatters are 0.15 to 0.45 ft/s and 0.8 to 2.7 deg; the limits here are three times and
+/// more that. The heights of release and the distances are those of people on a court.
 #[must_use]
 pub fn implausible_values(profile: &Profile) -> Vec<String> {
     let shooter = profile.shooter();
@@ -70,4 +71,32 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
         ),
     );
     found
+}
+
+/// What to write where `[nominal]` gives some values, but no speed, and the search chooses them all
+/// the same: they were probably meant to be fixed. (With a speed they are a shot to look at.)
+#[must_use]
+pub fn nominal_values_not_fixed(profile: &Profile) -> Option<String> {
+    let given = profile.nominal_overrides();
+    let choice = profile.search().choice;
+    let searched = |variable: &NominalVariable| choice.includes(*variable);
+    let names = |variables: &[NominalVariable], quote: &str, before: &str| {
+        let names = variables.iter().map(|variable| variable.name());
+        let names = names.map(|name| format!("{quote}{before}{name}{quote}"));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let not_fixed: Vec<NominalVariable> = NominalVariable::SEARCHABLE
+        .into_iter()
+        .filter(|variable| given.get(*variable).is_some() && searched(variable))
+        .collect();
+    if not_fixed.is_empty() || given.get(NominalVariable::Speed).is_some() {
+        return None;
+    }
+    let left = NominalVariable::SEARCHABLE.into_iter().filter(searched);
+    let left = left.filter(|variable| !not_fixed.contains(variable));
+    Some(format!(
+        "{}: not fixed, for a search chooses them; to fix them write choose = [{}] in [search]",
+        names(&not_fixed, "", "nominal."),
+        names(&left.collect::<Vec<_>>(), "\"", "")
+    ))
 }

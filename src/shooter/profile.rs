@@ -51,8 +51,8 @@ impl Default for OutputSettings {
     }
 }
 
-/// Everything in a profile except the location. Build one, then call [`ProfileSettings::at`] to check it
-/// and get a [`Profile`].
+/// Everything in a profile except the location. Build one, then call [`ProfileSettings::at`] to
+/// check it and get a [`Profile`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProfileSettings {
     /// The shooter.
@@ -229,8 +229,9 @@ fn check_nominal(nominal: &NominalOverrides, checks: &mut SettingChecks) {
     }
 }
 
-/// A checked profile: [`ProfileSettings`] at a [`Location`]. It cannot be changed, so it stays valid, and its
-/// simulator always has its physics. To change it, change a copy of [`Profile::settings`].
+/// A checked profile: [`ProfileSettings`] at a [`Location`]. It cannot be changed, so it stays
+/// valid, and its simulator always has its physics. To change it, change a copy of
+/// [`Profile::settings`].
 #[derive(Clone, Debug)]
 pub struct Profile {
     settings: ProfileSettings,
@@ -322,7 +323,8 @@ impl Profile {
         &self.settings.output
     }
 
-    /// BLAKE3 of the checked profile in SI units. Two files with the same meaning have the same hash.
+    /// BLAKE3 of the checked profile in SI units. Two files with the same meaning have the same
+    /// hash.
     #[must_use]
     pub fn hash(&self) -> &str {
         &self.hash
@@ -370,8 +372,8 @@ impl Profile {
         }
     }
 
-    /// The shot of the `[nominal]` table. A value that it does not give is 0, and the polar angle is that
-    /// towards the hoop.
+    /// The shot of the `[nominal]` table. A value that it does not give is 0, and the polar angle
+    /// is that towards the hoop.
     #[must_use]
     pub fn fixed_nominal(&self) -> Nominal {
         let given = &self.settings.nominal;

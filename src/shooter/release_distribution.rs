@@ -59,8 +59,9 @@ impl ReleaseDistribution {
             .state(release.speed_m_s, release.backspin_rad_s)
     }
 
-    /// Calls `use_state` with the state at the release of each point `from..to` of a scramble. The points are drawn
-    /// in blocks: the normals of a block, variable by variable, are those of [`ReleaseDistribution::from_uniform`].
+    /// Calls `use_state` with the state at the release of each point `from..to` of a scramble. The
+    /// points are drawn in blocks: the normals of a block, variable by variable, are those of
+    /// [`ReleaseDistribution::from_uniform`].
     pub(crate) fn for_each_state(
         &self,
         scramble: &Scramble,
@@ -99,8 +100,8 @@ impl ReleaseDistribution {
         }
     }
 
-    /// The release for uniform numbers, 0 to 1 exclusive. `uniform` gives the one of each dimension that
-    /// matters.
+    /// The release for uniform numbers, 0 to 1 exclusive. `uniform` gives the one of each dimension
+    /// that matters.
     pub fn from_uniform(&self, mut uniform: impl FnMut(usize) -> f64) -> Release {
         self.from_normal(std::array::from_fn(|k| {
             if self.needed[k] {
@@ -111,13 +112,14 @@ impl ReleaseDistribution {
         }))
     }
 
-    /// Independent standard normals for uniform numbers, 0 to 1 exclusive, in the order of [`ReleaseVariable::ALL`].
+    /// Independent standard normals for uniform numbers, 0 to 1 exclusive, in the order of
+    /// [`ReleaseVariable::ALL`].
     pub(crate) fn normals(uniform: impl Fn(usize) -> f64) -> [f64; N] {
         std::array::from_fn(|k| normal_distribution::quantile(uniform(k)))
     }
 
-    /// The density of this distribution over that of `other`, at the release that `other` has for independent
-    /// standard normals. Not a number, or infinite, where that cannot be told.
+    /// The density of this distribution over that of `other`, at the release that `other` has for
+    /// independent standard normals. Not a number, or infinite, where that cannot be told.
     pub(crate) fn relative_density(&self, other: &Self, independent: &[f64; N]) -> f64 {
         let normals = other.correlation.apply(*independent);
         let (mine, others) = (values(&self.centre), values(&other.centre));

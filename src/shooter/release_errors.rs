@@ -1,4 +1,5 @@
-//! The dispersion of releases: standard deviations (Eq. 28 of the paper and five more) and correlations.
+//! The dispersion of releases: standard deviations (Eq. 28 of the paper and five more) and
+//! correlations.
 
 use super::correlation::Correlation;
 use super::invalid_setting::SettingChecks;
@@ -92,7 +93,8 @@ impl ReleaseDispersion {
         }
     }
 
-    /// The standard deviations at a nominal shot, in the order of [`ReleaseVariable::ALL`], SI units.
+    /// The standard deviations at a nominal shot, in the order of [`ReleaseVariable::ALL`], SI
+    /// units.
     #[must_use]
     pub fn sigmas(&self, nominal: &Nominal) -> [f64; ReleaseVariable::COUNT] {
         ReleaseVariable::ALL.map(|variable| self.sigma(variable, nominal))
@@ -123,8 +125,8 @@ impl ReleaseDispersion {
         self
     }
 
-    /// Whether the errors of a shot's mirror image are distributed like those of the shot. They are not if
-    /// an error that changes its sign in the mirror is correlated with one that does not.
+    /// Whether the errors of a shot's mirror image are distributed like those of the shot. They are
+    /// not if an error that changes its sign in the mirror is correlated with one that does not.
     #[must_use]
     pub fn is_mirror_symmetric(&self) -> bool {
         ReleaseVariable::ALL.iter().all(|a| {

@@ -13,8 +13,8 @@ const PITCH_RANGE_RAD: RangeInclusive<f64> = DEGREE_RAD..=89.0 * DEGREE_RAD;
 /// Points of a table along one axis.
 const TABLE_POINTS: RangeInclusive<usize> = 2..=100_000;
 
-/// Points along each axis of the table about a best shot. The table of the search, which only has to find
-/// where to look, has two thirds of them along speed, pitch and polar angle.
+/// Points along each axis of the table about a best shot. The table of the search, which only has
+/// to find where to look, has two thirds of them along speed, pitch and polar angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct TableGrid {
     /// Speeds on each line.
@@ -124,7 +124,8 @@ impl Serialize for SearchChoice {
     }
 }
 
-/// The settings of the search that a profile gives. The defaults of the others depend on the location.
+/// The settings of the search that a profile gives. The defaults of the others depend on the
+/// location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct SearchSettings {
     /// The variables that are searched.
@@ -156,7 +157,8 @@ pub struct Search {
     pub speed_max_m_s: Option<f64>,
     /// Wanted standard error of each probability.
     pub standard_error: f64,
-    /// Sobol points of each comparison in the climb. More make the choice among local optima more certain.
+    /// Sobol points of each comparison in the climb. More make the choice among local optima more
+    /// certain.
     pub climb_samples: u32,
     /// Seed of the Sobol scrambles.
     pub seed: u64,
@@ -169,9 +171,9 @@ impl Search {
     pub const DEFAULT_SEED: u64 = 1;
     const DEFAULT_CLIMB_SAMPLES: u32 = 2048;
 
-    /// The search from a location with the given settings. The default pitch angles are from 8 deg below to
-    /// 14 deg above the one with the least speed to the hoop: 45 deg plus half the angle at which the hoop
-    /// is seen (Brancazio 1981).
+    /// The search from a location with the given settings. The default pitch angles are from 8 deg
+    /// below to 14 deg above the one with the least speed to the hoop: 45 deg plus half the angle
+    /// at which the hoop is seen (Brancazio 1981).
     #[must_use]
     pub fn new(
         settings: &SearchSettings,

@@ -5,8 +5,8 @@ use super::profile::Profile;
 use crate::model::SolidId;
 use serde::Serialize;
 
-/// The two kinds of nominal shots. The kind depends on the first touch of the error-free flight, not on the
-/// outcome.
+/// The two kinds of nominal shots. The kind depends on the first touch of the error-free flight,
+/// not on the outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShotKind {

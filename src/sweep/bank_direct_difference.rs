@@ -25,8 +25,8 @@ pub fn is_significant(difference: Difference) -> bool {
     difference.value.abs() > SIGNIFICANT_SIGMAS * difference.standard_error
 }
 
-/// The number of places at which the bank shot is significantly better, of those with a shot of each kind. Mirrored
-/// places count. Its text is one sentence.
+/// The number of places at which the bank shot is significantly better, of those with a shot of
+/// each kind. Mirrored places count. Its text is one sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BankAdvantage {
     /// Places at which the bank shot is better.

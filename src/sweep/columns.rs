@@ -1,4 +1,5 @@
-//! The columns of a sweep's results: the one definition behind the store, the CSV and the Parquet tables.
+//! The columns of a sweep's results: the one definition behind the store, the CSV and the Parquet
+//! tables.
 //!
 //! Each column is a constant with the type of its values, so a wrong name or type does not compile.
 

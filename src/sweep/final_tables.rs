@@ -1,4 +1,5 @@
-//! The final tables of a sweep: every place of the region, mirror images included, in the order of the region.
+//! The final tables of a sweep: every place of the region, mirror images included, in the order of
+//! the region.
 //!
 //! The bytes depend on the results alone: not on threads, shards, restarts or machines.
 

@@ -19,8 +19,8 @@ pub struct Inventory {
 }
 
 impl Inventory {
-    /// Takes the inventory for a process that holds a lock, and opens its store. Damaged stores that nobody
-    /// writes are set aside, and their valid rows are kept in a new store.
+    /// Takes the inventory for a process that holds a lock, and opens its store. Damaged stores
+    /// that nobody writes are set aside, and their valid rows are kept in a new store.
     ///
     /// # Errors
     /// A store cannot be read or written.
@@ -84,8 +84,8 @@ fn rescue(
         rows.push(row)
     })?;
     if !rows.is_empty() {
-        // The new store is complete under another name before the damaged one is renamed: no valid row is
-        // ever missing.
+        // The new store is complete under another name before the damaged one is renamed: no valid
+        // row is ever missing.
         let stem = path.file_stem().unwrap_or_default().display().to_string();
         let named =
             |n: u32, ending: &str| path.with_file_name(format!("{stem}.salvaged-{n}.{ending}"));

@@ -1,6 +1,7 @@
 //! The jobs of a sweep: what is computed, and which result belongs to which place.
 //!
-//! A place on the right is the mirror image of one on the left, so only one of the two is computed: the spot.
+//! A place on the right is the mirror image of one on the left, so only one of the two is computed:
+//! the spot.
 
 use super::court_region::CourtPlace;
 use super::sweep_toml::SweepConfig;

@@ -1,10 +1,10 @@
 //! Computes the missing jobs of a sweep.
 //!
-//! As many spots as there are threads are in work at a time, in the order of the list, and all of them share the
-//! threads. So the memory is that of one spot for each thread, the last spots of a sweep have all threads, and no
-//! result depends on their number. A panic is the failure of its job. A spot
-//! that was being computed when the program aborted is computed alone at the next start, and given up if the
-//! program aborts there again.
+//! As many spots as there are threads are in work at a time, in the order of the list, and all of
+//! them share the threads. So the memory is that of one spot for each thread, the last spots of a
+//! sweep have all threads, and no result depends on their number. A panic is the failure of its
+//! job. A spot that was being computed when the program aborted is computed alone at the next
+//! start, and given up if the program aborts there again.
 
 use super::finished_jobs::Inventory;
 use super::folder_error::SweepFolderError;
@@ -34,7 +34,8 @@ pub enum FaultInjection {
     Panic(usize),
     /// Abort the program at this spot.
     Abort(usize),
-    /// Wait at this spot while the file exists. (The program writes its process number to it when it waits.)
+    /// Wait at this spot while the file exists. (The program writes its process number to it when
+    /// it waits.)
     Wait(usize, PathBuf),
 }
 
@@ -78,8 +79,8 @@ pub struct SweepRun<'a> {
 }
 
 impl<'a> SweepRun<'a> {
-    /// Takes the inventory of the folder, and finds the spots at which the last run aborted. `saved` counts the jobs
-    /// that are saved on disk.
+    /// Takes the inventory of the folder, and finds the spots at which the last run aborted.
+    /// `saved` counts the jobs that are saved on disk.
     ///
     /// # Errors
     /// The folder cannot be read or written.
@@ -213,8 +214,8 @@ impl<'a> SweepRun<'a> {
             .unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Computes several spots at once and saves each as it is finished. All of them share the threads of `pool`: at the
-    /// end of a sweep the last spot has them all.
+    /// Computes several spots at once and saves each as it is finished. All of them share the
+    /// threads of `pool`: at the end of a sweep the last spot has them all.
     fn compute_spots(
         &self,
         spots: &[usize],
@@ -321,8 +322,9 @@ fn no_threads(error: &dyn std::fmt::Display) -> StoreError {
     }
 }
 
-/// Computes all kinds at some of the spots, as a run would, until `budget` is spent; returns the mean time in which
-/// all threads together compute a spot, s, and the number of computed spots. `None` if there is none.
+/// Computes all kinds at some of the spots, as a run would, until `budget` is spent; returns the
+/// mean time in which all threads together compute a spot, s, and the number of computed spots.
+/// `None` if there is none.
 #[must_use]
 pub fn mean_spot_time_s(
     config: &SweepConfig,

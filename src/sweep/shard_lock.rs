@@ -36,8 +36,8 @@ pub fn is_locked(path: &Path) -> bool {
     open_lock(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
-/// Opens an existing lock. It is opened for writing, because a network file system gives no exclusive lock
-/// otherwise.
+/// Opens an existing lock. It is opened for writing, because a network file system gives no
+/// exclusive lock otherwise.
 pub(super) fn open_lock(path: &Path) -> Result<File, SweepFolderError> {
     File::options()
         .read(true)

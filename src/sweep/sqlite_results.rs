@@ -1,9 +1,9 @@
 //! The results of one process in SQLite: a row for each job, each with a checksum.
 //!
-//! One process writes a file; any number of processes can read it meanwhile. Every finished spot is committed and
-//! synced before it is reported. So what is reported survives `kill -9` and, if the file system syncs as promised,
-//! a power cut. The checksum of a row covers its configuration, its job and every value, so a row can be trusted
-//! whatever happened to the rest of the file.
+//! One process writes a file; any number of processes can read it meanwhile. Every finished spot is
+//! committed and synced before it is reported. So what is reported survives `kill -9` and, if the
+//! file system syncs as promised, a power cut. The checksum of a row covers its configuration, its
+//! job and every value, so a row can be trusted whatever happened to the rest of the file.
 
 use super::columns::{self, Column, ColumnType};
 use super::result_row::{Cell, ResultRow};
@@ -13,7 +13,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How long SQLite waits for other processes that hold the file. A writer then retries without limit.
+/// How long SQLite waits for other processes that hold the file. A writer then retries without
+/// limit.
 const BUSY_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Why a store could not be used.
@@ -117,7 +118,8 @@ impl ResultStore {
             .map_err(|error| map_sqlite_error(&self.path, &error))
     }
 
-    /// Saves the rows of a spot; they are synced when this returns. `seconds` is the time that they took.
+    /// Saves the rows of a spot; they are synced when this returns. `seconds` is the time that they
+    /// took.
     ///
     /// # Errors
     /// They cannot be written; then none of them is saved.
@@ -143,8 +145,9 @@ impl ResultStore {
         retry_while_busy(write).map_err(|error: rusqlite::Error| map_sqlite_error(path, &error))
     }
 
-    /// After a run that aborted: counts an abort for each spot that was being computed. After any other run:
-    /// forgets what was being computed. Returns the spots with the number of their aborts.
+    /// After a run that aborted: counts an abort for each spot that was being computed. After any
+    /// other run: forgets what was being computed. Returns the spots with the number of their
+    /// aborts.
     ///
     /// # Errors
     /// It cannot be read or written.
@@ -246,8 +249,9 @@ pub struct ReadReport {
     pub foreign: u64,
 }
 
-/// Reads every valid row of a configuration in a store. If the file is damaged, each job with a number below
-/// `jobs` is looked up separately, so that one bad page costs no more than its own rows.
+/// Reads every valid row of a configuration in a store. If the file is damaged, each job with a
+/// number below `jobs` is looked up separately, so that one bad page costs no more than its own
+/// rows.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -354,7 +358,8 @@ fn salvage(
 }
 
 fn open_to_read(path: &Path) -> rusqlite::Result<Connection> {
-    // For writing if possible, so that an unfinished transaction of a killed process is rolled back.
+    // For writing if possible, so that an unfinished transaction of a killed process is rolled
+    // back.
     let flags = OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = Connection::open_with_flags(path, flags | OpenFlags::SQLITE_OPEN_READ_WRITE)
         .or_else(|_| {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! configuration.json                           the sweep, with the texts of its files
-//! store/1-of-1.HOST.sqlite                     results of one process; .lock beside it while it runs
+//! store/1-of-1.HOST.sqlite                     results of one process (.lock: it runs)
 //! best_shots.csv, .parquet, provenance.json    once all jobs are done
 //! ```
 
@@ -54,12 +54,14 @@ impl SweepFolder {
         let file = path.join(manifest::FILE_NAME);
         let new = Manifest::new(config, texts)?;
         let text = serde_json::to_string_pretty(&new).unwrap_or_default() + "\n";
-        // Other processes may open the folder at the same time: the first one writes, and all read the result.
+        // Other processes may open the folder at the same time: the first one writes, and all read
+        // the result.
         loop {
             match Manifest::read(&file).map_err(io_error_at(&file))? {
                 ManifestFile::Valid(old) if old.hash == new.hash => {
                     if old.texts != new.texts {
-                        // Names of places, or another format of the same sweep: `merge` reads them here.
+                        // Names of places, or another format of the same sweep: `merge` reads them
+                        // here.
                         let written = atomic_file::write(&file, text.as_bytes());
                         written.map_err(io_error_at(&file))?;
                     }
@@ -226,8 +228,8 @@ impl SweepFolder {
         Ok(stores)
     }
 
-    /// Gives every valid result of this sweep to `receive`, store by store; returns the damaged files with the
-    /// reasons.
+    /// Gives every valid result of this sweep to `receive`, store by store; returns the damaged
+    /// files with the reasons.
     ///
     /// # Errors
     /// A store cannot be read.
@@ -245,8 +247,8 @@ impl SweepFolder {
         Ok(damaged)
     }
 
-    /// The union of all stores, with remarks on damaged files. If a job failed in one store and not in another,
-    /// the result that did not fail counts.
+    /// The union of all stores, with remarks on damaged files. If a job failed in one store and not
+    /// in another, the result that did not fail counts.
     ///
     /// # Errors
     /// A store cannot be read, or two contradict each other.

@@ -138,7 +138,8 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
     parse_toml(&texts.sweep, origin, |mut root, diagnostics| {
         let mut table = root.table("sweep", diagnostics);
         if !root.has("sweep") {
-            let message = "there is no [sweep] table in this file";
+            let message =
+                "there is no [sweep] table in this file; for a profile use `bankshot best`";
             diagnostics.push(table.table_diagnostic(message));
         }
         let name = read_name(&mut table, diagnostics);
@@ -169,7 +170,8 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
     })
 }
 
-/// The shooter, the physics and the nominal values of a profile; the rest of the settings from the sweep.
+/// The shooter, the physics and the nominal values of a profile; the rest of the settings from the
+/// sweep.
 fn read_with_profile(
     root: &mut TableReader<'_, '_>,
     profile: Option<Profile>,
@@ -268,8 +270,8 @@ impl SweepConfig {
             && self.settings.shooter.dispersion.is_mirror_symmetric()
     }
 
-    /// BLAKE3 of everything that a result depends on: the checked sweep in SI units, and the program that
-    /// computes it. Two files with the same meaning have the same hash.
+    /// BLAKE3 of everything that a result depends on: the checked sweep in SI units, and the
+    /// program that computes it. Two files with the same meaning have the same hash.
     ///
     /// # Errors
     /// The sweep cannot be serialised.

@@ -1,5 +1,5 @@
-//! Units of measurement. Inside the crate everything is SI; other units exist only where input is read
-//! and results are printed.
+//! Units of measurement. Inside the crate everything is SI; other units exist only where input is
+//! read and results are printed.
 
 mod constants;
 mod quantity;
@@ -9,8 +9,8 @@ pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD
 pub use quantity::{Dimension, QuantityError, parse, suggestion};
 pub use unit_system::UnitSystem;
 
-/// The value with 12 significant digits. A table shows 6 and not 6.000000000000001, the last digits of a change of
-/// units.
+/// The value with 12 significant digits. A table shows 6 and not 6.000000000000001, the last digits
+/// of a change of units.
 #[must_use]
 pub fn rounded(value: f64) -> f64 {
     // Both conversions are exact to the last bit on every machine.

@@ -268,7 +268,8 @@ fn feet_and_inches(
     Some(parse(after, dimension).map(signed))
 }
 
-/// What may have been meant by a name that is not known, as the end of a sentence; empty if nothing is like it.
+/// What may have been meant by a name that is not known, as the end of a sentence; empty if nothing
+/// is like it.
 #[must_use]
 pub fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     /// Names less alike than this, from 0 to 1, have nothing in common.
@@ -287,8 +288,8 @@ pub fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> S
         })
 }
 
-/// Whether character `i` belongs to the number: a digit, a sign, or an exponent. An `e` belongs to it only
-/// before a digit or a sign.
+/// Whether character `i` belongs to the number: a digit, a sign, or an exponent. An `e` belongs to
+/// it only before a digit or a sign.
 fn is_number_part(text: &str, i: usize, c: char) -> bool {
     match c {
         '0'..='9' | '.' => true,

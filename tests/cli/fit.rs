@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Of the made-up player of `examples/make_measured_shots.rs`: standard deviations of speed (ft/s), pitch and aim (deg).
+/// Of the made-up player of `examples/make_measured_shots.rs`: standard deviations of speed (ft/s),
+/// pitch and aim (deg).
 const TRUE_SCATTER: [(&str, f64); 3] = [("speed_sd", 0.25), ("pitch_sd", 1.3), ("polar_sd", 1.2)];
 
 fn fit(file: &str, folder: &Path, flags: &[&str]) -> Answer {
@@ -17,7 +18,8 @@ fn fit(file: &str, folder: &Path, flags: &[&str]) -> Answer {
     Answer::of(&mut command)
 }
 
-/// Each kind of file of the docs gives intervals that cover the truth (95 % each: the files are fixed).
+/// Each kind of file of the docs gives intervals that cover the truth (95 % each: the files are
+/// fixed).
 #[test]
 fn contract_each_kind_of_measurement_gives_a_profile() {
     let folder = TempDir::new().unwrap();
@@ -266,7 +268,8 @@ fn contract_design_says_what_a_test_will_tell() {
             .filter_map(|word| word.parse().ok())
             .collect()
     };
-    // Known: 14 % and 7 % of a standard deviation, 6.7 and 3.3 points, 9.2 and 4.6 by counting; within a fifth.
+    // Known: 14 % and 7 % of a standard deviation, 6.7 and 3.3 points, 9.2 and 4.6 by counting;
+    // within a fifth.
     for (shots, sd, fitted, counted) in [("25", 14.0, 6.7, 9.2), ("100", 7.0, 3.3, 4.6)] {
         let found = row(shots);
         let near = |value: f64, known: f64| (value / known - 1.0).abs() < 0.2;

@@ -9,7 +9,8 @@ use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 
-/// The profile `configs/NAME.toml` with the paper's physics, which the numbers of the tests belong to.
+/// The profile `configs/NAME.toml` with the paper's physics, which the numbers of the tests belong
+/// to.
 pub fn load(name: &str) -> Profile {
     let path = format!("{}/configs/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     config::parse_profile(&std::fs::read_to_string(&path).unwrap(), &path)
@@ -18,7 +19,8 @@ pub fn load(name: &str) -> Profile {
         .unwrap()
 }
 
-/// The guard of `configs/bank_wing.toml` 12 ft from the hoop at 50 deg, where the paper's physics favours the bank shot.
+/// The guard of `configs/bank_wing.toml` 12 ft from the hoop at 50 deg, where the paper's physics
+/// favours the bank shot.
 pub fn guard_on_the_wing() -> Profile {
     at(&load("bank_wing"), 12.0 * FOOT_M, 50.0)
 }
@@ -75,8 +77,8 @@ pub fn release(
     }
 }
 
-/// Free throws, straight on: speed 22..27 ft/s, pitch 40..65 deg, polar angle -3..3 deg and backspin
-/// 0..5 rev/s, all uniform.
+/// Free throws, straight on: speed 22..27 ft/s, pitch 40..65 deg, polar angle -3..3 deg and
+/// backspin 0..5 rev/s, all uniform.
 pub fn free_throw_uniform(count: usize, seed: u64) -> Vec<Release> {
     uniform(count, seed, 0.0, 0.0)
 }
@@ -99,8 +101,8 @@ fn uniform(count: usize, seed: u64, court_deg: f64, polar_deg: f64) -> Vec<Relea
         .collect()
 }
 
-/// Shots from everywhere: over the board, past its edges, from below, at the rim, with fast spin, already in
-/// contact.
+/// Shots from everywhere: over the board, past its edges, from below, at the rim, with fast spin,
+/// already in contact.
 pub fn wild(count: usize, seed: u64) -> Vec<Release> {
     let mut random = ChaCha12Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();

@@ -1,7 +1,7 @@
 //! A batch has the bits of single shots, on every set of vector instructions that this machine has.
 //!
-//! The reference is [`Simulator::simulate_state`], which never uses vector instructions. The lanes of sets
-//! that this machine does not have are covered by unit tests of the batch.
+//! The reference is [`Simulator::simulate_state`], which never uses vector instructions. The lanes
+//! of sets that this machine does not have are covered by unit tests of the batch.
 
 use crate::common::{free_throw_uniform, side_uniform, states, wild};
 use bankshot::dynamics::{BatchWorkspace, InstructionSet, Simulator, Verdict};

@@ -1,4 +1,5 @@
-//! Values that are not finite, and integrators that cannot step, are errors. They are never simulated.
+//! Values that are not finite, and integrators that cannot step, are errors. They are never
+//! simulated.
 
 use crate::common::{free_throw_uniform, on_threads, states};
 use bankshot::dynamics::{
@@ -203,7 +204,8 @@ fn contract_every_constant_has_a_range() {
 
 #[test]
 fn contract_a_shot_without_end_is_given_up_as_unresolved_in_the_lanes_too() {
-    // A ball that lies on ring and board for a minute, under a great gravity and with no rule of lodging.
+    // A ball that lies on ring and board for a minute, under a great gravity and with no rule of
+    // lodging.
     let physics = Physics {
         ball_mass_kg: 0.008,
         gravity_m_s2: 1000.0,

@@ -1,5 +1,5 @@
-//! What the library promises: results that depend on nothing but the input, errors for invalid input, and
-//! values that change only with a note in the change log.
+//! What the library promises: results that depend on nothing but the input, errors for invalid
+//! input, and values that change only with a note in the change log.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,7 +1,8 @@
-//! Values that must not change. A change of any of them must be listed in CHANGELOG.md with its size.
+//! Values that must not change. A change of any of them must be listed in CHANGELOG.md with its
+//! size.
 //!
-//! Authority: version 0.1.0 before its modules were renamed. The values are the same on every machine and on
-//! every instruction set.
+//! Authority: version 0.1.0 before its modules were renamed. The values are the same on every
+//! machine and on every instruction set.
 
 use crate::common::{
     free_throw_uniform, grid, guard_on_the_wing, load, nominal, verdicts, wild, with_search,

@@ -1,9 +1,9 @@
 //! Attacks with mutated input: nothing may panic, run on without end or take memory without bound.
 //!
-//! Each target turns random bytes into mutations of a small corpus; a failure is shrunk. An ordinary run tries a few
-//! hundred, always the same. `BANKSHOT_FUZZ_TRIES=10000000 cargo test --release --test fuzz -- --nocapture` is the
-//! campaign of `docs/reliability.md`; its random numbers differ from run to run, unless `BANKSHOT_FUZZ_SEED` (0 to 255)
-//! fixes them.
+//! Each target turns random bytes into mutations of a small corpus; a failure is shrunk. An
+//! ordinary run tries a few hundred, always the same. `BANKSHOT_FUZZ_TRIES=10000000 cargo test
+//! --release --test fuzz -- --nocapture` is the campaign of `docs/reliability.md`; its random
+//! numbers differ from run to run, unless `BANKSHOT_FUZZ_SEED` (0 to 255) fixes them.
 
 mod mutation;
 
@@ -250,7 +250,8 @@ fn fuzz_physics() {
     }
 }
 
-/// The time of a shot, microseconds: the least of several if it seems long, for the machine may do other work.
+/// The time of a shot, microseconds: the least of several if it seems long, for the machine may do
+/// other work.
 fn time_us(simulator: &Simulator, release: &Release) -> u64 {
     let once = || {
         let start = Instant::now();

@@ -1,6 +1,7 @@
 //! Random bytes as mutations of a text.
 
-/// Pieces that are inserted: what the formats give a meaning, and numbers at the ends of their ranges.
+/// Pieces that are inserted: what the formats give a meaning, and numbers at the ends of their
+/// ranges.
 const TOKENS: [&str; 32] = [
     "\n",
     "\"",

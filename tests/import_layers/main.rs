@@ -33,30 +33,39 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// Every source file with its module path, without unit tests.
-fn modules() -> BTreeMap<ModulePath, String> {
-    fn visit(folder: &Path, found: &mut BTreeMap<ModulePath, String>) {
+/// Every source file with its path below `src`.
+fn source_files() -> Vec<(PathBuf, String)> {
+    fn visit(folder: &Path, found: &mut Vec<(PathBuf, String)>) {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 visit(&path, found);
             } else if path.extension().is_some_and(|end| end == "rs") {
-                let inside = path.strip_prefix(root()).unwrap().with_extension("");
-                let mut names: ModulePath = inside
-                    .iter()
-                    .map(|part| part.to_string_lossy().into_owned())
-                    .collect();
-                if names.last().is_some_and(|name| name == "mod") {
-                    names.pop();
-                }
                 let text = fs::read_to_string(&path).unwrap();
-                let code = text.split("#[cfg(test)]\nmod tests").next().unwrap();
-                found.insert(names, without_comments(code));
+                found.push((path.strip_prefix(root()).unwrap().to_owned(), text));
             }
         }
     }
-    let mut found = BTreeMap::new();
+    let mut found = Vec::new();
     visit(&root(), &mut found);
+    found
+}
+
+/// Every source file with its module path, without unit tests.
+fn modules() -> BTreeMap<ModulePath, String> {
+    let mut found = BTreeMap::new();
+    for (path, text) in source_files() {
+        let inside = path.with_extension("");
+        let mut names: ModulePath = inside
+            .iter()
+            .map(|part| part.to_string_lossy().into_owned())
+            .collect();
+        if names.last().is_some_and(|name| name == "mod") {
+            names.pop();
+        }
+        let code = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+        found.insert(names, without_comments(code));
+    }
     found.remove(&vec!["lib".to_owned()]);
     found.remove(&vec!["main".to_owned()]);
     found
@@ -69,8 +78,8 @@ fn without_comments(code: &str) -> String {
         .join("\n")
 }
 
-/// The paths that begin with one of `crate`, `bankshot`, `super` and `self`, with the braces of a `use`
-/// written out.
+/// The paths that begin with one of `crate`, `bankshot`, `super` and `self`, with the braces of a
+/// `use` written out.
 fn paths(code: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let mut start = 0;
@@ -277,6 +286,22 @@ fn contract_no_files_import_each_other_in_a_circle() {
     for file in modules.keys() {
         visit(file, &imports, &mut state, &mut Vec::new());
     }
+}
+
+/// Comments are as wide as the code, whose width the formatter keeps. Rows of tables may be longer.
+#[test]
+fn contract_lines_of_comments_have_at_most_100_columns() {
+    let mut long = Vec::new();
+    for (file, text) in source_files() {
+        for line in text.lines() {
+            let comment = line.trim_start();
+            let is_row = comment.starts_with("//! |") || comment.starts_with("/// |");
+            if comment.starts_with("//") && !is_row && line.chars().count() > 100 {
+                long.push(format!("{}: {line}", file.display()));
+            }
+        }
+    }
+    assert!(long.is_empty(), "{}", long.join("\n"));
 }
 
 #[test]

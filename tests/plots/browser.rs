@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// The name of Chromium's program; `None` if it is not installed. With `BANKSHOT_NO_SKIP` in the environment, a
-/// missing Chromium is a failure.
+/// The name of Chromium's program; `None` if it is not installed. With `BANKSHOT_NO_SKIP` in the
+/// environment, a missing Chromium is a failure.
 pub(crate) fn chromium() -> Option<&'static str> {
     let found = ["chromium", "chromium-browser", "google-chrome"]
         .into_iter()
@@ -26,7 +26,8 @@ addEventListener('error', (event) => wrong.push(event.message));
 addEventListener('securitypolicyviolation', (event) => wrong.push('blocked ' + event.blockedURI));
 console.error = (...words) => wrong.push(words.join(' '));</script>";
 
-/// Runs after the page's own script: does what a visitor does, and records what the page then shows.
+/// Runs after the page's own script: does what a visitor does, and records what the page then
+/// shows.
 const AFTER: &str = include_str!("use_report_page.js");
 
 /// What a visitor sees of a page in a window of some width, px.

@@ -1,4 +1,5 @@
-//! The sweep behind `docs/pictures/bank_and_direct.svg`. `examples/draw_half_court.rs` uses this file too.
+//! The sweep behind `docs/pictures/bank_and_direct.svg`. `examples/draw_half_court.rs` uses this
+//! file too.
 
 use bankshot::sweep::columns::{self, ColumnType};
 use bankshot::sweep::result_row::{Cell, ResultRow};
@@ -17,9 +18,9 @@ pub(crate) struct HalfCourt {
 }
 
 impl HalfCourt {
-    /// Reads the configuration from `configs/`, and the results from `docs/data/half_court.csv`. The store of the
-    /// sweep gives these by
-    /// `SELECT job, kind, status, probability, standard_error, pitch_rad, backspin_rad_s FROM results ORDER BY job`.
+    /// Reads the configuration from `configs/`, and the results from `docs/data/half_court.csv`.
+    /// The store of the sweep gives these by `SELECT job, kind, status, probability,
+    /// standard_error, pitch_rad, backspin_rad_s FROM results ORDER BY job`.
     pub(crate) fn load() -> Self {
         let columns = result_columns();
         let mut reader = csv::Reader::from_path(RESULTS).unwrap();

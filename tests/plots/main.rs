@@ -1,4 +1,5 @@
-//! Plots and report pages: the same bytes every time, none in `docs/` out of date, and safe with any name.
+//! Plots and report pages: the same bytes every time, none in `docs/` out of date, and safe with
+//! any name.
 #![cfg(feature = "app")]
 
 mod browser;

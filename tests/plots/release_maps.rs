@@ -25,7 +25,8 @@ fn contract_a_map_of_release_space_is_the_same_on_any_number_of_threads() {
 
 #[test]
 fn val_p_of_a_release_map_is_p_of_its_shots() {
-    // Against Sobol points, at nine cells about a good shot. The map's own error is about 0.003 in a cell.
+    // Against Sobol points, at nine cells about a good shot. The map's own error is about 0.003 in
+    // a cell.
     let profile = load("free_throw");
     let shot = nominal(23.6, 53.5, 0.0, 3.0);
     let cells = ReleaseCells {

@@ -5,7 +5,8 @@ use super::support::{SMALL_SWEEP, SweepRun, bankshot, succeed, write_report};
 use serde_json::{Value, json};
 use std::fs;
 
-/// A name of nearly the greatest length that a profile allows, made of text that could break a page.
+/// A name of nearly the greatest length that a profile allows, made of text that could break a
+/// page.
 fn hostile_name() -> String {
     let mut name = "</script><script>window.evil=1</script><img src=x onerror='window.evil=1'>&amp;\\\"' {{js}} ]]>"
         .repeat(6);

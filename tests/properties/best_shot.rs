@@ -1,4 +1,5 @@
-//! Properties of the search for the best shots, over all of the nominal values and over a part of them.
+//! Properties of the search for the best shots, over all of the nominal values and over a part of
+//! them.
 
 use crate::common::{at, grid, guard_on_the_wing, load, with_search};
 use bankshot::analysis::sensitivity::SensitivityTopics;
@@ -31,8 +32,8 @@ fn best_of_wing() -> &'static [BestShot; 2] {
     BEST.get_or_init(|| find(&wing()))
 }
 
-/// Standard error of the difference of two probabilities. At 4.5 of them a comparison is a false alarm for 1
-/// of 150,000 choices of seeds.
+/// Standard error of the difference of two probabilities. At 4.5 of them a comparison is a false
+/// alarm for 1 of 150,000 choices of seeds.
 fn error_of_difference(a: &BestShot, b: &BestShot) -> f64 {
     libm::hypot(a.estimate.standard_error, b.estimate.standard_error)
 }
@@ -103,8 +104,8 @@ fn prop_curves_pass_through_the_best_shot() {
                 .points
                 .iter()
                 .fold(0.0, |top: f64, &(_, p)| top.max(p));
-            // The line passes through the table's nominal shot nearest to the best one, not through the
-            // table's best.
+            // The line passes through the table's nominal shot nearest to the best one, not through
+            // the table's best.
             assert!((top - shot.table_probability).abs() < 0.005, "{curve:?}");
             assert!(curve.points.is_sorted_by(|a, b| a.0 < b.0));
         }
@@ -128,8 +129,8 @@ fn prop_best_shots_are_of_their_kind_and_mirror() {
         let difference = (one.estimate.probability - two.estimate.probability).abs();
         let error = error_of_difference(one, two);
         println!("{kind:?}: difference {difference:.5}, standard error {error:.5}");
-        // Two comparisons at 4.5 standard errors: a false alarm for 1 of 75,000 choices of seeds. The rms
-        // error of the tables is 0.001.
+        // Two comparisons at 4.5 standard errors: a false alarm for 1 of 75,000 choices of seeds.
+        // The rms error of the tables is 0.001.
         assert!(
             difference < 4.5 * error + 0.001,
             "{kind:?} {difference} {error}"
@@ -147,8 +148,8 @@ fn prop_the_best_shot_is_not_below_its_own_table() {
         let difference = shot.estimate.probability - shot.table_probability;
         let error = shot.estimate.standard_error;
         println!("best minus table: {difference:+.5}, standard error {error:.5}");
-        // Three times the rms error of the table, and 4.5 standard errors: a false alarm for fewer than 1
-        // of 1000 choices of seeds.
+        // Three times the rms error of the table, and 4.5 standard errors: a false alarm for fewer
+        // than 1 of 1000 choices of seeds.
         assert!(difference > -0.003 - 4.5 * error, "{shot:?}");
     }
 }

@@ -108,8 +108,9 @@ fn energy(physics: &Physics, state: &BallState) -> f64 {
         + 0.5 * physics.hoop_contact.stiffness_n_m * hoop * hoop
 }
 
-/// Without damping all losses come from friction. Lift does no work. Where a contact passes from the ring to the bracket, the
-/// normal jumps within a step, and the energy errs in proportion to that step: brackets are tested with their damping.
+/// Without damping all losses come from friction. Lift does no work. Where a contact passes from
+/// the ring to the bracket, the normal jumps within a step, and the energy errs in proportion to
+/// that step: brackets are tested with their damping.
 #[test]
 fn prop_energy_never_grows() {
     for preset in &PRESETS {
@@ -132,8 +133,9 @@ fn of_now(physics: &Physics) -> f64 {
     }
 }
 
-/// A ball that is wedged between board and hoop for long gains energy by the square of the step, so the steps are short. A
-/// wedged ball can have hardly any energy: what is allowed is a share of that of the release.
+/// A ball that is wedged between board and hoop for long gains energy by the square of the step, so
+/// the steps are short. A wedged ball can have hardly any energy: what is allowed is a share of
+/// that of the release.
 #[test]
 fn prop_energy_never_grows_in_undamped_leagues() {
     for preset in &PRESETS {
@@ -146,8 +148,8 @@ fn prop_energy_never_grows_in_undamped_leagues() {
     }
 }
 
-/// Over the board's edges and beside it on purpose too. What is allowed are shares of the energy of the sample before and of
-/// the release.
+/// Over the board's edges and beside it on purpose too. What is allowed are shares of the energy of
+/// the sample before and of the release.
 fn energy_never_grows(
     physics: &Physics,
     (steps, shots): (u32, usize),
@@ -244,8 +246,8 @@ fn prop_shots_mirrored_in_the_plane_of_symmetry_end_alike() {
 
 #[test]
 fn prop_a_scaled_world_gives_the_same_shots() {
-    // Lengths times 4 and times times 2 (exact in binary) leave gravity unchanged. Stiffness and damping per
-    // mass scale with the inverse square and the inverse of time.
+    // Lengths times 4 and times times 2 (exact in binary) leave gravity unchanged. Stiffness and
+    // damping per mass scale with the inverse square and the inverse of time.
     let physics = Physics::paper();
     let mut large = physics.clone();
     for length in [
@@ -334,9 +336,9 @@ fn prop_the_rule_for_lodged_balls_changes_no_made_shot() {
 
 #[test]
 fn prop_grazes_are_found() {
-    // Parabolas that pass the back of the ring at a least distance just below or above R. The event-driven
-    // integrator must tell them apart, however small the overlap. Bisection on the speed, between a swish and
-    // the first contact, finds them.
+    // Parabolas that pass the back of the ring at a least distance just below or above R. The
+    // event-driven integrator must tell them apart, however small the overlap. Bisection on the
+    // speed, between a swish and the first contact, finds them.
     let simulator = Simulator::new(&Physics::paper()).unwrap();
     let mut edges = 0;
     for i in 0..50 {
@@ -419,8 +421,8 @@ fn contract_a_ball_released_below_the_ring_and_falling_ends_at_once() {
 
 #[test]
 fn prop_a_board_that_ends_above_the_ring_takes_no_more_steps() {
-    // A ball on the ring below the board is not about to touch it. Steps that waited for the touch made this board
-    // 40 times slower.
+    // A ball on the ring below the board is not about to touch it. Steps that waited for the touch
+    // made this board 40 times slower.
     let steps = |board_height_m: f64| {
         let physics = Physics {
             board_height_m,
@@ -454,8 +456,8 @@ fn bouncing(mass_kg: f64, contact_time_s: f64, restitution: f64) -> Option<Physi
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
-    /// Authority: the closed form exp(-pi alpha/omega) (the paper's Appendix 1), over the whole range of accepted
-    /// masses, contact times and restitutions.
+    /// Authority: the closed form exp(-pi alpha/omega) (the paper's Appendix 1), over the whole
+    /// range of accepted masses, contact times and restitutions.
     #[test]
     fn prop_a_head_on_bounce_has_its_restitution(
         mass in -3.0..2.0,
@@ -484,10 +486,11 @@ proptest! {
     }
 }
 
-/// Single precision is chosen for balls like those in play. There it must give the same shares of made shots as
-/// double precision: 4e-4 of the shots of either disagree with tiny steps (docs/performance.md), so two of them
-/// disagree on 8e-4 at most, 24 of 30,000. More than 45 disagree by chance (binomial) for 1 of 20,000 choices of
-/// seeds. Their numbers of made shots differ by less than the root of the disagreements times four.
+/// Single precision is chosen for balls like those in play. There it must give the same shares of
+/// made shots as double precision: 4e-4 of the shots of either disagree with tiny steps
+/// (docs/performance.md), so two of them disagree on 8e-4 at most, 24 of 30,000. More than 45
+/// disagree by chance (binomial) for 1 of 20,000 choices of seeds. Their numbers of made shots
+/// differ by less than the root of the disagreements times four.
 #[test]
 fn prop_single_precision_gives_the_shots_of_double_precision() {
     let stiff = |stiffness_n_m| {

@@ -28,9 +28,10 @@ fn prop_shares_of_made_and_missed_sum_to_one() {
     let missed = classify_misses(&profile, &shot, &sobol, 1);
     let sum: f64 = missed.named().iter().map(|(_, share)| share).sum();
     assert!((sum + sobol.probability - 1.0).abs() < 1e-12);
-    // A free throw from the middle is missed equally often to both sides. The shares come from 16,384 shots
-    // and are below 0.1, so their difference has a standard error of 0.0035 at most (less with Sobol points).
-    // 0.01 is 2.9 of them: a false alarm for 1 of 250 choices of seeds at most.
+    // A free throw from the middle is missed equally often to both sides. The shares come from
+    // 16,384 shots and are below 0.1, so their difference has a standard error of 0.0035 at most
+    // (less with Sobol points). 0.01 is 2.9 of them: a false alarm for 1 of 250 choices of seeds at
+    // most.
     assert!((missed.left - missed.right).abs() < 0.01, "{missed:?}");
     assert!(missed.left < 0.1 && missed.right < 0.1, "{missed:?}");
 }

@@ -138,7 +138,8 @@ fn contract_a_file_of_locations_is_read_by_column_name_and_refused_by_row() {
         assert_code(&output, 2);
         assert_printed(&output, message);
     }
-    // A location, its mirror image and the first one again: one is computed, all three are in the table.
+    // A location, its mirror image and the first one again: one is computed, all three are in the
+    // table.
     fs::write(
         &file,
         "name,distance_ft,court_angle_deg\na,10,30\nb,10,-30\nc,10,30\n",

@@ -28,7 +28,8 @@ fn damaged_versions(valid: &[u8]) -> Vec<(String, Vec<u8>)> {
         bytes[at] ^= 1 << bit;
         cases.push((format!("byte {at} bit {bit}"), bytes));
     }
-    // Damage that reading the rows does not show: the header's versions, and the schema of the small tables.
+    // Damage that reading the rows does not show: the header's versions, and the schema of the
+    // small tables.
     for at in [18, 19] {
         let mut bytes = valid.to_vec();
         bytes[at] ^= 2;
@@ -78,7 +79,8 @@ fn contract_salvaged_failures_never_replace_a_better_result() {
     let out = test.out("salvage");
     let output = test.run(&out, &["--quiet", "--fault", "panic:2"]);
     assert_code(&output, 3);
-    // The store of a machine has the failures, and is damaged later. Another machine has computed them again.
+    // The store of a machine has the failures, and is damaged later. Another machine has computed
+    // them again.
     let old = out.join("store/1-of-9.elsewhere.sqlite");
     fs::copy(store(&out), &old).unwrap();
     let output = test.run(&out, &["--quiet", "--retry-failed"]);
@@ -115,7 +117,8 @@ fn contract_a_damaged_manifest_is_written_again() {
     }
 }
 
-/// Writes a row with another P, and a checksum that matches it, into a store of its own. Returns its job.
+/// Writes a row with another P, and a checksum that matches it, into a store of its own. Returns
+/// its job.
 fn add_contradiction(out: &Path) -> u64 {
     let (folder, _) = SweepFolder::existing(out).unwrap();
     let mut rows: Vec<ResultRow> = Vec::new();

@@ -9,9 +9,9 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Half of the kills come while a thread waits at a random spot and another one computes; the other half after a
-/// random time, which may be before the first spot. The times only vary the moment: a sweep that ends before
-/// its kill is a finished round.
+/// Half of the kills come while a thread waits at a random spot and another one computes; the other
+/// half after a random time, which may be before the first spot. The times only vary the moment: a
+/// sweep that ends before its kill is a finished round.
 #[test]
 fn contract_a_hundred_kills_change_no_byte() {
     let test = TestFolder::new();
@@ -53,7 +53,8 @@ fn contract_a_hundred_kills_change_no_byte() {
     let output = test.run(&out, &["--quiet"]);
     assert_code(&output, 0);
     assert_eq!(tables(&out), bytes);
-    // A thread that waits at spot n has seen n - 1 spots saved, so enough runs resume on any machine.
+    // A thread that waits at spot n has seen n - 1 spots saved, so enough runs resume on any
+    // machine.
     assert!(resumed > 10, "{rounds} rounds, {resumed} resumed");
 }
 

@@ -115,7 +115,8 @@ fn contract_all_shards_are_refused_while_one_is_running() {
     assert_code(&test.run(&out, &["--quiet"]), 0);
 }
 
-/// In air, at a ring with a rod, a bracket and edges: killed, continued with other instructions, and computed again.
+/// In air, at a ring with a rod, a bracket and edges: killed, continued with other instructions,
+/// and computed again.
 #[test]
 fn contract_a_sweep_under_ncaa_resumes_and_verifies_to_the_same_bytes() {
     let test = TestFolder::with(&format!("{SWEEP}\n[physics]\npreset = \"ncaa\"\n"));

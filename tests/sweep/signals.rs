@@ -1,4 +1,5 @@
-//! Signals and kills. All of them reach a sweep that waits at a spot, so the speed of the machine is irrelevant.
+//! Signals and kills. All of them reach a sweep that waits at a spot, so the speed of the machine
+//! is irrelevant.
 #![cfg(unix)]
 
 use crate::support::{JOBS, TestFolder, WaitingSweep, assert_code, assert_printed, tables};

@@ -46,7 +46,8 @@ impl TestFolder {
         command
     }
 
-    /// `bankshot sweep` into a folder, with a wait at a spot; and the file that the program creates there.
+    /// `bankshot sweep` into a folder, with a wait at a spot; and the file that the program creates
+    /// there.
     pub(crate) fn waiting_command(&self, out: &Path, spot: usize) -> (Command, PathBuf) {
         let file = self.out("waiting");
         let _ = fs::remove_file(&file);
@@ -56,7 +57,8 @@ impl TestFolder {
         (command, file)
     }
 
-    /// Starts a sweep on one thread and returns once it waits at a spot. All spots before it are then saved.
+    /// Starts a sweep on one thread and returns once it waits at a spot. All spots before it are
+    /// then saved.
     pub(crate) fn start_and_wait_at(&self, out: &Path, spot: usize) -> WaitingSweep {
         let (mut command, file) = self.waiting_command(out, spot);
         command.args(["--threads", "1"]);
@@ -84,7 +86,8 @@ pub(crate) struct WaitingSweep {
 }
 
 impl WaitingSweep {
-    /// Starts a command of [`TestFolder::waiting_command`] and returns once the program has created the file.
+    /// Starts a command of [`TestFolder::waiting_command`] and returns once the program has created
+    /// the file.
     pub(crate) fn start(command: Command, file: PathBuf) -> Self {
         let mut child = start(command);
         // The program writes its process number right after it has created the file.

@@ -1,5 +1,5 @@
-//! System calls that fail during a sweep: full disks, defective disks, death at any call. These tests need strace.
-//! Without it they are skipped, unless `BANKSHOT_NO_SKIP` is set.
+//! System calls that fail during a sweep: full disks, defective disks, death at any call. These
+//! tests need strace. Without it they are skipped, unless `BANKSHOT_NO_SKIP` is set.
 #![cfg(target_os = "linux")]
 
 use crate::support::{Tables, TestFolder, printed, store, tables};

@@ -1,7 +1,7 @@
 //! The two integrators against each other and against their own smallest steps.
 //!
-//! Two shots whose starts differ by 1e-9 can end differently after several bounces. So two integrators agree
-//! on a share of many shots, never on all.
+//! Two shots whose starts differ by 1e-9 can end differently after several bounces. So two
+//! integrators agree on a share of many shots, never on all.
 
 use crate::common::{
     self, at, disagreements, event_driven, free_throw_uniform, load, nominal, paper_rk4,
@@ -15,9 +15,9 @@ use bankshot::shooter::{Nominal, Profile};
 use bankshot::units::FOOT_M;
 use rayon::prelude::*;
 
-/// Authority: the same integrator with 1000 steps per contact. docs/performance.md claims that 0.9997 of the
-/// shots agree, so 18 of 60,000 disagree. More than 33 do so by chance (binomial) for 1 of 2000 choices of
-/// seeds.
+/// Authority: the same integrator with 1000 steps per contact. docs/performance.md claims that
+/// 0.9997 of the shots agree, so 18 of 60,000 disagree. More than 33 do so by chance (binomial) for
+/// 1 of 2000 choices of seeds.
 fn check_smallest_steps(shots: &[Release]) {
     assert_eq!(shots.len(), 60_000);
     let physics = Physics::paper();
@@ -54,9 +54,9 @@ fn val_paper_rk4_approaches_event_driven_as_its_steps_shrink() {
     let finest = at(0.001, 0.000_01);
     println!("agreement: {own} {finer} {finest}");
     assert!(finer > own && finest > finer, "{own} {finer} {finest}");
-    // docs/performance.md claims 0.99525 at the paper's own steps: 47.5 of 10,000 disagree. More than 72
-    // disagree by chance (binomial) for 1 of 2500 choices of seeds. At the finest steps 0.99985 agree, so 1.5
-    // of 10,000 disagree, and more than 7 for 1 of 5000 choices.
+    // docs/performance.md claims 0.99525 at the paper's own steps: 47.5 of 10,000 disagree. More
+    // than 72 disagree by chance (binomial) for 1 of 2500 choices of seeds. At the finest steps
+    // 0.99985 agree, so 1.5 of 10,000 disagree, and more than 7 for 1 of 5000 choices.
     assert!(own >= 0.9928, "{own}");
     assert!(finest >= 0.9993, "{finest}");
 }
@@ -76,7 +76,8 @@ fn distance(a: [f64; 6], b: [f64; 6]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// Median error after the first contact of shots, at each number of steps, against 512 steps; all in double precision.
+/// Median error after the first contact of shots, at each number of steps, against 512 steps; all
+/// in double precision.
 fn median_errors(shots: &[Release], steps: &[u32]) -> Vec<f64> {
     let physics = Physics::paper();
     let at = |steps_per_contact| {
@@ -101,8 +102,8 @@ fn median_errors(shots: &[Release], steps: &[u32]) -> Vec<f64> {
     steps.iter().map(median).collect()
 }
 
-/// Mean order over several halvings of the step. Single ratios scatter, because the last step of a phase can
-/// end anywhere.
+/// Mean order over several halvings of the step. Single ratios scatter, because the last step of a
+/// phase can end anywhere.
 fn order(coarse: f64, fine: f64, halvings: i32) -> f64 {
     libm::log2(coarse / fine) / f64::from(halvings)
 }
@@ -144,8 +145,9 @@ fn val_convergence_orders() {
     );
 }
 
-/// P of 40 nominal shots at the default steps against 1000 steps in double precision, with common samples: the
-/// difference is bias, not chance. Its standard error is 6e-5 at 2^17 samples (5e-4 of the shots disagree).
+/// P of 40 nominal shots at the default steps against 1000 steps in double precision, with common
+/// samples: the difference is bias, not chance. Its standard error is 6e-5 at 2^17 samples (5e-4 of
+/// the shots disagree).
 #[test]
 #[ignore = "fifteen minutes: cargo test --test validation campaign_bias -- --ignored --nocapture"]
 fn campaign_bias_of_p_at_the_default_steps() {
@@ -188,7 +190,8 @@ fn campaign_bias_of_p_at_the_default_steps() {
     assert!(size < 0.0005 && worst < 0.0015, "{mean} {size} {worst}");
 }
 
-/// Direct and bank shots, from the line and the side, from afar and near, with little damping, soft and hard balls.
+/// Direct and bank shots, from the line and the side, from afar and near, with little damping, soft
+/// and hard balls.
 fn bias_cases() -> Vec<(&'static str, Profile, Vec<Nominal>)> {
     let with_physics = |physics: Physics| {
         load("free_throw")

@@ -1,5 +1,5 @@
-//! The library against other authorities: closed forms, the paper, other integrators and other methods,
-//! and published results. The authority is named in each module or test.
+//! The library against other authorities: closed forms, the paper, other integrators and other
+//! methods, and published results. The authority is named in each module or test.
 //!
 //! Tests named `campaign_` take a minute or more and are ignored. Each has its command.
 

@@ -9,7 +9,8 @@ use bankshot::shooter::{Nominal, TableGrid};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
 
-/// Shooters and court angles (deg) by which the table is judged: narrow and wide, in front and at the side.
+/// Shooters and court angles (deg) by which the table is judged: narrow and wide, in front and at
+/// the side.
 const JUDGED: [(&str, f64); 6] = [
     ("elite", 0.0),
     ("elite", 67.5),
@@ -19,8 +20,8 @@ const JUDGED: [(&str, f64); 6] = [
     ("bank_wing", 50.0),
 ];
 
-/// Table minus Sobol at the centres of `windows` windows about each of the best direct and bank shots. These
-/// are found on a table of the size `search`.
+/// Table minus Sobol at the centres of `windows` windows about each of the best direct and bank
+/// shots. These are found on a table of the size `search`.
 fn table_errors(windows: u64, search: TableGrid) -> Vec<f64> {
     let mut random = ChaCha12Rng::seed_from_u64(99);
     let mut all = Vec::new();
@@ -80,9 +81,9 @@ fn spread(errors: &[f64]) -> [f64; 3] {
 
 #[test]
 fn val_table_agrees_with_sobol_for_narrow_and_wide_shooters_in_front_and_at_the_side() {
-    // The table's rms error is at most 0.001 (`campaign_table` measures it on 72 windows; the 0.0002 of the
-    // Sobol reference is included). For twelve windows, 1.6 times that is exceeded by 1 of 1000 choices of
-    // windows, and three times that by a single window for 1 of 30 choices.
+    // The table's rms error is at most 0.001 (`campaign_table` measures it on 72 windows; the
+    // 0.0002 of the Sobol reference is included). For twelve windows, 1.6 times that is exceeded by
+    // 1 of 1000 choices of windows, and three times that by a single window for 1 of 30 choices.
     let [bias, rms, worst] = spread(&table_errors(1, grid(24, 16, 16, 6)));
     assert!(
         bias.abs() < 0.001 && rms < 0.0016 && worst < 0.003,

@@ -1,10 +1,10 @@
 //! The paper's Figs. 12-15 as bands of speed, its closed forms, and the swirl of Fig. 11.
 //!
-//! Authority of the bands: scans of the paper's equations at 52 deg with uniform steps of 5e-6 s, by a
-//! program that shares no code with bankshot. `tests/validation/paper_speed_bands.py` prints them. The values
-//! below are of an earlier scan of the same equations; the script prints the same edges to 0.002 ft/s and the
-//! same totals to 0.004 ft/s. The speeds are 0.002 ft/s apart, so each edge is good to 0.004 ft/s. The closed
-//! forms are named at each test.
+//! Authority of the bands: scans of the paper's equations at 52 deg with uniform steps of 5e-6 s,
+//! by a program that shares no code with bankshot. `tests/validation/paper_speed_bands.py` prints
+//! them. The values below are of an earlier scan of the same equations; the script prints the same
+//! edges to 0.002 ft/s and the same totals to 0.004 ft/s. The speeds are 0.002 ft/s apart, so each
+//! edge is good to 0.004 ft/s. The closed forms are named at each test.
 
 use crate::common::{self, event_driven, release};
 use bankshot::dynamics::{EventKind, Simulator, Trace};
@@ -50,7 +50,8 @@ fn check(physics: &Physics, figure: Figure, expected: &[(f64, f64)], total: f64)
             "band {start} {width} not among {found:?}"
         );
     }
-    // Single samples between the bands are chaotic: the totals of the two programs differ by up to 0.004.
+    // Single samples between the bands are chaotic: the totals of the two programs differ by up to
+    // 0.004.
     assert!((sum - total).abs() <= 0.01, "total {sum}, expected {total}");
 }
 
@@ -61,9 +62,10 @@ const FIG_15: Figure = (67.5, 62.107, 3.0);
 
 #[test]
 fn val_paper_fig_12_no_spin() {
-    // The shots of the last band are chaotic. Of the paper's integrator at uniform steps of 3, 4, 5, 6, 7 and
-    // 10e-6 s, only 4e-6 s misses, and only the one sample at 25.084. That splits the band. The earlier scan
-    // began it at 25.086; `paper_speed_bands.py` begins it at 25.078, as here.
+    // The shots of the last band are chaotic. Of the paper's integrator at uniform steps of 3, 4,
+    // 5, 6, 7 and 10e-6 s, only 4e-6 s misses, and only the one sample at 25.084. That splits the
+    // band. The earlier scan began it at 25.086; `paper_speed_bands.py` begins it at 25.078, as
+    // here.
     let bands = [
         (23.316, 0.534),
         (24.134, 0.032),
@@ -153,8 +155,8 @@ fn val_appendix_1_head_on_bounce() {
 
 #[test]
 fn val_oblique_bounce_keeps_0_582_of_the_cross_speed() {
-    // Authority: a rigid ball that rolls at the end keeps 3/5. The compressed ball has a shorter lever.
-    // Gravity is off: along the board it would add to the slip.
+    // Authority: a rigid ball that rolls at the end keeps 3/5. The compressed ball has a shorter
+    // lever. Gravity is off: along the board it would add to the slip.
     let mut physics = Physics::with_restitution(0.8457).unwrap();
     physics.gravity_m_s2 = 1e-9;
     let (state, _) = first_part(&bounce(&physics, 12.0, 9.0));
@@ -180,8 +182,8 @@ fn val_closed_form_speed_through_the_centre_of_the_hoop() {
     );
 }
 
-/// The swirl of Fig. 11 with the given spin about the vertical, disturbed by a downward speed: its period, and the
-/// turns until the ball has left its circle (its centre is 1 cm lower).
+/// The swirl of Fig. 11 with the given spin about the vertical, disturbed by a downward speed: its
+/// period, and the turns until the ball has left its circle (its centre is 1 cm lower).
 fn swirl_turns(disturbance_m_s: f64, spin_z_rad_s: impl Fn(f64, f64) -> f64) -> (f64, f64) {
     let physics = Physics::paper();
     let (sin, cos) = libm::sincos(87.5 * DEGREE_RAD);

@@ -1,6 +1,8 @@
-//! P of one nominal shot by independent methods: Sobol points, plain Monte Carlo, and the grids of Eq. 25.
+//! P of one nominal shot by independent methods: Sobol points, plain Monte Carlo, and the grids of
+//! Eq. 25.
 //!
-//! Two estimates that agree differ by more than 4.5 standard errors for 1 of 150,000 choices of seeds.
+//! Two estimates that agree differ by more than 4.5 standard errors for 1 of 150,000 choices of
+//! seeds.
 
 use crate::common::{at, load, nominal};
 use bankshot::model::BallState;
@@ -55,8 +57,8 @@ fn val_sobol_agrees_with_plain_monte_carlo() {
 
 #[test]
 fn val_grid_monte_carlo_and_sobol_agree_on_six_shots() {
-    // Eighteen comparisons: a false alarm for 1 of 8,000 choices of seeds. The grid's error comes from four
-    // offsets only, so it is taken as 0.0012 at least.
+    // Eighteen comparisons: a false alarm for 1 of 8,000 choices of seeds. The grid's error comes
+    // from four offsets only, so it is taken as 0.0012 at least.
     let profile = load("free_throw");
     let place = |distance_ft: f64, angle_deg: f64| at(&profile, distance_ft * FOOT_M, angle_deg);
     for (name, profile, shot) in [
@@ -97,8 +99,9 @@ fn val_grid_monte_carlo_and_sobol_agree_on_six_shots() {
 
 #[test]
 fn val_correlated_errors_match_a_rotation_of_independent_ones() {
-    // Authority: two normals with correlation r are the sum and the difference of independent ones with the
-    // variances (1 + r)/2 and (1 - r)/2. Four comparisons: a false alarm for 1 of 37,000 choices of seeds.
+    // Authority: two normals with correlation r are the sum and the difference of independent ones
+    // with the variances (1 + r)/2 and (1 - r)/2. Four comparisons: a false alarm for 1 of 37,000
+    // choices of seeds.
     use ReleaseVariable::{CourtAngle, Height, Pitch, Polar, Speed};
     let (profile, shot) = nine_errors();
     let with_correlation = |correlation| {
@@ -145,9 +148,9 @@ fn val_correlated_errors_match_a_rotation_of_independent_ones() {
 
 #[test]
 fn val_fifty_scrambles_scatter_by_the_standard_error() {
-    // Authority: the sum of the squared deviations from their mean, over the stated variance, is about
-    // chi-squared with 49 degrees of freedom. It is 0.45 to 1.85 times 49 for all but 1 of 2000 choices of
-    // seeds.
+    // Authority: the sum of the squared deviations from their mean, over the stated variance, is
+    // about chi-squared with 49 degrees of freedom. It is 0.45 to 1.85 times 49 for all but 1 of
+    // 2000 choices of seeds.
     let (profile, shot) = nine_errors();
     let sampler = Sampler::new(&profile);
     let found: Vec<Estimate> = (0..50)
@@ -206,7 +209,8 @@ fn val_without_the_four_errors_of_eq_25_p_is_the_outcome_of_the_one_shot() {
 #[test]
 fn val_one_common_grid_aliases_and_shifted_grids_do_not() {
     // Authority: Sobol points. The grid of Eq. 25 with 37 values per axis is wrong by 0.02 (see
-    // docs/validation.md), which is more than 20 standard errors. This is why the tables shift their lines.
+    // docs/validation.md), which is more than 20 standard errors. This is why the tables shift
+    // their lines.
     let profile = load("free_throw");
     let shot = nominal(23.6, 53.5, 0.0, 3.0);
     let plan = TablePlan::for_search(&profile).unwrap();
@@ -225,8 +229,8 @@ fn val_one_common_grid_aliases_and_shifted_grids_do_not() {
     ));
 }
 
-/// Shots with P near 0.0005, 0.002, 0.7, 0.995 and 0.9995: the factor of all errors of `free_throw`, and the speed in
-/// ft/s.
+/// Shots with P near 0.0005, 0.002, 0.7, 0.995 and 0.9995: the factor of all errors of
+/// `free_throw`, and the speed in ft/s.
 const COVERED: [(f64, f64); 5] = [
     (1.0, 22.41),
     (1.0, 22.518),
@@ -268,7 +272,8 @@ fn coverages(seeds: u64) -> Vec<f64> {
 
 #[test]
 fn val_intervals_cover_small_and_large_probabilities() {
-    // Of 60 intervals with a coverage of 95 %, 51 or more cover for all but 1 of 3,700 choices of seeds.
+    // Of 60 intervals with a coverage of 95 %, 51 or more cover for all but 1 of 3,700 choices of
+    // seeds.
     for coverage in coverages(60) {
         assert!(coverage >= 51.0 / 60.0, "{coverage}");
     }

@@ -1,7 +1,8 @@
-//! Published results side by side with ours. `docs/validation.md` has the tables that the campaign prints.
+//! Published results side by side with ours. `docs/validation.md` has the tables that the campaign
+//! prints.
 //!
-//! The `val_` tests use coarse tables; their bounds allow for that. A comparison at 4.5 standard errors is a
-//! false alarm for 1 of 150,000 choices of seeds.
+//! The `val_` tests use coarse tables; their bounds allow for that. A comparison at 4.5 standard
+//! errors is a false alarm for 1 of 150,000 choices of seeds.
 
 use crate::common::{at, grid, load, nominal, with_search};
 use bankshot::analysis::aim_past_hoop::centre_speed_m_s;
@@ -69,8 +70,8 @@ fn correlation(pairs: &[(f64, f64)]) -> f64 {
 }
 
 /// Tran and Silverberg 2008, "Optimal release conditions for the free throw in men's basketball"
-/// (J. Sports Sci. 26), released at 7 ft with 3 rev/s: 52 deg, 2.8 in past the centre, about 3 points lost by
-/// aiming at the centre, and the backspin at its limit is the best.
+/// (J. Sports Sci. 26), released at 7 ft with 3 rev/s: 52 deg, 2.8 in past the centre, about 3
+/// points lost by aiming at the centre, and the backspin at its limit is the best.
 struct FreeThrow {
     best: BestShot,
     at_centre: Estimate,
@@ -115,8 +116,8 @@ fn val_tran_and_silverberg_2008_free_throw() {
     free_throw(Effort::Test).check();
 }
 
-/// Brancazio 1981 (Am. J. Phys. 49): the least speed needs 45 deg plus half the angle at which the hoop is
-/// seen. Schwark 2004, from 4.09 m and 1.30 m below: 53.8 deg at 7.4 m/s.
+/// Brancazio 1981 (Am. J. Phys. 49): the least speed needs 45 deg plus half the angle at which the
+/// hoop is seen. Schwark 2004, from 4.09 m and 1.30 m below: 53.8 deg at 7.4 m/s.
 struct LeastSpeed {
     least_deg: f64,
     least_m_s: f64,
@@ -154,7 +155,8 @@ impl LeastSpeed {
         assert!((self.least_deg - rule_deg).abs() < 0.02);
         assert!((self.least_deg - 53.8).abs() < 0.1, "{}", self.least_deg);
         assert!((self.least_m_s - 7.4).abs() < 0.05, "{}", self.least_m_s);
-        // With the errors of a shooter a steeper shot is better, because a steeper ball meets a wider ring.
+        // With the errors of a shooter a steeper shot is better, because a steeper ball meets a
+        // wider ring.
         let pitch_deg = self.best.nominal.pitch_rad / DEGREE_RAD;
         assert!((55.5..=59.5).contains(&pitch_deg), "{pitch_deg}");
         let speed = self.best.nominal.speed_m_s;
@@ -170,9 +172,9 @@ fn val_brancazio_1981_and_schwark_2004_least_speed() {
     least_speed(Effort::Test).check();
 }
 
-/// Slegers 2021 (doi 10.52082/jssm.2021.508): twelve trained players, free throws from 4.19 m. The speed of a
-/// player scatters by 0.05 to 0.13 m/s, the pitch angle by 1.3 deg plus or minus 0.26. Success goes with the
-/// scatter of speed (r = -0.88) and not with that of pitch.
+/// Slegers 2021 (doi 10.52082/jssm.2021.508): twelve trained players, free throws from 4.19 m. The
+/// speed of a player scatters by 0.05 to 0.13 m/s, the pitch angle by 1.3 deg plus or minus 0.26.
+/// Success goes with the scatter of speed (r = -0.88) and not with that of pitch.
 fn scatter_of_players(effort: Effort) -> (f64, f64) {
     let mut by_speed = Vec::new();
     let mut by_pitch = Vec::new();
@@ -205,15 +207,15 @@ fn check_scatter((speed, pitch): (f64, f64)) {
 
 #[test]
 fn val_slegers_2021_success_goes_with_the_scatter_of_speed() {
-    // The standard error of P, 0.002, is small beside the spread of P over the players, 0.11: it changes the
-    // coefficients by about 0.005.
+    // The standard error of P, 0.002, is small beside the spread of P over the players, 0.11: it
+    // changes the coefficients by about 0.005.
     check_scatter(scatter_of_players(Effort::Coarse));
 }
 
-/// Silverberg, Tran and Adams 2011, "Optimal targets for the bank shot in men's basketball" (J. Quant.
-/// Anal. Sports 7): the bank shot is better near the hoop and at the sides, the direct shot is better far
-/// away and straight on. Each row has the distance (ft), the court angle (deg), and whether the bank shot is
-/// better.
+/// Silverberg, Tran and Adams 2011, "Optimal targets for the bank shot in men's basketball" (J.
+/// Quant. Anal. Sports 7): the bank shot is better near the hoop and at the sides, the direct shot
+/// is better far away and straight on. Each row has the distance (ft), the court angle (deg), and
+/// whether the bank shot is better.
 const PLACES: [(f64, f64, bool); 8] = [
     (6.0, 0.0, true),
     (6.0, 30.0, true),

@@ -1,5 +1,5 @@
-//! The ball in air at a real hoop: against an independent program, against an independent slow integrator, and
-//! against what is known in closed form or was published.
+//! The ball in air at a real hoop: against an independent program, against an independent slow
+//! integrator, and against what is known in closed form or was published.
 
 use crate::common;
 use bankshot::dynamics::{Ending, Integrator, Precision, Release, Simulator};
@@ -35,8 +35,9 @@ fn free_throw(
     }
 }
 
-/// The bands of speed (ft/s) in which a free throw at 52 deg goes in, wider than 0.03 ft/s, and the width of all. A band
-/// that one missed sample divides is there as a whole too: such samples are chaotic.
+/// The bands of speed (ft/s) in which a free throw at 52 deg goes in, wider than 0.03 ft/s, and the
+/// width of all. A band that one missed sample divides is there as a whole too: such samples are
+/// chaotic.
 fn bands(physics: &Physics, spin_rev_s: f64) -> (Vec<(f64, f64)>, f64) {
     const STEP: f64 = 0.002;
     let speed = |i: usize| 22.0 + STEP * i as f64;
@@ -64,7 +65,8 @@ fn bands(physics: &Physics, spin_rev_s: f64) -> (Vec<(f64, f64)>, f64) {
     (all, total)
 }
 
-/// Authority: an independent program with tiny steps (scan at 0.002 ft/s; starts and widths in ft/s).
+/// Authority: an independent program with tiny steps (scan at 0.002 ft/s; starts and widths in
+/// ft/s).
 #[test]
 fn val_speed_bands_in_air_at_a_real_hoop() {
     let ncaa = preset("ncaa");
@@ -133,9 +135,9 @@ fn val_speed_bands_in_air_at_a_real_hoop() {
     }
 }
 
-/// Authority: P of the college guard (0.25 ft/s, 1.2 deg, 1.22 deg, 0.3 rev/s) at 53 deg and 3 rev/s from an independent
-/// program, each within 0.002. Here 400,000 shots
-/// have a standard error of 0.0007, so 0.003 allows for both; the seeds are fixed.
+/// Authority: P of the college guard (0.25 ft/s, 1.2 deg, 1.22 deg, 0.3 rev/s) at 53 deg and 3
+/// rev/s from an independent program, each within 0.002. Here 400,000 shots have a standard error
+/// of 0.0007, so 0.003 allows for both; the seeds are fixed.
 #[test]
 fn val_probabilities_in_air_at_a_real_hoop() {
     let with = |change: fn(&mut Physics)| {
@@ -180,9 +182,9 @@ fn val_probabilities_in_air_at_a_real_hoop() {
     }
 }
 
-/// With air, rod, edge radius and bracket zero and the paper's materials, the outcomes are the paper's but near the
-/// edges of the board, which the paper's does not have, and but for chaotic shots: the two forms of flight round
-/// differently. (15 of 20,000 were seen.)
+/// With air, rod, edge radius and bracket zero and the paper's materials, the outcomes are the
+/// paper's but near the edges of the board, which the paper's does not have, and but for chaotic
+/// shots: the two forms of flight round differently. (15 of 20,000 were seen.)
 #[test]
 fn val_without_the_additions_it_is_the_paper() {
     let mut sharp = Physics::paper();
@@ -203,9 +205,9 @@ fn val_without_the_additions_it_is_the_paper() {
     assert!(differ <= 20, "{differ}");
 }
 
-/// Authority: the rule books. A ball that is dropped from 72 in (NCAA; to its bottom) rebounds to 49 to 54 in (to its
-/// top); FIBA: 1800 mm, 1200 to 1400 mm (since 2022: 1035 to 1085 mm to the bottom). On a hard floor, here the board
-/// as if it were one, without air.
+/// Authority: the rule books. A ball that is dropped from 72 in (NCAA; to its bottom) rebounds to
+/// 49 to 54 in (to its top); FIBA: 1800 mm, 1200 to 1400 mm (since 2022: 1035 to 1085 mm to the
+/// bottom). On a hard floor, here the board as if it were one, without air.
 #[test]
 fn val_drop_test_of_the_rules() {
     for name in ["ncaa", "nba", "ncaa_women", "fiba"] {
@@ -223,9 +225,9 @@ fn val_drop_test_of_the_rules() {
     }
 }
 
-/// Authority: Beuoy 2015. A parabola that is fitted to a free throw in play has a vertical acceleration of 31.6 to
-/// 31.95 ft/s^2, here to 0.05. (His shot at 8 ft, 54 deg, 23.3 ft/s that arrives at 47 deg and 20.3 ft/s is one in a
-/// vacuum: energy alone gives 20.35 ft/s.)
+/// Authority: Beuoy 2015. A parabola that is fitted to a free throw in play has a vertical
+/// acceleration of 31.6 to 31.95 ft/s^2, here to 0.05. (His shot at 8 ft, 54 deg, 23.3 ft/s that
+/// arrives at 47 deg and 20.3 ft/s is one in a vacuum: energy alone gives 20.35 ft/s.)
 #[test]
 fn val_free_throw_in_play() {
     let paper = Physics::paper();
@@ -272,8 +274,8 @@ fn val_free_throw_in_play() {
     assert!((31.55..32.0).contains(&acceleration), "{acceleration}");
 }
 
-/// A step of the slow integrator: the equations of motion in space, the sliding law alone, the nearest point from the
-/// coordinates.
+/// A step of the slow integrator: the equations of motion in space, the sliding law alone, the
+/// nearest point from the coordinates.
 struct SlowIntegrator<'a> {
     physics: &'a Physics,
 }
@@ -387,7 +389,8 @@ impl SlowIntegrator<'_> {
     }
 }
 
-/// The share of shots on which the default integrator and the slow one agree, of those that both end.
+/// The share of shots on which the default integrator and the slow one agree, of those that both
+/// end.
 fn agreement(physics: &Physics, shots: usize, seed: u64) -> f64 {
     let mut random = ChaCha12Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
@@ -452,9 +455,9 @@ fn compared_physics() -> Vec<(&'static str, Physics)> {
     ]
 }
 
-/// Authority: the slow integrator. Its steps of 1e-5 s let friction chatter at rolling, and some shots are chaotic: of
-/// 20,000 shots 0.1 % disagree (`campaign_real_hoop`). More than 8 of 500 do so by chance less than once in a million
-/// runs.
+/// Authority: the slow integrator. Its steps of 1e-5 s let friction chatter at rolling, and some
+/// shots are chaotic: of 20,000 shots 0.1 % disagree (`campaign_real_hoop`). More than 8 of 500 do
+/// so by chance less than once in a million runs.
 #[test]
 fn val_slow_integrator_agrees() {
     for (name, physics) in compared_physics() {
@@ -474,8 +477,8 @@ fn campaign_real_hoop() {
     }
 }
 
-/// A bounce from the release on: head-on at the board, on its edge and on the bracket, each with its restitution.
-/// Authority: the closed form of Appendix 1.
+/// A bounce from the release on: head-on at the board, on its edge and on the bracket, each with
+/// its restitution. Authority: the closed form of Appendix 1.
 #[test]
 fn val_head_on_bounces_keep_their_restitution() {
     let mut physics = preset("ncaa");

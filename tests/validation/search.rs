@@ -10,9 +10,9 @@ use bankshot::units::FOOT_M;
 #[test]
 #[ignore = "two minutes: cargo test --test validation campaign_best -- --ignored --nocapture"]
 fn campaign_best_is_within_three_thousandths_of_a_brute_force_search() {
-    // Authority: brute force. It simulates a table of 2.7 million shots over everything the shooter can
-    // intend. Of the table's nominal shots it takes the thirty best of each kind, no two of them neighbours,
-    // and integrates these to 0.0005.
+    // Authority: brute force. It simulates a table of 2.7 million shots over everything the shooter
+    // can intend. Of the table's nominal shots it takes the thirty best of each kind, no two of
+    // them neighbours, and integrates these to 0.0005.
     let places = [
         ("free_throw", 13.75, 0.0),
         ("free_throw", 6.0, 30.0),

@@ -33,10 +33,12 @@ pub(crate) struct BestOptions {
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the scatter.
+    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
+    /// scatter.
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
     pub(crate) draws: Option<PathBuf>,
-    /// Also print how each kind of shot goes in, and what every error, backspin and height are worth.
+    /// Also print how each kind of shot goes in, and what every error, backspin and height are
+    /// worth.
     #[arg(long)]
     pub(crate) details: bool,
     /// Print one JSON object instead of the table.

@@ -1,4 +1,5 @@
-//! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two shooters.
+//! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two
+//! shooters.
 
 use super::sweep_summary;
 use crate::cli::config_files::{load_profile_with_text, load_sweep, read_text};
@@ -79,7 +80,8 @@ impl OpenSweep {
     }
 }
 
-/// The sweep of a folder, or of a TOML file whose sweep has its default folder; `None` for a profile.
+/// The sweep of a folder, or of a TOML file whose sweep has its default folder; `None` for a
+/// profile.
 fn open_sweep(path: &Path) -> Result<Option<OpenSweep>, Failure> {
     let path = if path.is_dir() {
         path.to_owned()

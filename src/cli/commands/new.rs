@@ -3,7 +3,7 @@
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_remark};
 use bankshot::config::parse_profile;
-use bankshot::shooter::Profile;
+use bankshot::shooter::{Profile, is_control_or_direction};
 use bankshot::units::{self, Dimension};
 use clap::{Args, ValueEnum};
 use std::io::{BufRead, Write};
@@ -88,7 +88,7 @@ pub(crate) fn run(options: &NewOptions, quiet: bool) -> Result<u8, Failure> {
     let text = if options.interactive {
         ask(&mut std::io::stdin().lock())?
     } else {
-        options.what.text().to_owned()
+        with_name_of_file(options, &file)
     };
     if is_standard_output {
         return print_answer(&text);
@@ -97,6 +97,14 @@ pub(crate) fn run(options: &NewOptions, quiet: bool) -> Result<u8, Failure> {
         Ok(created) => created,
         Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
             return Err(exists(&file));
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let folder = file.parent().unwrap_or(Path::new("."));
+            return Err(Failure::usage(format!(
+                "{}: there is no folder {}; create it first",
+                file.display(),
+                folder.display()
+            )));
         }
         Err(error) => return Err(Failure::io(file.display(), &error)),
     };
@@ -111,6 +119,25 @@ pub(crate) fn run(options: &NewOptions, quiet: bool) -> Result<u8, Failure> {
         ));
     }
     Ok(code::DONE)
+}
+
+/// The text of the template. A player or a launcher in a file of another name than the template's
+/// has that name, so that those of a team differ.
+fn with_name_of_file(options: &NewOptions, file: &Path) -> String {
+    let text = options.what.text();
+    let is_named = matches!(options.what, Template::Player | Template::Robot);
+    let stem = file.file_stem().map(|stem| stem.to_string_lossy());
+    match stem {
+        Some(name)
+            if is_named
+                && file.as_os_str() != "-"
+                && !file.ends_with(options.what.file_name())
+                && !name.contains(is_control_or_direction) =>
+        {
+            with_value(text, "name = ", &name)
+        }
+        _ => text.to_owned(),
+    }
 }
 
 fn exists(file: &Path) -> Failure {
@@ -157,7 +184,8 @@ const QUESTIONS: [Question; 4] = [
     },
 ];
 
-/// How steady a player is, with the scatter of speed, pitch and polar angle: those of the files in configs/.
+/// How steady a player is, with the scatter of speed, pitch and polar angle: those of the files in
+/// configs/.
 const LEVELS: [(&str, [&str; 3]); 4] = [
     ("novice", ["0.44 ft/s", "2.7 deg", "1.46 deg"]),
     ("school", ["0.30 ft/s", "1.2 deg", "1.22 deg"]),
@@ -225,7 +253,8 @@ fn answer_to(
     }
 }
 
-/// The text with another value, as a TOML string, in the first line that starts so. Its comment stays.
+/// The text with another value, as a TOML string, in the first line that starts so. Its comment
+/// stays.
 fn with_value(text: &str, start: &str, value: &str) -> String {
     let mut is_done = false;
     let lines = text.lines().map(|line| {

@@ -45,8 +45,8 @@ struct Forecast {
     seconds: f64,
     threads: usize,
     memory_bytes: f64,
-    /// Bound of the probability beyond the table: for a shot in the middle of its pitch angles and backspins,
-    /// and for one at their lower edge.
+    /// Bound of the probability beyond the table: for a shot in the middle of its pitch angles and
+    /// backspins, and for one at their lower edge.
     mass_outside: (f64, f64),
     wide_sample: Option<WideSample>,
 }

@@ -85,7 +85,8 @@ pub(crate) struct ProbabilityOptions {
     /// Units of the answer [default: the profile's, else imperial].
     #[arg(long)]
     pub(crate) units: Option<UnitsArg>,
-    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the scatter.
+    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
+    /// scatter.
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
     pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of text.

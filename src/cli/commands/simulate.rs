@@ -243,7 +243,8 @@ impl<W: Write + Send> Sink<W> {
         Ok(Self::Csv(Box::new(writer)))
     }
 
-    /// The columns of a Parquet input keep their types; of a CSV input, those of parameters are numbers.
+    /// The columns of a Parquet input keep their types; of a CSV input, those of parameters are
+    /// numbers.
     fn parquet(out: W, source: &Source, header: &ByteRecord) -> Result<Self, StreamError> {
         let failed = |error: parquet::errors::ParquetError| StreamError::Input(error.to_string());
         let mut columns = match source {
@@ -388,8 +389,8 @@ impl Stream<'_> {
                 }
                 Default::default()
             });
-            // A short row is filled up and a long one cut, so that the added columns keep their positions. A row
-            // that cannot be read is empty.
+            // A short row is filled up and a long one cut, so that the added columns keep their
+            // positions. A row that cannot be read is empty.
             let mut record = row.cells.unwrap_or_default();
             record.truncate(self.width);
             while record.len() < self.width {

@@ -47,8 +47,8 @@ pub(crate) struct SweepOptions {
     /// Compute failed jobs again.
     #[arg(long)]
     pub(crate) retry_failed: bool,
-    /// The folder of a fit: when the sweep is complete, also write probability_over_draws.csv, how uncertain each P is by what
-    /// the shots of the fit do not tell about the scatter.
+    /// The folder of a fit: when the sweep is complete, also write probability_over_draws.csv, how
+    /// uncertain each P is by what the shots of the fit do not tell about the scatter.
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "shard")]
     pub(crate) draws: Option<PathBuf>,
     /// Inject a fault, for tests: panic:SPOT, abort:SPOT or wait:SPOT:FILE.

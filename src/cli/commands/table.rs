@@ -6,6 +6,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use bankshot::best_shot::{ShotKind, ShotTable, ShotTableError, ShotTableRequest};
+use bankshot::dynamics::OutcomeKind;
 use bankshot::output::atomic_file;
 use bankshot::output::shot_table_files::source_code::{Language, source_code};
 use bankshot::output::shot_table_files::table_text::{
@@ -14,7 +15,8 @@ use bankshot::output::shot_table_files::table_text::{
 use bankshot::shooter::NominalVariable;
 use bankshot::units::{self, Dimension};
 use clap::{Args, ValueEnum};
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -24,7 +26,7 @@ interpolated, and the table says how much P that costs.
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --pitch '60 deg' --backspin '2 rev/s'
   bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' --angles '0 deg to 60 deg by 15 deg' --kind bank
-  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --format java --output ShotTable.java")]
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --output ShotTable.java")]
 pub(crate) struct TableOptions {
     /// The launcher's profile.
     pub(crate) profile: PathBuf,
@@ -48,10 +50,10 @@ pub(crate) struct TableOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// The form of the table.
-    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
-    pub(crate) format: TableFormat,
-    /// Write the table into a file.
+    /// The form of the table [default: by the end of the output's name, else text].
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<TableFormat>,
+    /// Write the table into a file. (A Java class has the name of its file.)
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Units of the table [default: the profile's, else imperial].
@@ -79,6 +81,20 @@ pub(crate) enum TableFormat {
     Cpp,
     /// A module that looks shots up.
     Python,
+}
+
+impl TableFormat {
+    /// The form that the end of a file's name asks for.
+    fn of_extension(extension: &str) -> Self {
+        match extension {
+            "csv" => Self::Csv,
+            "json" => Self::Json,
+            "java" => Self::Java,
+            "h" | "hpp" | "hh" | "cpp" => Self::Cpp,
+            "py" => Self::Python,
+            _ => Self::Text,
+        }
+    }
 }
 
 /// Most places of a table.
@@ -132,8 +148,13 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             .name
             .replace(|c: char| c.is_control() || c == '\\', " ")
     );
-    let source = |language| source_code(&table, language, units, &origin);
-    let text = match options.format {
+    let class = class_name(options.output.as_deref())?;
+    let source = |language| source_code(&table, (language, &class), units, &origin);
+    let format = options.format.unwrap_or_else(|| {
+        let end = options.output.as_deref().and_then(Path::extension);
+        TableFormat::of_extension(end.and_then(OsStr::to_str).unwrap_or(""))
+    });
+    let text = match format {
         TableFormat::Text => table_text(&table, units),
         TableFormat::Csv => table_csv(&table, units),
         TableFormat::Json => format!("{:#}\n", table_json(&table, &profile, units)),
@@ -151,13 +172,31 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         }
     }
     if !quiet {
-        if options.format != TableFormat::Text {
+        if let Some(path) = &options.output {
+            print_remark(&format!("written: {}", path.display()));
+        }
+        if format != TableFormat::Text {
             print_remark(check_text(&table).trim_end());
         }
         if table.greatest_loss().is_some_and(|loss| loss > GREAT_LOSS) {
-            print_remark(
-                "warning: between some nodes interpolation costs more than 0.01; take a smaller step, or fix --pitch",
-            );
+            print_remark(&great_loss_warning(&request));
+        }
+        let bouncing = table.shots.iter().flatten();
+        let clean = match table.kind {
+            ShotKind::Direct => OutcomeKind::Swish,
+            ShotKind::Bank => OutcomeKind::BankIn,
+        };
+        let bouncing = bouncing.filter(|shot| shot.outcome != clean).count();
+        if bouncing > 0 {
+            print_remark(&format!(
+                "note: the best shot goes in off the ring or the board even without an error at {bouncing} of {} places; \
+                 compare --kind {} there, or fix another --pitch",
+                table.shots.len(),
+                match table.kind {
+                    ShotKind::Direct => "bank",
+                    ShotKind::Bank => "direct",
+                }
+            ));
         }
     }
     let has_every_shot = table.shots.iter().all(Option::is_some);
@@ -168,17 +207,65 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     })
 }
 
+/// The name of a Java class: that of its file, or `ShotTable`.
+fn class_name(output: Option<&Path>) -> Result<String, Failure> {
+    let is_java = |path: &&Path| path.extension().is_some_and(|end| end == "java");
+    let Some(path) = output.filter(is_java) else {
+        return Ok("ShotTable".to_owned());
+    };
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let mut letters = name.chars();
+    let is_name = letters
+        .next()
+        .is_some_and(|first| first.is_ascii_alphabetic() || first == '_')
+        && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    if is_name {
+        Ok(name.into_owned())
+    } else {
+        Err(Failure::usage(format!(
+            "--output: \"{}\" is the name of no Java class; use letters, digits and _, such as ShotTable.java",
+            path.display()
+        )))
+    }
+}
+
+/// What to do where interpolation costs much: neighbours are then shots of different sorts, unless
+/// what they differ in is fixed.
+fn great_loss_warning(request: &ShotTableRequest) -> String {
+    let is_fixed = |variable| request.fixed.iter().any(|(fixed, _)| *fixed == variable);
+    let free: Vec<String> = [NominalVariable::Pitch, NominalVariable::Backspin]
+        .into_iter()
+        .filter(|variable| !is_fixed(*variable))
+        .map(|variable| format!("--{}", variable.name()))
+        .collect();
+    let fix = if free.is_empty() {
+        String::new()
+    } else {
+        format!(", or fix {}", free.join(" and "))
+    };
+    format!(
+        "warning: between some places interpolation costs more than {GREAT_LOSS} in P; take a smaller step{fix}"
+    )
+}
+
 /// Ascending values: `6 ft, 8 ft` or `6 ft to 20 ft by 1 ft`.
 fn values(flag: &str, text: &str, dimension: Dimension) -> Result<Vec<f64>, Failure> {
-    let refuse = |message: String| Failure::usage(format!("--{flag}: {message}"));
+    let example = match dimension {
+        Dimension::Angle => "'0 deg, 30 deg' or '0 deg to 60 deg by 15 deg'",
+        _ => "'6 ft, 8 ft' or '6 ft to 20 ft by 1 ft'",
+    };
+    let refuse = |message: String| {
+        Failure::usage(format!("--{flag}: \"{text}\" {message}; write {example}"))
+    };
     let parse = |text: &str| {
-        units::parse(text.trim(), dimension).map_err(|error| refuse(error.to_string()))
+        units::parse(text.trim(), dimension)
+            .map_err(|error| Failure::usage(format!("--{flag}: {error}; write {example}")))
     };
     let values = match text.split_once(" to ") {
         Some((from, rest)) => {
-            let (to, step) = rest.split_once(" by ").ok_or_else(|| {
-                refuse(format!("\"{text}\" has no step; write FROM to TO by STEP"))
-            })?;
+            let (to, step) = rest
+                .split_once(" by ")
+                .ok_or_else(|| refuse("has no step".to_owned()))?;
             let (from, to, step) = (parse(from)?, parse(to)?, parse(step)?);
             if !(step > 0.0) || !(to >= from) {
                 return Err(refuse("must ascend, with a step above 0".to_owned()));
@@ -198,7 +285,7 @@ fn values(flag: &str, text: &str, dimension: Dimension) -> Result<Vec<f64>, Fail
         return Err(refuse(format!("has more than {MOST_PLACES} values")));
     }
     if values.windows(2).any(|pair| !(pair[1] > pair[0])) {
-        return Err(refuse("the values must ascend".to_owned()));
+        return Err(refuse("does not ascend".to_owned()));
     }
     Ok(values)
 }

@@ -8,18 +8,20 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
-use bankshot::analysis::sensitivity::SensitivityTopics;
+use bankshot::analysis::sensitivity::{Difference, SensitivityTopics};
 use bankshot::best_shot::{ShotKind, find_kinds};
 use bankshot::output::atomic_file;
+use bankshot::plots::svg::shortened;
 use bankshot::plots::sweep_results::SweepResults;
 use bankshot::plots::{player_poster, sweep_bank_direct_map};
 use bankshot::report::poster_page::poster_page;
-use bankshot::sweep::bank_direct_difference::BankAdvantage;
-use bankshot::sweep::job_list::{Jobs, Shard};
+use bankshot::shooter::Profile;
+use bankshot::sweep::SweepConfig;
+use bankshot::sweep::job_list::Shard;
+use bankshot::sweep::place_chances::{PlaceChances, Preference};
 use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sweep_toml::parse_sweep;
-use bankshot::sweep::{SweepConfig, columns};
-use bankshot::units::DEGREE_RAD;
+use bankshot::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use comfy_table::{Table, presets};
 use std::collections::BTreeMap;
@@ -39,7 +41,7 @@ pub(crate) struct TeamOptions {
     /// The players' profiles.
     #[arg(required = true, num_args = 1..)]
     pub(crate) players: Vec<PathBuf>,
-    /// A sweep: its places, its search; its shooter does not matter.
+    /// A sweep: its places and its search. Each player takes the place of its shooter.
     #[arg(long, value_name = "SWEEP.toml")]
     pub(crate) sweep: Option<PathBuf>,
     /// Folder of the results of --sweep.
@@ -66,32 +68,65 @@ fn table_of(header: Vec<String>) -> Table {
     table
 }
 
+/// The players' profiles. Each has a name of its own, which is also that of its folder.
+fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<Profile>, Failure> {
+    let mut players: Vec<Profile> = Vec::new();
+    for path in paths {
+        let player = load_profile(path, &PhysicsArg::default(), quiet)?;
+        let name = &player.shooter().name;
+        let folder = run_folder::safe_name(name);
+        if players
+            .iter()
+            .any(|other| run_folder::safe_name(&other.shooter().name) == folder)
+        {
+            return Err(Failure::usage(format!(
+                "{}: two players have the name \"{name}\"; give each their own",
+                path.display()
+            )));
+        }
+        players.push(player);
+    }
+    Ok(players)
+}
+
+/// The text of a sweep without a shooter of its own: what belongs to the shooter is left out, and
+/// a file is named in its place.
+fn with_named_shooter(text: &str) -> String {
+    let Ok(mut root) = text.parse::<toml::Table>() else {
+        return text.to_owned();
+    };
+    for table in ["shooter", "physics", "nominal"] {
+        root.remove(table);
+    }
+    if let Some(toml::Value::Table(sweep)) = root.get_mut("sweep") {
+        sweep.insert("shooter".to_owned(), "player.toml".into());
+    }
+    root.to_string()
+}
+
 fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
-    let profiles = options
-        .players
-        .iter()
-        .map(|path| load_profile(path, &PhysicsArg::default(), quiet))
-        .collect::<Result<Vec<_>, _>>()?;
+    let profiles = load_players(&options.players, quiet)?;
     let header = ["player", "place", "direct", "bank", "shoot it"];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     let bars = ProgressBars::new(quiet);
     for profile in &profiles {
         let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
-        let p: Vec<Option<f64>> = shots
+        let p: Vec<Option<Difference>> = shots
             .iter()
-            .map(|shot| Some(shot.as_ref().ok()?.estimate.probability))
+            .map(|shot| {
+                let estimate = &shot.as_ref().ok()?.estimate;
+                Some(Difference {
+                    value: estimate.probability,
+                    standard_error: estimate.standard_error,
+                })
+            })
             .collect();
-        let text = |p: Option<f64>| p.map_or_else(|| "-".to_owned(), in_hundred);
-        let advice = match (p[0], p[1]) {
-            (Some(direct), Some(bank)) if bank > direct => "off the board",
-            (Some(_), _) => "direct",
-            (None, Some(_)) => "off the board",
-            (None, None) => "no clean shot",
-        };
+        let text = |p: Option<Difference>| p.map_or("-".to_owned(), |p| in_hundred(p.value));
+        let advice = Preference::of(p[0], p[1]).map_or("no clean shot", Preference::name);
         let (long, metre) = profile.output().units.length();
         let location = profile.location();
         table.add_row(vec![
-            profile.shooter().name.clone(),
+            shortened(&profile.shooter().name, LONGEST_NAME),
             format!(
                 "{:.2} {long}, {:.0} deg",
                 location.distance_m / metre,
@@ -105,38 +140,45 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     print_answer(&format!("makes in 100 shots\n{}\n", table.trim_fmt()))
 }
 
+/// Longest name of a player in the tables, in characters.
+const LONGEST_NAME: usize = 24;
+/// Places to bank from that are printed for each player.
+const MOST_BANK_PLACES: usize = 5;
+
 /// A player's finished sweep.
 struct PlayerSweep {
     name: String,
-    config: SweepConfig,
-    rows: BTreeMap<u64, ResultRow>,
+    places: Vec<PlaceChances>,
+}
+
+impl PlayerSweep {
+    /// The places where a bank shot is better, those with the greatest gain first.
+    fn bank_places(&self) -> Vec<&PlaceChances> {
+        let mut places: Vec<&PlaceChances> = self
+            .places
+            .iter()
+            .filter(|place| place.preference() == Some(Preference::Bank))
+            .collect();
+        let gain = |place: &PlaceChances| place.bank_gain().map_or(1.0, |gain| gain.value);
+        places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+        places
+    }
 }
 
 fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8, Failure> {
-    let (_, texts) = load_sweep(sweep)?;
-    if texts.shooter.is_none() {
-        return Err(Failure::usage(format!(
-            "{}: name any profile with sweep.shooter in place of its table [shooter]; each player replaces it",
-            sweep.display()
-        )));
-    }
+    let (config, mut texts) = load_sweep(sweep)?;
+    let units = config.settings.output.units;
+    texts.sweep = with_named_shooter(&texts.sweep);
     // Every profile is read before anything is computed.
     let mut sweeps = Vec::new();
     let mut folders: Vec<PathBuf> = Vec::new();
-    for path in &options.players {
-        let player = load_profile(path, &PhysicsArg::default(), quiet)?;
+    let players = load_players(&options.players, quiet)?;
+    for (path, player) in options.players.iter().zip(players) {
         let mut texts = texts.clone();
         texts.shooter = Some(read_text(path)?);
         let config = parse_sweep(&texts, &sweep.display().to_string())?;
         let name = player.shooter().name.clone();
-        let folder = options.out.join(run_folder::safe_name(&name));
-        if folders.contains(&folder) {
-            return Err(Failure::usage(format!(
-                "{}: two players have the name \"{name}\"; give each their own",
-                path.display()
-            )));
-        }
-        folders.push(folder);
+        folders.push(options.out.join(run_folder::safe_name(&name)));
         sweeps.push((name, config, texts));
     }
     let mut players = Vec::new();
@@ -147,13 +189,16 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         let (swept, _) = compute(folder, &config, &texts, run_options(Shard::WHOLE), quiet)?;
         let (rows, _) = swept.union()?;
         write_pictures(folder, &name, &config, &rows)?;
-        players.push(PlayerSweep { name, config, rows });
+        players.push(PlayerSweep {
+            name,
+            places: PlaceChances::of_sweep(&config, &rows),
+        });
     }
-    let csv = team_csv(&players);
+    let csv = team_csv(&players, units);
     let file = options.out.join("team.csv");
     atomic_file::write(&file, csv.as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
-    print_answer(&team_text(&players))?;
+    print_answer(&team_text(&players, units))?;
     if !quiet {
         print_remark(&format!(
             "written: {}, and in each player's folder bank_and_direct.svg and poster.html",
@@ -182,69 +227,60 @@ fn write_pictures(
     plot_files::write(folder, &plots)
 }
 
-/// Of each place, in the order of the sweep, the greater P of both kinds and that kind, for one player.
-fn best_at_places(player: &PlayerSweep) -> Vec<Option<(f64, ShotKind)>> {
-    let jobs = Jobs::new(&player.config);
-    jobs.sources
-        .iter()
-        .map(|source| {
-            let shots = jobs.kinds.iter().enumerate().filter_map(|(kind, name)| {
-                let row = player.rows.get(&jobs.number(source.computed, kind))?;
-                Some((row.real(columns::PROBABILITY)?, *name))
-            });
-            shots.reduce(|a, b| if b.0 > a.0 { b } else { a })
-        })
-        .collect()
-}
-
 /// The player with the greatest P at each place.
 fn best_players(players: &[PlayerSweep]) -> Vec<Option<usize>> {
-    let all: Vec<_> = players.iter().map(best_at_places).collect();
-    (0..all[0].len())
+    (0..players[0].places.len())
         .map(|place| {
-            let found = all
-                .iter()
-                .enumerate()
-                .filter_map(|(i, of_player)| Some((i, of_player[place]?.0)));
+            let found = players.iter().enumerate();
+            let found =
+                found.filter_map(|(i, player)| Some((i, player.places[place].best()?.value)));
             let best = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
             Some(best.0)
         })
         .collect()
 }
 
-fn team_csv(players: &[PlayerSweep]) -> String {
-    let (unit, metre) = players[0].config.settings.output.units.length();
+fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
+    let (unit, metre) = units.length();
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let mut text = format!("place,x_{unit},y_{unit},best_player");
+    let mut text =
+        format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_player");
     for player in players {
-        text += &format!(
-            ",{},{}",
-            quoted(&format!("{} probability", player.name)),
-            quoted(&format!("{} kind", player.name))
-        );
+        for column in ["direct", "direct error", "bank", "bank error", "shoot"] {
+            text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
+        }
     }
     text.push('\n');
-    let all: Vec<_> = players.iter().map(best_at_places).collect();
-    let best = best_players(players);
-    for (place, source) in Jobs::new(&players[0].config).sources.iter().enumerate() {
-        let name = best[place].map_or(String::new(), |i| quoted(&players[i].name));
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.5}"));
+    for (place, best) in best_players(players).into_iter().enumerate() {
+        let known = &players[0].places[place];
+        let location = known.place.location();
         text += &format!(
-            "{place},{},{},{name}",
-            source.place.x_m / metre,
-            source.place.y_m / metre
+            "{place},{},{:.3},{:.3},{:.3},{:.2},{}",
+            known.name.as_deref().map_or(String::new(), quoted),
+            known.place.x_m / metre,
+            known.place.y_m / metre,
+            location.distance_m / metre,
+            location.angle_rad / DEGREE_RAD,
+            best.map_or(String::new(), |i| quoted(&players[i].name))
         );
-        for of_player in &all {
-            text += &match of_player[place] {
-                Some((p, kind)) => format!(",{p:.5},{}", kind.name()),
-                None => ",,".to_owned(),
-            };
+        for player in players {
+            let chances = &player.places[place];
+            for p in [chances.direct, chances.bank] {
+                text += &format!(
+                    ",{},{}",
+                    number(p.map(|p| p.value)),
+                    number(p.map(|p| p.standard_error))
+                );
+            }
+            text += &format!(",{}", chances.preference().map_or("", Preference::name));
         }
         text.push('\n');
     }
     text
 }
 
-fn team_text(players: &[PlayerSweep]) -> String {
+fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     let best = best_players(players);
     let header = [
         "player",
@@ -254,24 +290,43 @@ fn team_text(players: &[PlayerSweep]) -> String {
     ];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     for (number, player) in players.iter().enumerate() {
-        let found: Vec<f64> = best_at_places(player)
-            .into_iter()
-            .flatten()
-            .map(|(p, _)| p)
-            .collect();
+        let found = player.places.iter().filter_map(PlaceChances::best);
+        let found: Vec<f64> = found.map(|p| p.value).collect();
         let mean = found.iter().sum::<f64>() / found.len().max(1) as f64;
-        let jobs = Jobs::new(&player.config);
-        let bank = BankAdvantage::of(&jobs, &player.rows).map_or_else(
-            || "-".to_owned(),
-            |bank| format!("{} of {} places", bank.better, bank.compared),
-        );
         let own = best.iter().filter(|of| **of == Some(number)).count();
         table.add_row(vec![
-            player.name.clone(),
+            shortened(&player.name, LONGEST_NAME),
             in_hundred(mean),
-            bank,
+            format!(
+                "{} of {} places",
+                player.bank_places().len(),
+                player.places.len()
+            ),
             format!("{own} of {} places", best.len()),
         ]);
     }
-    format!("makes in 100 shots\n{}\n", table.trim_fmt())
+    let mut text = format!("makes in 100 shots\n{}\n", table.trim_fmt());
+    for player in players {
+        let bank = player.bank_places();
+        text += &format!("{}: ", shortened(&player.name, LONGEST_NAME));
+        if bank.is_empty() {
+            text += "no place where a bank shot is surely better.\n";
+            continue;
+        }
+        text += "bank it from\n";
+        for chances in bank.iter().take(MOST_BANK_PLACES) {
+            let points =
+                |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
+            text += &format!(
+                "  {}: {} (direct {})\n",
+                shortened(&chances.in_words(units), 50),
+                points(chances.bank),
+                points(chances.direct)
+            );
+        }
+        if bank.len() > MOST_BANK_PLACES {
+            text += &format!("  and {} more: team.csv\n", bank.len() - MOST_BANK_PLACES);
+        }
+    }
+    text
 }

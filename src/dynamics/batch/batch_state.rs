@@ -21,8 +21,8 @@ pub(super) struct Batch<'a, S: Simd, const WIDTH: u8> {
     pub(super) workspace: &'a mut BatchWorkspace,
 }
 
-/// Sixteen lanes instead of eight. This pays off with AVX-512, where one register holds eight lanes: two independent
-/// registers hide the latency of operations.
+/// Sixteen lanes instead of eight. This pays off with AVX-512, where one register holds eight
+/// lanes: two independent registers hide the latency of operations.
 pub(super) const WIDE: u8 = 2;
 /// Eight lanes; with AVX2 they are several registers already.
 pub(super) const NARROW: u8 = 1;
@@ -69,7 +69,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         block.load_contacts_of(free, slots);
     }
 
-    /// Whether to leave a phase whose lanes cannot be filled, because another phase has enough shots.
+    /// Whether to leave a phase whose lanes cannot be filled, because another phase has enough
+    /// shots.
     #[inline(always)]
     pub(super) fn should_suspend<T: SimdReal<Simd = S>>(
         &self,

@@ -4,7 +4,8 @@ use super::batch_state::Batch;
 use crate::math::real::SimdReal;
 use fearless_simd::Simd;
 
-/// Steps the shots on the board until they leave it, touch the ring or end, or another phase can use the lanes better.
+/// Steps the shots on the board until they leave it, touch the ring or end, or another phase can
+/// use the lanes better.
 ///
 /// One module for each phase: they compile in parallel.
 #[inline(never)]

@@ -11,14 +11,15 @@ use std::array::from_fn;
 
 type Row<E> = [E; MAX_LANES];
 
-/// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of the last one, and
-/// steps on without harm.
+/// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
+/// the last one, and steps on without harm.
 pub(super) struct ContactBlock<E> {
     solid: SolidId,
     /// The values of [`ContactMotion`].
     motion: [Row<E>; CONTACT_VALUES],
     slip_tolerances: Row<E>,
-    /// [`ShotProgress::step_share`], [`ShotProgress::contact_time_s`], and the time left at the start of the contact.
+    /// [`ShotProgress::step_share`], [`ShotProgress::contact_time_s`], and the time left at the
+    /// start of the contact.
     step_shares: Row<E>,
     contact_times_s: Row<E>,
     allowed_times_s: Row<E>,
@@ -121,8 +122,8 @@ impl<E: LaneElement> ContactBlock<E> {
         self.flags = flags;
     }
 
-    /// Counts a step of every lane; returns the lanes that have reached `max_steps`. (A lane without a shot may be
-    /// among them.)
+    /// Counts a step of every lane; returns the lanes that have reached `max_steps`. (A lane
+    /// without a shot may be among them.)
     #[inline(always)]
     pub(super) fn count_step(&mut self, max_steps: u32) -> LaneBits {
         count_step(&mut self.steps, max_steps)

@@ -80,8 +80,9 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         }
     }
 
-    /// Takes the shots of a block out of their lanes after the first part of their flight. `first` is the number of the
-    /// first of them; `ended` tells whose flight has ended. The others wait for the next part.
+    /// Takes the shots of a block out of their lanes after the first part of their flight. `first`
+    /// is the number of the first of them; `ended` tells whose flight has ended. The others wait
+    /// for the next part.
     #[inline(always)]
     pub(super) fn finish_first_flights(
         &mut self,
@@ -156,8 +157,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         end
     }
 
-    /// Takes the shots of a block out of their lanes after a flight, grouped by outcome: a branch in each
-    /// lane would be mispredicted too often.
+    /// Takes the shots of a block out of their lanes after a flight, grouped by outcome: a branch
+    /// in each lane would be mispredicted too often.
     #[inline(always)]
     pub(super) fn finish_flights(
         &mut self,

@@ -3,8 +3,8 @@
 use fearless_simd::Level;
 use std::sync::OnceLock;
 
-/// The vector instructions of a batch, and with them the number of lanes. Every choice gives the same
-/// bits.
+/// The vector instructions of a batch, and with them the number of lanes. Every choice gives the
+/// same bits.
 #[derive(Clone, Copy, Debug)]
 pub struct InstructionSet(pub(super) Option<Level>);
 
@@ -40,14 +40,15 @@ impl InstructionSet {
         found
     }
 
-    /// Makes this the set of the simulators that are built from now on, in place of [`InstructionSet::best`]. Only the
-    /// first call counts.
+    /// Makes this the set of the simulators that are built from now on, in place of
+    /// [`InstructionSet::best`]. Only the first call counts.
     pub fn use_by_default(self) {
         let _ = DEFAULT.set(self);
     }
 
-    /// The instructions of the lanes; none for one shot at a time. That is also what x86-64 without AVX2 does: its registers
-    /// hold two numbers, and lanes of them would take a third of the time to compile the library.
+    /// The instructions of the lanes; none for one shot at a time. That is also what x86-64 without
+    /// AVX2 does: its registers hold two numbers, and lanes of them would take a third of the time
+    /// to compile the library.
     pub(crate) fn level(self) -> Option<Level> {
         #[cfg(target_arch = "x86_64")]
         let level = self.0.filter(|level| level.as_avx2().is_some());

@@ -13,8 +13,8 @@ use std::array::from_fn;
 
 const ZEROS: LaneArray = [0.0; MAX_F64_LANES];
 
-/// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of the
-/// last one, and steps on without harm.
+/// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
+/// the last one, and steps on without harm.
 pub(super) struct LaneBlock {
     /// The nine state variables.
     state: [LaneArray; 9],
@@ -211,8 +211,8 @@ impl LaneBlock {
         self.flags = flags;
     }
 
-    /// Counts a step of every lane; returns the lanes that have reached `max_steps`. (A lane without a shot may be
-    /// among them.)
+    /// Counts a step of every lane; returns the lanes that have reached `max_steps`. (A lane
+    /// without a shot may be among them.)
     #[inline(always)]
     pub(super) fn count_step(&mut self, max_steps: u32) -> LaneBits {
         count_step(&mut self.steps, max_steps)
@@ -420,8 +420,8 @@ impl LaneBlock {
 }
 
 impl<T: SimdReal<Element = f64>> LaneShots<T> {
-    /// Updates time and hoop crossing after a step of `dt` from `before`, in the lanes of `stepped`; returns the shots
-    /// that end.
+    /// Updates time and hoop crossing after a step of `dt` from `before`, in the lanes of
+    /// `stepped`; returns the shots that end.
     #[inline(always)]
     pub(super) fn after_step(
         &mut self,

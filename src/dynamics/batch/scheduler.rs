@@ -1,13 +1,13 @@
 //! Runs the shots of a batch, eight or sixteen to a step.
 //!
-//! The shots wait in queues by phase: flight, contact in the frame of one solid, contact in the world frame. Flights are closed
-//! form and are done a block at a time. In contact the shots of a block step together. Finished lanes are
-//! refilled at once, so short and long contacts mix without waiting. Rare events (from one contact to two,
-//! the board's edges, the time limit in flight, an unresolved search) are left to the scalar code; after them the
-//! shot waits in a queue again.
+//! The shots wait in queues by phase: flight, contact in the frame of one solid, contact in the
+//! world frame. Flights are closed form and are done a block at a time. In contact the shots of a
+//! block step together. Finished lanes are refilled at once, so short and long contacts mix without
+//! waiting. Rare events (from one contact to two, the board's edges, the time limit in flight, an
+//! unresolved search) are left to the scalar code; after them the shot waits in a queue again.
 //!
-//! It is the same generic code as for one shot, with the same operations in the same order. So the verdicts are
-//! the same, bit for bit.
+//! It is the same generic code as for one shot, with the same operations in the same order. So the
+//! verdicts are the same, bit for bit.
 
 use super::batch_state::{Batch, NARROW, Narrow, NarrowSingle, WIDE, Wide, WideSingle};
 use super::board_contact_phase::board_contact;
@@ -22,8 +22,9 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 use fearless_simd::{Level, Simd};
 
-/// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace. `level` is one of those
-/// that [`InstructionSet::level`](super::instruction_set::InstructionSet::level) gives.
+/// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace.
+/// `level` is one of those that
+/// [`InstructionSet::level`](super::instruction_set::InstructionSet::level) gives.
 pub(crate) fn run(
     level: Level,
     params: &ModelParams,

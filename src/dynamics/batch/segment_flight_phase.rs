@@ -1,5 +1,5 @@
-//! The free flights of a batch in segments: with drag, or at solids with edges and bracket. (Flights with lift are left
-//! to the scalar code.)
+//! The free flights of a batch in segments: with drag, or at solids with edges and bracket.
+//! (Flights with lift are left to the scalar code.)
 
 use super::batch_state::Batch;
 use super::flight_phase::{FlightEnd, store_ring_motions};
@@ -13,8 +13,8 @@ use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId};
 use fearless_simd::Simd;
 
-/// Starts shots, as long as there are free slots, and flies every shot that waits for flight to its end or its next
-/// touch.
+/// Starts shots, as long as there are free slots, and flies every shot that waits for flight to its
+/// end or its next touch.
 ///
 /// One module for each phase: they compile in parallel.
 #[inline(never)]
@@ -34,8 +34,8 @@ pub(super) fn fly_in_segments<S, T, const WIDTH: u8>(
 }
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
-    /// Flies the shots that have not started yet, as long as there are free slots, and then those that wait, a segment at a
-    /// time.
+    /// Flies the shots that have not started yet, as long as there are free slots, and then those
+    /// that wait, a segment at a time.
     #[inline(always)]
     fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();

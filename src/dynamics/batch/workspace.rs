@@ -6,8 +6,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 use std::ops::Range;
 
-/// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache (some
-/// 350 bytes each).
+/// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache
+/// (some 350 bytes each).
 const SLOTS: usize = 1024;
 
 /// Memory for batches. Reuse it: nothing is allocated once it has grown.
@@ -75,7 +75,8 @@ impl BatchWorkspace {
         self.verdicts.resize(count, PENDING);
     }
 
-    /// The numbers of the next shots to start, at most `lanes`; none while there are fewer free slots than `lanes`.
+    /// The numbers of the next shots to start, at most `lanes`; none while there are fewer free
+    /// slots than `lanes`.
     pub(super) fn next_starts(&mut self, lanes: usize) -> Range<usize> {
         let free = self.free_slots.len() + (SLOTS - self.slots.len());
         let first = self.started;

@@ -14,7 +14,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 use fearless_simd::Simd;
 
-/// Steps the shots in contact in the world frame until they fly, go on in the frame of a contact, or end.
+/// Steps the shots in contact in the world frame until they fly, go on in the frame of a contact,
+/// or end.
 ///
 /// One module for each phase: they compile in parallel.
 #[inline(never)]

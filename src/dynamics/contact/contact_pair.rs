@@ -1,6 +1,7 @@
 //! Two contacts of one state: their geometry, and their friction.
 //!
-//! Where both contacts roll, their frictions are coupled: four linear equations keep both slips at zero.
+//! Where both contacts roll, their frictions are coupled: four linear equations keep both slips at
+//! zero.
 
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
@@ -12,8 +13,8 @@ use crate::model::solids::{ContactKinematics, ContactVector, Material, Solid};
 pub(super) const FIRST: usize = 0;
 pub(super) const SECOND: usize = 1;
 
-/// An array of the same expression for both contacts. (A closure in `map` would not be inlined, and then
-/// not be compiled for the vector instructions of its caller.)
+/// An array of the same expression for both contacts. (A closure in `map` would not be inlined, and
+/// then not be compiled for the vector instructions of its caller.)
 macro_rules! for_both {
     ($contact:ident => $value:expr) => {
         [
@@ -124,7 +125,8 @@ impl<T: Real> ContactPair<T> {
         self.slip_rate(contact, self.response(1 - contact, other))
     }
 
-    /// The slip rate at a contact without friction there: from motion, gravity and the other contact.
+    /// The slip rate at a contact without friction there: from motion, gravity and the other
+    /// contact.
     #[inline(always)]
     pub(super) fn frictionless_slip_rate(
         &self,
@@ -165,11 +167,13 @@ impl<T: Real> ContactPair<T> {
         self.solve(params, rolling, right_side)
     }
 
-    /// The tangential accelerations `a` at both contacts that change the slips of the `constrained` contacts at the
-    /// rates `w`, given as `right_side`. For the other contacts `w` is the tangential acceleration itself.
+    /// The tangential accelerations `a` at both contacts that change the slips of the `constrained`
+    /// contacts at the rates `w`, given as `right_side`. For the other contacts `w` is the
+    /// tangential acceleration itself.
     ///
-    /// The tangential acceleration at a contact changes the slip there equally in both directions, by the
-    /// inverse effective mass `s = 1 + lever^2 m/I`, and the slip at the other contact by a coupling matrix `C`:
+    /// The tangential acceleration at a contact changes the slip there equally in both directions,
+    /// by the inverse effective mass `s = 1 + lever^2 m/I`, and the slip at the other contact by a
+    /// coupling matrix `C`:
     ///
     /// ```text
     /// s_1 a_1 + C_12 a_2 = w_1        (s_2 - C_21 C_12/s_1) a_2 = w_2 - C_21 w_1/s_1
@@ -207,7 +211,8 @@ impl<T: Real> ContactPair<T> {
         [a_1, a_2]
     }
 
-    /// The slip rates at a contact for unit tangential accelerations at the other one, where `constrained`.
+    /// The slip rates at a contact for unit tangential accelerations at the other one, where
+    /// `constrained`.
     #[inline(always)]
     fn coupling(
         &self,
@@ -252,8 +257,8 @@ impl<T: Real> Matrix2<T> {
         }
     }
 
-    /// The solution x of `self * x = right_side`. The matrix is singular only if both contact points
-    /// coincide; then x is `right_side / compliance`, as if the contact were alone.
+    /// The solution x of `self * x = right_side`. The matrix is singular only if both contact
+    /// points coincide; then x is `right_side / compliance`, as if the contact were alone.
     #[inline(always)]
     fn solve(&self, params: &ModelParams<T>, right_side: Vec2<T>, compliance: T) -> Vec2<T> {
         let determinant = self.a * self.d - self.b * self.c;

@@ -1,18 +1,21 @@
 //! Contact with one solid: a few long steps, each in the frame of the contact.
 //!
-//! Along the normal the ball is a damped oscillator whose motion has a closed form as long as gravity and
-//! the turning of the frame (together `G`) are constant ([`super::oscillator`]). So a step can be a fifth of a bounce. What changes slowly
-//! (friction's direction, the frame, `G`) is integrated with three evaluations, at the start, the middle and
-//! the end of the step, by Simpson's rule; the normal force enters by its exact impulse.
+//! Along the normal the ball is a damped oscillator whose motion has a closed form as long as
+//! gravity and the turning of the frame (together `G`) are constant ([`super::oscillator`]). So a
+//! step can be a fifth of a bounce. What changes slowly (friction's direction, the frame, `G`) is
+//! integrated with three evaluations, at the start, the middle and the end of the step, by
+//! Simpson's rule; the normal force enters by its exact impulse.
 //!
-//! Friction slides or rolls throughout a step. The step ends where that changes, or where the ball parts: at
-//! the root of a function of the closed form.
+//! Friction slides or rolls throughout a step. The step ends where that changes, or where the ball
+//! parts: at the root of a function of the closed form.
 //!
-//! Sliding is the paper's law (Eqs. 3 and 13). Rolling is its exact limit (a Filippov solution on the surface
-//! of zero slip; the paper's Appendix 2 approaches it by chattering): the friction that keeps the slip at zero.
+//! Sliding is the paper's law (Eqs. 3 and 13). Rolling is its exact limit (a Filippov solution on
+//! the surface of zero slip; the paper's Appendix 2 approaches it by chattering): the friction that
+//! keeps the slip at zero.
 //!
-//! On the ring the steps use `d v1` and `D v2` (d the distance from the ring's circle, D that from the
-//! hoop's axis) in place of v1 and v2. Without friction they change little: this halves the error.
+//! On the ring the steps use `d v1` and `D v2` (d the distance from the ring's circle, D that from
+//! the hoop's axis) in place of v1 and v2. Without friction they change little: this halves the
+//! error.
 
 use super::friction::{DIRECTION_SLIP_FRACTION, FrictionState, SLIP_TOLERANCE_M_S};
 use super::oscillator::{EventFunction, NormalMotion, Oscillator};
@@ -89,8 +92,8 @@ struct Evaluation<T> {
     slip_rate: Vec2<T>,
 }
 
-/// Friction's impulses over a step, per unit of mass: along 1 and 2 (on the ring times d and D), and along both
-/// times the lever.
+/// Friction's impulses over a step, per unit of mass: along 1 and 2 (on the ring times d and D),
+/// and along both times the lever.
 #[derive(Clone, Copy)]
 struct FrictionImpulse<T> {
     linear: Vec2<T>,
@@ -344,7 +347,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         };
         let compression_at_end = at_end.0 - shift;
         let parts = compression_at_end.le(zero);
-        // Sliding: the slip along its direction. Rolling: mu N minus the friction that rolling needs.
+        // Sliding: the slip along its direction. Rolling: mu N minus the friction that rolling
+        // needs.
         let mu = material.friction_coefficient;
         let d_slip_rate_d_compression_rate = -at.swing.dot(start.direction);
         let required_rate = start.effective_mass * d_slip_rate_d_compression_rate;
@@ -469,8 +473,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         }
     }
 
-    /// The part of the impulse of N that is negative, at the end of a step where N is `normal` and the
-    /// acceleration of the centre is `acceleration`.
+    /// The part of the impulse of N that is negative, at the end of a step where N is `normal` and
+    /// the acceleration of the centre is `acceleration`.
     #[inline(always)]
     fn negative_impulse(&self, h: T, normal: T, normal_velocity: T, acceleration: T) -> T {
         let material = self.material();
@@ -482,7 +486,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         }
         // Along the Taylor polynomial of N about the end, back to N = 0.
         let inverse_rate = one / rate.select(negative, one);
-        // Where N only just becomes negative the polynomial does not apply; these bounds hold for the exact value.
+        // Where N only just becomes negative the polynomial does not apply; these bounds hold for
+        // the exact value.
         let since = Real::min(normal * inverse_rate, h);
         let second = -(material.stiffness * acceleration) - material.damping * rate;
         let second_ratio = second * since * inverse_rate;

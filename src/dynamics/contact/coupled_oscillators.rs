@@ -1,7 +1,7 @@
 //! The normal motion of a ball on two solids, as power series.
 //!
-//! The force at each contact changes the normal velocities at both. With the directions of both forces as at the
-//! start of a step, the compressions p and the normal velocities q obey
+//! The force at each contact changes the normal velocities at both. With the directions of both
+//! forces as at the start of a step, the compressions p and the normal velocities q obey
 //!
 //! ```text
 //! p' = -q        q' = M N + G        N = k p - c q
@@ -15,7 +15,8 @@ use super::oscillator::parabola_root;
 use crate::math::real::{Mask, Real};
 use crate::model::solids::Material;
 
-/// Terms of the series of the force. (With a fifth of a bounce for a step the next term is below 1e-5.)
+/// Terms of the series of the force. (With a fifth of a bounce for a step the next term is below
+/// 1e-5.)
 const TERMS: usize = 8;
 /// Newton steps to an event.
 const NEWTON_STEPS: u32 = 2;
@@ -192,7 +193,8 @@ impl<T: Real> EventSeries<T> {
         (value, slope)
     }
 
-    /// Whether the function falls to zero within (0, `until`] where `possible`, and about where (1 elsewhere).
+    /// Whether the function falls to zero within (0, `until`] where `possible`, and about where (1
+    /// elsewhere).
     #[inline(always)]
     pub(super) fn first_root(&self, until: T, possible: T::Mask) -> (T::Mask, T) {
         let one = until.one();

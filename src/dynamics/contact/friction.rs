@@ -14,10 +14,11 @@ pub(crate) const DIRECTION_SLIP_FRACTION: f64 = 0.1;
 pub(crate) struct FrictionState<T: Real = f64> {
     /// The ball rolls: the slip is zero and stays zero.
     pub(crate) rolling: T::Mask,
-    /// Rolling needed more than mu N. The ball slides until N grows again; otherwise it would switch
-    /// between the two in tiny steps.
+    /// Rolling needed more than mu N. The ball slides until N grows again; otherwise it would
+    /// switch between the two in tiny steps.
     pub(crate) rolling_failed: T::Mask,
-    /// A slip speed up to this counts as zero: what a step meant to end at zero slip may leave, m/s.
+    /// A slip speed up to this counts as zero: what a step meant to end at zero slip may leave,
+    /// m/s.
     pub(crate) slip_tolerance: T,
 }
 

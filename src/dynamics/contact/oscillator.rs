@@ -1,15 +1,17 @@
 //! The normal motion of a ball pressed against a solid, in closed form.
 //!
-//! With a constant acceleration `G` along the normal besides the normal force, the compression obeys
-//! `u'' + c u' + k u = -G`: a damped oscillation about `-G/k`. With `x = u + G/k` and `v = -u'`
+//! With a constant acceleration `G` along the normal besides the normal force, the compression
+//! obeys `u'' + c u' + k u = -G`: a damped oscillation about `-G/k`. With `x = u + G/k` and `v =
+//! -u'`
 //!
 //! ```text
 //! x(t) = x0 (C + a S) - v0 S        C = exp(-a t) cos(w t)          a = c/2
 //! v(t) = v0 (C - a S) + k x0 S      S = exp(-a t) sin(w t)/w        w^2 = k - a^2
 //! ```
 //!
-//! `C` and `S` are polynomials of `tau = t/H`, the time in units of the longest step. Their coefficients are
-//! the same for all shots. They interpolate at Chebyshev nodes: with three steps in a bounce they err by 1e-7 at most.
+//! `C` and `S` are polynomials of `tau = t/H`, the time in units of the longest step. Their
+//! coefficients are the same for all shots. They interpolate at Chebyshev nodes: with three steps
+//! in a bounce they err by 1e-7 at most.
 
 use crate::math::real::Real;
 use crate::model::solids::Material;
@@ -21,8 +23,8 @@ const ROLL_RESERVE: (f64, f64) = (0.1, 2.0);
 /// [`Oscillator::slip_remainder`] at this many steps a contact.
 const SLIP_REMAINDER: (f64, f64) = (0.25, 2e-4);
 const COARSE_STEPS: f64 = 5.0;
-/// Up to this many steps a contact the last one goes from the end of the slip or the roll to the parting. Its
-/// error (1e-4 m/s) does not fall with the step, so finer steps end at N = 0 too.
+/// Up to this many steps a contact the last one goes from the end of the slip or the roll to the
+/// parting. Its error (1e-4 m/s) does not fall with the step, so finer steps end at N = 0 too.
 const STEPS_ACROSS_ZERO_FORCE: f64 = 10.0;
 
 /// The oscillation over steps of at most `step_s`.
@@ -45,11 +47,11 @@ pub(crate) struct Oscillator<T = f64> {
     pub(crate) inverse_stiffness: T,
     /// c/k in units of H: about the time from zero force to zero compression of an outgoing ball.
     pub(crate) relaxation: T,
-    /// A roll ends where mu N is less than this times the friction that it needs, and this much more
-    /// (m/s^2), while N falls: otherwise a tiny step would follow.
+    /// A roll ends where mu N is less than this times the friction that it needs, and this much
+    /// more (m/s^2), while N falls: otherwise a tiny step would follow.
     pub(crate) roll_reserve: (T, T),
-    /// A step that ends the slip may leave this fraction of it, and at least this much (m/s). Friction's own
-    /// impulse removes the rest.
+    /// A step that ends the slip may leave this fraction of it, and at least this much (m/s).
+    /// Friction's own impulse removes the rest.
     pub(crate) slip_remainder: (T, T),
     /// Half a step, s.
     pub(crate) soon: T,
@@ -212,8 +214,8 @@ impl<T: Real> NormalMotion<T> {
     }
 }
 
-/// A function `displacement x + velocity v + constant + rate tau` of the normal motion. An event happens where
-/// it falls through zero.
+/// A function `displacement x + velocity v + constant + rate tau` of the normal motion. An event
+/// happens where it falls through zero.
 #[derive(Clone, Copy)]
 pub(crate) struct EventFunction<T> {
     pub(crate) displacement: T,
@@ -236,8 +238,9 @@ impl<T: Real> EventFunction<T> {
         (self.velocity * acceleration - self.displacement * v) * step_s + self.rate
     }
 
-    /// The first tau in (0, `until`] at which the function is zero. It must not be negative at 0, and
-    /// its value `last` at `until` must not be positive: the root of a parabola, then Newton steps.
+    /// The first tau in (0, `until`] at which the function is zero. It must not be negative at 0,
+    /// and its value `last` at `until` must not be positive: the root of a parabola, then Newton
+    /// steps.
     #[inline(always)]
     pub(crate) fn first_root(
         &self,
@@ -257,7 +260,8 @@ impl<T: Real> EventFunction<T> {
             let slope = self.slope(material, oscillator.step_s, now);
             let usable = slope.is_negative();
             let next = tau - self.value(now, tau) / slope.select(usable, one);
-            // Where the function is nearly level a step may lead anywhere: then the parabola is better.
+            // Where the function is nearly level a step may lead anywhere: then the parabola is
+            // better.
             let inside = next.is_positive() & next.le(until);
             tau = next.select(usable & inside, tau);
         }
@@ -265,8 +269,8 @@ impl<T: Real> EventFunction<T> {
     }
 }
 
-/// The first root in [0, 1] of the parabola with the value `first` (not negative) and the slope `slope` at 0, and
-/// the value `last` (not positive) at 1.
+/// The first root in [0, 1] of the parabola with the value `first` (not negative) and the slope
+/// `slope` at 0, and the value `last` (not positive) at 1.
 #[inline(always)]
 pub(super) fn parabola_root<T: Real>(first: T, slope: T, last: T) -> T {
     let (zero, one) = (first.zero(), first.one());

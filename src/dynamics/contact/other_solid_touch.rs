@@ -1,18 +1,19 @@
 //! The approach of a ball in contact to another solid.
 //!
-//! A step does not know of the other solid. After it, the gap to that solid is followed through the step by the
-//! cubic that has its values and rates at both ends. A step that passed the solid is taken again, only so far
-//! as the cubic reaches the solid. The cubic errs by at most a few micrometres (`h^4/384` times the fourth
-//! derivative of the gap, which is that of an oscillation of the contact). So a step whose cubic comes closer than
-//! [`GRAZE_M`] inside the step is taken again too, as far as the closest point: no touch is lost.
+//! A step does not know of the other solid. After it, the gap to that solid is followed through the
+//! step by the cubic that has its values and rates at both ends. A step that passed the solid is
+//! taken again, only so far as the cubic reaches the solid. The cubic errs by at most a few
+//! micrometres (`h^4/384` times the fourth derivative of the gap, which is that of an oscillation
+//! of the contact). So a step whose cubic comes closer than [`GRAZE_M`] inside the step is taken
+//! again too, as far as the closest point: no touch is lost.
 
 use crate::math::real::{Mask, Real};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId};
 
-/// Gap at which an approached solid counts as touched, m. A compression of this size changes the speed of a
-/// bounce by less than 1e-6 m/s.
+/// Gap at which an approached solid counts as touched, m. A compression of this size changes the
+/// speed of a bounce by less than 1e-6 m/s.
 pub(crate) const ARRIVED_M: f64 = 2e-6;
 /// A solid that is touched first with a greater compression than this does not act, m.
 const DEEPEST_M: f64 = 1e-4;
@@ -62,7 +63,8 @@ impl<T: Real> GapAtEnd<T> {
     }
 }
 
-/// Where a step of `dt` from `before` passes `other`, and after which part of the step it reaches it (1 elsewhere).
+/// Where a step of `dt` from `before` passes `other`, and after which part of the step it reaches
+/// it (1 elsewhere).
 #[inline(always)]
 pub(crate) fn passed<T: Real, O: Solid<T>>(
     params: &ModelParams<T>,
@@ -194,7 +196,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
-        /// A ball on the ring that comes near the board and turns back within a step, as a parabola.
+        /// A ball on the ring that comes near the board and turns back within a step, as a
+        /// parabola.
         #[test]
         fn prop_no_touch_of_the_other_solid_within_a_step_is_missed(
             gap in 1e-6..0.02_f64,
@@ -224,7 +227,8 @@ mod tests {
                 prop_assert!(again);
             }
             if again {
-                // The shorter step goes to the touch or to the closest point, or is one of several towards it.
+                // The shorter step goes to the touch or to the closest point, or is one of several
+                // towards it.
                 let reached = gap_at(share * dt);
                 prop_assert!(share < 1.0 && reached > min_gap - 1e-9);
                 // A touch in the first hundredths of the step is passed by the shortest step.

@@ -1,13 +1,15 @@
 //! Contact in the world frame, in long steps: with two solids at once, or with any part of one.
 //!
-//! Both normal forces obey linear equations as long as their directions and what does not depend on them are
-//! constant ([`super::coupled_oscillators`]). The motion with these forces is the base of a step. What they leave
-//! out (the turning of the frames, the direction of the slip, the friction of rolling, the change of drag) is the
-//! remainder: an acceleration, evaluated in the middle and at the end of the step, that acts on the base as two kicks
-//! by Simpson's rule. The base answers to the first of them through the same linear equations.
+//! Both normal forces obey linear equations as long as their directions and what does not depend on
+//! them are constant ([`super::coupled_oscillators`]). The motion with these forces is the base of
+//! a step. What they leave out (the turning of the frames, the direction of the slip, the friction
+//! of rolling, the change of drag) is the remainder: an acceleration, evaluated in the middle and
+//! at the end of the step, that acts on the base as two kicks by Simpson's rule. The base answers
+//! to the first of them through the same linear equations.
 //!
-//! A step ends at the first event of either contact: its slip or its roll ends, its force reaches zero, the ball
-//! parts. A solid that the ball does not touch has no stiffness, no damping and no friction.
+//! A step ends at the first event of either contact: its slip or its roll ends, its force reaches
+//! zero, the ball parts. A solid that the ball does not touch has no stiffness, no damping and no
+//! friction.
 
 use super::contact_pair::{ContactPair, FIRST, Response, SECOND, for_both};
 use super::coupled_oscillators::{CoupledOscillators, CoupledStart, SlipSeries};
@@ -18,10 +20,11 @@ use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactVector, Solid};
 
-/// A step meant to end the slip may leave this fraction of it, and this much (m/s): the other contact turns the slip
-/// as it decreases. Friction's own impulse removes the rest.
+/// A step meant to end the slip may leave this fraction of it, and this much (m/s): the other
+/// contact turns the slip as it decreases. Friction's own impulse removes the rest.
 const SLIP_REMAINDER: (f64, f64) = (0.2, 1e-3);
-/// Shortest step, as a fraction of the longest. (Two sliding contacts can end each other's slip without end.)
+/// Shortest step, as a fraction of the longest. (Two sliding contacts can end each other's slip
+/// without end.)
 const SHORTEST_STEP: f64 = 2e-4;
 
 /// The result of one step.
@@ -39,7 +42,8 @@ struct FrictionMode<T: Real> {
     rolling: [T::Mask; 2],
     /// Contacts at zero slip that cannot roll from now on.
     fails_now: [T::Mask; 2],
-    /// Contacts that slide, but so slowly that their direction is that against the friction which rolling needs.
+    /// Contacts that slide, but so slowly that their direction is that against the friction which
+    /// rolling needs.
     follows: [T::Mask; 2],
     /// Friction at the start.
     frictions: [Vec2<T>; 2],
@@ -113,7 +117,8 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     let end = first_event(params, &pair, &mode, &base, contact);
     let (dt, half) = (end.tau * step_s, end.tau * 0.5);
 
-    // The remainder in the middle and, with twice that of the middle (Kutta's third-order rule), at the end.
+    // The remainder in the middle and, with twice that of the middle (Kutta's third-order rule), at
+    // the end.
     let middle = base.advance(state, half);
     let on = (solids, touching);
     let at_middle = remainder(params, on, &middle, &mode, &base, half);
@@ -176,8 +181,8 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
 }
 
 impl<T: Real> FrictionMode<T> {
-    /// A contact at zero slip rolls if its friction suffices. If it does not suffice for one, that one slides, and
-    /// the other is solved for again.
+    /// A contact at zero slip rolls if its friction suffices. If it does not suffice for one, that
+    /// one slides, and the other is solved for again.
     #[inline(always)]
     fn new(
         params: &ModelParams<T>,
@@ -193,7 +198,8 @@ impl<T: Real> FrictionMode<T> {
         let against_slip = for_both!(i => {
             friction_against(limits[i], unit(slips[i], sizes[i]))
         });
-        // What rolling needs. A failed roll leaves hardly any slip: it follows this, faster than a step can.
+        // What rolling needs. A failed roll leaves hardly any slip: it follows this, faster than a
+        // step can.
         let candidates = for_both!(i => at_zero_slip[i] | failed[i]);
         let required = pair.frictions(params, candidates, against_slip);
         let follows = for_both!(i => {

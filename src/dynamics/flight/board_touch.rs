@@ -1,5 +1,5 @@
-//! The first touch of the board: the centre reaches the *touch plane*, the ball's radius in front of the *face
-//! plane*. In free flight x is linear in time.
+//! The first touch of the board: the centre reaches the *touch plane*, the ball's radius in front
+//! of the *face plane*. In free flight x is linear in time.
 
 use super::height_crossing::{falling_time, rising_time};
 use crate::math::real::Real;
@@ -10,7 +10,8 @@ use crate::model::solids::Solid;
 /// A ball that passed the touch plane earlier than this overlaps the board, s.
 const OVERLAP_TOLERANCE_S: f64 = 1e-9;
 
-/// Times at which the ball touches the board, and at which it reaches the touch plane outside the rectangle.
+/// Times at which the ball touches the board, and at which it reaches the touch plane outside the
+/// rectangle.
 #[inline(always)]
 pub(super) fn board_times<T: Real>(
     params: &ModelParams<T>,
@@ -35,11 +36,12 @@ pub(super) fn board_times<T: Real>(
     )
 }
 
-/// For a ball whose centre is beside the rectangle at the time `from` of its flight, between the touch plane and
-/// the face plane: the times at which the centre comes in front of the rectangle, and at which it passes the face
-/// plane.
+/// For a ball whose centre is beside the rectangle at the time `from` of its flight, between the
+/// touch plane and the face plane: the times at which the centre comes in front of the rectangle,
+/// and at which it passes the face plane.
 pub(super) fn entry_from_beside(params: &ModelParams, state: &BallState, from: f64) -> (f64, f64) {
-    /// Time after a crossing at which to look: on the edge itself the ball is still beside the rectangle.
+    /// Time after a crossing at which to look: on the edge itself the ball is still beside the
+    /// rectangle.
     const PAST_S: f64 = 1e-9;
     let board = &params.board;
     let [x, y, z] = state.position_m.into();

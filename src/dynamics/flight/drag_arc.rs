@@ -1,5 +1,5 @@
-//! A part of a flight under gravity and drag. Without lift it stays in a vertical plane, so its horizontal path is
-//! straight, and everything is a function of the distance along it.
+//! A part of a flight under gravity and drag. Without lift it stays in a vertical plane, so its
+//! horizontal path is straight, and everything is a function of the distance along it.
 //!
 //! With `y = 1/v_h`, `q = v_z/v_h` and l the horizontal distance,
 //!
@@ -7,9 +7,9 @@
 //! dy/dl = k y sqrt(1 + q^2)    dq/dl = -g y^2    dz/dl = q    dt/dl = y
 //! ```
 //!
-//! The arc holds the Taylor polynomials of these in `s = l/L`, with L its length. They converge as those of
-//! [`super::flight_path`]. The distance from the hoop's axis and from the plane of the board have closed forms in s, as
-//! they have in time without drag.
+//! The arc holds the Taylor polynomials of these in `s = l/L`, with L its length. They converge as
+//! those of [`super::flight_path`]. The distance from the hoop's axis and from the plane of the
+//! board have closed forms in s, as they have in time without drag.
 
 use super::flight_path::{LONGEST_SHARE, SHORTEST_S};
 use super::height_path::HeightPath;
@@ -20,9 +20,9 @@ use crate::model::ball_params::BallParams;
 
 /// Terms of y and q.
 const TERMS: usize = 9;
-/// The length of an arc as a share of that to the singularity: the least, and that of a ball without drag. Between
-/// them it falls with the strength of drag, so that position and velocity err by 3e-6 m and 7e-5 m/s at most, less than
-/// a contact does.
+/// The length of an arc as a share of that to the singularity: the least, and that of a ball
+/// without drag. Between them it falls with the strength of drag, so that position and velocity err
+/// by 3e-6 m and 7e-5 m/s at most, less than a contact does.
 const SHARES: (f64, f64) = (0.40, 1.02);
 const SHARE_PER_STRENGTH: f64 = 0.45;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
@@ -66,7 +66,8 @@ impl<T: Real> DragArc<T> {
         let q_0 = v.z * y_0;
         let r_0 = (q_0.squared() + 1.0).sqrt();
         let speed = r_0 * speed_h;
-        // The sizes of both accelerations: near the terminal velocity they cancel, but the singularities are as near.
+        // The sizes of both accelerations: near the terminal velocity they cancel, but the
+        // singularities are as near.
         let accelerations = ball.gravity + ball.drag * speed.squared();
         // 1/|v| and 1/(g + k |v|^2) with a single division.
         let per_both = one / (speed * accelerations);
@@ -167,7 +168,8 @@ impl<T: Real> DragArc<T> {
         state
     }
 
-    /// The height where it is greatest, for an arc that rises at first and falls at its end, and where that is.
+    /// The height where it is greatest, for an arc that rises at first and falls at its end, and
+    /// where that is.
     #[inline(always)]
     pub(super) fn top(&self) -> (T, T) {
         let one = self.never.one();
@@ -205,7 +207,8 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
         self.falling_s(height)
     }
 
-    /// -z'' only grows: the parabolas with its first and its last value lie above and below the path.
+    /// -z'' only grows: the parabolas with its first and its last value lie above and below the
+    /// path.
     #[inline(always)]
     fn rises_between(&self, height: T) -> (T, T) {
         let (zero, one) = (height.zero(), height.one());
@@ -253,8 +256,8 @@ impl<T: Real> DragArc<T> {
         if !falls.any() {
             return self.never;
         }
-        // From the end backwards with the least curvature, that of the start: an s that is not earlier. z is concave, so
-        // Newton's steps from there never pass the height.
+        // From the end backwards with the least curvature, that of the start: an s that is not
+        // earlier. z is concave, so Newton's steps from there never pass the height.
         let below = (height - end_z).positive_part();
         let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
         let root = square.positive_part().sqrt();
@@ -273,7 +276,8 @@ impl<T: Real> DragArc<T> {
         Real::max(s, zero).select(falls, self.never)
     }
 
-    /// Newton's steps from the s at which the parabola above the path rises through the height: they never pass it.
+    /// Newton's steps from the s at which the parabola above the path rises through the height:
+    /// they never pass it.
     #[inline(always)]
     fn rising_s(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
@@ -310,7 +314,8 @@ struct Series<T> {
 }
 
 impl<T: Real> Series<T> {
-    /// Computes all terms from the first. (The numbers are constants, so that nothing is left of the loops.)
+    /// Computes all terms from the first. (The numbers are constants, so that nothing is left of
+    /// the loops.)
     #[inline(always)]
     fn append_all(&mut self) {
         const { assert!(TERMS == 9) };
@@ -324,8 +329,8 @@ impl<T: Real> Series<T> {
         self.append::<7>();
     }
 
-    /// Computes the terms N of r and N + 1 of y and q. Products with the newest terms come last: the rest does not wait for
-    /// them.
+    /// Computes the terms N of r and N + 1 of y and q. Products with the newest terms come last:
+    /// the rest does not wait for them.
     #[inline(always)]
     fn append<const N: usize>(&mut self) {
         let Self { y, q, r, .. } = self;
@@ -360,7 +365,8 @@ fn inner_square<T: Real, const N: usize>(terms: &[T; TERMS]) -> T {
     sum
 }
 
-/// The polynomial with the coefficients `terms` at `s`, in groups of four terms: they do not wait for each other.
+/// The polynomial with the coefficients `terms` at `s`, in groups of four terms: they do not wait
+/// for each other.
 #[inline(always)]
 fn polynomial<T: Real, const N: usize>(terms: &[T; N], s: T) -> T {
     let square = s.squared();

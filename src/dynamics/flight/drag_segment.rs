@@ -1,9 +1,10 @@
 //! A segment of a flight without lift, and its first touch.
 //!
-//! The horizontal path is straight. So the planes of the board and the circles about the hoop's axis are reached at
-//! places s of a closed form, and the ring is searched as for a parabola ([`super::ring_search`]). Edges and
-//! bracket are searched only by balls that come near them: their cores are convex, so the gap G has `G'' >= -A`, with A a
-//! bound on `-z''`, and cannot close within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
+//! The horizontal path is straight. So the planes of the board and the circles about the hoop's
+//! axis are reached at places s of a closed form, and the ring is searched as for a parabola
+//! ([`super::ring_search`]). Edges and bracket are searched only by balls that come near them:
+//! their cores are convex, so the gap G has `G'' >= -A`, with A a bound on `-z''`, and cannot close
+//! within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
 
 use super::drag_arc::DragArc;
 use super::flight_segment::FlightSegment;
@@ -18,7 +19,8 @@ use crate::model::{BallState, SolidId};
 
 /// Limit on the steps along the gap to an edge.
 const MAX_ITERATIONS: u32 = 10_000;
-/// A ball that is farther than this behind the plane in which it touches the face may touch an edge, m.
+/// A ball that is farther than this behind the plane in which it touches the face may touch an
+/// edge, m.
 const BEHIND_PLANE_M: f64 = 1e-6;
 
 /// Where the plane of the board is reached, in s (never elsewhere).
@@ -108,7 +110,8 @@ fn arc_of<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> DragArc<T> 
     DragArc::new(&params.ball, state)
 }
 
-/// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens on it.
+/// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens
+/// on it.
 #[inline(always)]
 fn is_far<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T::Mask {
     let p = start.position_m;
@@ -145,7 +148,8 @@ fn far_segment<T: Real>(
     }
 }
 
-/// Whether the centre rises through the plane of the hoop before `end`, and does so inside the ring.
+/// Whether the centre rises through the plane of the hoop before `end`, and does so inside the
+/// ring.
 #[inline(always)]
 fn rising_crossing<T: Real>(
     params: &ModelParams<T>,
@@ -216,7 +220,8 @@ fn board_events<T: Real>(
     }
 }
 
-/// Whether the part of an arc stays above, below or on one side of everything that the board can touch.
+/// Whether the part of an arc stays above, below or on one side of everything that the board can
+/// touch.
 #[inline(always)]
 fn passes_beside<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to: T) -> T::Mask {
     let core = &params.board.core;
@@ -231,8 +236,8 @@ fn passes_beside<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to
     above | left | right
 }
 
-/// Whether a part of an arc comes where the bracket is nearer than the ring's circle: outside the circle, which is so at
-/// one of its ends if anywhere, and near the bracket.
+/// Whether a part of an arc comes where the bracket is nearer than the ring's circle: outside the
+/// circle, which is so at one of its ends if anywhere, and near the bracket.
 #[inline(always)]
 fn comes_to_bracket<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to: T) -> T::Mask {
     let bracket = &params.ring.bracket;
@@ -250,8 +255,8 @@ fn comes_to_bracket<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T,
     outside & near_x & near_y
 }
 
-/// Where the ball first touches a plate with a convex core between two places of an arc (never elsewhere), and where
-/// the search reached its limit.
+/// Where the ball first touches a plate with a convex core between two places of an arc (never
+/// elsewhere), and where the search reached its limit.
 #[inline(always)]
 fn convex_touch<T: Real>(
     core: &Rectangle<T>,

@@ -10,18 +10,19 @@ use crate::math::vector::Vec2;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, SolidId};
 
-/// The possible ends of an arc of free flight, as times from its start, s. The earliest one happens;
-/// `beside_board` is no end, but a time from which the board must be looked at again.
+/// The possible ends of an arc of free flight, as times from its start, s. The earliest one
+/// happens; `beside_board` is no end, but a time from which the board must be looked at again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightEvents<T: Real> {
     /// The centre falls through `z = -R`.
     pub(crate) below_ring: T,
     /// The ball touches a solid; by [`SolidId::index`].
     pub(crate) touch: [T; SolidId::COUNT],
-    /// The ball overlaps the plane of the board beside the rectangle: [`FlightEvents::resolve_beside_board`] says when
-    /// the shot is over.
+    /// The ball overlaps the plane of the board beside the rectangle:
+    /// [`FlightEvents::resolve_beside_board`] says when the shot is over.
     pub(crate) beside_board: T,
-    /// The ball is lost, or the search for the ring reached its iteration limit. (The latter was never seen.)
+    /// The ball is lost, or the search for the ring reached its iteration limit. (The latter was
+    /// never seen.)
     pub(crate) unresolved: T::Mask,
 }
 
@@ -91,10 +92,11 @@ impl FlightEvents<f64> {
         }
     }
 
-    /// Follows a ball that comes beside the board before anything else: updates the touch of the ring, and returns the
-    /// time at which the shot is over (never, if the ball does not come beside the board first). That is when the
-    /// centre passes behind the face, or comes in front of it: the ball would then be compressed at once and gain
-    /// the energy of the spring from nothing.
+    /// Follows a ball that comes beside the board before anything else: updates the touch of the
+    /// ring, and returns the time at which the shot is over (never, if the ball does not come
+    /// beside the board first). That is when the centre passes behind the face, or comes in front
+    /// of it: the ball would then be compressed at once and gain the energy of the spring from
+    /// nothing.
     pub(crate) fn resolve_beside_board(&mut self, params: &ModelParams, state: &BallState) -> f64 {
         if self.beside_board >= self.first_end() {
             return params.ball.never_s;

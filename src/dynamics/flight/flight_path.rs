@@ -6,8 +6,9 @@
 //! v' = -g z^ - k s v + l (w x v)        s = |v|,  s^2 = v.v
 //! ```
 //!
-//! As a function of complex time `|v|` is singular about `|v|/|a|` from the start (for gravity alone exactly there:
-//! where `v_h^2 + (v_z - g t)^2 = 0`), with |a| the sum of the sizes of all accelerations. So a path holds for a fraction of that time. Without air it is the parabola.
+//! As a function of complex time `|v|` is singular about `|v|/|a|` from the start (for gravity
+//! alone exactly there: where `v_h^2 + (v_z - g t)^2 = 0`), with |a| the sum of the sizes of all
+//! accelerations. So a path holds for a fraction of that time. Without air it is the parabola.
 
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec3};
@@ -16,7 +17,8 @@ use crate::model::ball_params::BallParams;
 
 /// Terms of the velocity.
 const TERMS: usize = 9;
-/// The time for which a path holds, as a share of |v|/|a|: the position then errs by less than 1e-7 m.
+/// The time for which a path holds, as a share of |v|/|a|: the position then errs by less than 1e-7
+/// m.
 const SHARE: f64 = 0.45;
 /// The shortest path, s.
 pub(super) const SHORTEST_S: f64 = 0.01;
@@ -156,8 +158,9 @@ impl<T: Real> FlightPath<T> {
         }
     }
 
-    /// The time near `guess` at which a ball that falls at the end of the path is at the height `z`. (z is concave in time:
-    /// Newton's steps approach the root from later times. Before the highest point a step goes half of the way to the end.)
+    /// The time near `guess` at which a ball that falls at the end of the path is at the height
+    /// `z`. (z is concave in time: Newton's steps approach the root from later times. Before the
+    /// highest point a step goes half of the way to the end.)
     #[inline(always)]
     pub(crate) fn falls_through(&self, z: T, guess: T) -> T {
         let mut t = guess;
@@ -211,7 +214,8 @@ impl<T: Real> FlightPath<T> {
 
 /// Newton steps to a height.
 const NEWTON_STEPS: u32 = 5;
-/// Limit on those of a falling ball, more than five only where the path is nearly flat; and where they end, m.
+/// Limit on those of a falling ball, more than five only where the path is nearly flat; and where
+/// they end, m.
 const MAX_STEPS_TO_FALL: u32 = 40;
 const FALL_TOLERANCE_M: f64 = 1e-11;
 
@@ -274,7 +278,8 @@ mod tests {
         }
     }
 
-    /// Authority: a ball that falls from rest with drag alone: v = v_t tanh(g t/v_t), z = -(v_t^2/g) ln cosh(g t/v_t).
+    /// Authority: a ball that falls from rest with drag alone: v = v_t tanh(g t/v_t), z =
+    /// -(v_t^2/g) ln cosh(g t/v_t).
     #[test]
     fn val_a_fall_with_drag_is_the_closed_form() {
         let physics = Preset::named("ncaa").unwrap().physics();

@@ -1,10 +1,11 @@
-//! A flight under drag and lift, or at solids with edges and bracket, in segments: each is the time for which one
-//! polynomial holds, or less if the flight ends in it.
+//! A flight under drag and lift, or at solids with edges and bracket, in segments: each is the time
+//! for which one polynomial holds, or less if the flight ends in it.
 
 use crate::math::real::Real;
 use crate::model::{BallState, SolidId};
 
-/// A segment of a flight. At most one of the endings holds in a lane; where none does, the flight goes on.
+/// A segment of a flight. At most one of the endings holds in a lane; where none does, the flight
+/// goes on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightSegment<T: Real = f64> {
     /// Its length, s.
@@ -15,8 +16,8 @@ pub(crate) struct FlightSegment<T: Real = f64> {
     pub(crate) touches: [T::Mask; SolidId::COUNT],
     /// The centre falls below the reach of the ring, or is at its highest point below it.
     pub(crate) fell: T::Mask,
-    /// The centre passes the plane of the board's core. (On the paper's board also: the ball touches it beside its
-    /// face, where it does not act.)
+    /// The centre passes the plane of the board's core. (On the paper's board also: the ball
+    /// touches it beside its face, where it does not act.)
     pub(crate) behind_board: T::Mask,
     /// The ball is lost, or the search reached its iteration limit.
     pub(crate) unresolved: T::Mask,

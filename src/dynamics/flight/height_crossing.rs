@@ -11,8 +11,8 @@ pub(crate) fn falling_time<T: Real>(params: &ModelParams<T>, z: T, vz: T, height
     (vz + discriminant.positive_part().sqrt()) * params.ball.inverse_gravity
 }
 
-/// Time at which the centre rises through the height `height`. Meaningful only for a ball that starts below
-/// and gets there.
+/// Time at which the centre rises through the height `height`. Meaningful only for a ball that
+/// starts below and gets there.
 #[inline(always)]
 pub(crate) fn rising_time<T: Real>(params: &ModelParams<T>, z: T, vz: T, height: T) -> T {
     let discriminant = vz.squared() + params.ball.gravity * (z - height) * 2.0;

@@ -1,4 +1,5 @@
-//! The height of a ball in flight as a function of time, or of another variable that grows with time.
+//! The height of a ball in flight as a function of time, or of another variable that grows with
+//! time.
 
 use crate::math::real::Real;
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -11,9 +12,9 @@ pub(super) trait HeightPath<T: Real> {
     fn height_and_rate(&self, t: T) -> (T, T);
     /// When it falls through `height`.
     fn falls_through(&self, height: T) -> T;
-    /// Two times at which, and between which, it may rise through `height`: one not later, one not earlier, and from the
-    /// later one to the highest point it is above. For a ball that has risen before, or does not, any times up to its
-    /// highest point.
+    /// Two times at which, and between which, it may rise through `height`: one not later, one not
+    /// earlier, and from the later one to the highest point it is above. For a ball that has risen
+    /// before, or does not, any times up to its highest point.
     fn rises_between(&self, height: T) -> (T, T);
     /// A bound on -z''.
     fn acceleration_bound(&self) -> T;

@@ -1,19 +1,23 @@
 //! A segment of a flight with lift, and its first touch.
 //!
-//! The first touch is found with certainty, however short a graze. The search steps through the segment; at each time it
-//! asks every solid how long no touch is possible, and takes the shortest of the answers.
+//! The first touch is found with certainty, however short a graze. The search steps through the
+//! segment; at each time it asks every solid how long no touch is possible, and takes the shortest
+//! of the answers.
 //!
-//! - Board and bracket: their cores are convex, so the distance d of the centre is a convex function of its position, and
-//!   `d'' >= -A`, with A a bound on the acceleration. A gap G with the rate G' cannot close within
-//!   `2 G/(sqrt(G'^2 + 2 A G) - G')`.
-//! - The ring's circle is not convex. There the search has the regions of a ball above the ring, outside, within
-//!   the circle, and near the rod. In the last one the bound is on `F = (R_H - D)^2 + z^2 - reach^2`:
+//! - Board and bracket: their cores are convex, so the distance d of the centre is a convex
+//!   function of its position, and `d'' >= -A`, with A a bound on the acceleration. A gap G with
+//!   the rate G' cannot close within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
+//! - The ring's circle is not convex. There the search has the regions of a ball above the ring,
+//!   outside, within the circle, and near the rod. In the last one the bound is on
+//!   `F = (R_H - D)^2 + z^2 - reach^2`:
 //!
 //! ```text
-//! F''/2 = v^2 + z a_z + (D - R_H)/D p.a_h - R_H L^2/D^3 >= v^2 - reach (|a_z| + |a_h|) - R_H L^2/D^3
+//! F''/2 =  v^2 + z a_z + (D - R_H)/D p.a_h - R_H L^2/D^3
+//!       >= v^2 - reach (|a_z| + |a_h|) - R_H L^2/D^3
 //! ```
 //!
-//! (p and the index h for the horizontal part, D the distance from the hoop's axis, L = x v_y - y v_x.)
+//! (p and the index h for the horizontal part, D the distance from the hoop's axis,
+//! `L = x v_y - y v_x`.)
 
 use super::flight_path::FlightPath;
 use super::flight_segment::FlightSegment;
@@ -27,20 +31,23 @@ use crate::model::{BallState, SolidId};
 
 /// Height to which the search for a crossing converges where there is one, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-9;
-/// Nearer than this to the plane in which it touches the face, the ball's gap to the board counts, m.
+/// Nearer than this to the plane in which it touches the face, the ball's gap to the board counts,
+/// m.
 const PLANE_MARGIN_M: f64 = 1e-9;
 /// How long before it falls to the height of the hoop the search begins, s.
 const HEIGHT_MARGIN_S: f64 = 1e-9;
-/// Limit on the iterations. The search needs five or ten; a ball that parts with hardly any speed more.
+/// Limit on the iterations. The search needs five or ten; a ball that parts with hardly any speed
+/// more.
 const MAX_ITERATIONS: u32 = 10_000;
 /// Longest step near the rod, s: the bounds on F'' hold for so long.
 const LONGEST_STEP_S: f64 = 0.05;
-/// Near the rod is what is nearer to its circle, along and across the plane of the hoop, than this share of the reach.
+/// Near the rod is what is nearer to its circle, along and across the plane of the hoop, than this
+/// share of the reach.
 const NEAR: f64 = 1.01;
 /// Farther from the reach of the bracket than this share of it, its gap does not count.
 const FAR: f64 = 0.1;
-/// Within the circle is a distance from the axis below this share of that at which the ball touches; the
-/// bounds near the rod hold down to the second share.
+/// Within the circle is a distance from the axis below this share of that at which the ball
+/// touches; the bounds near the rod hold down to the second share.
 const WITHIN: (f64, f64) = (0.9, 0.8);
 
 /// The segment that starts at `state`.
@@ -117,8 +124,8 @@ fn rising_crossing<T: Real>(
     )
 }
 
-/// Time at which the centre falls through z = -reach, or is at its highest point below it; never if neither happens
-/// on the path.
+/// Time at which the centre falls through z = -reach, or is at its highest point below it; never if
+/// neither happens on the path.
 #[inline(always)]
 fn fall_time<T: Real>(
     params: &ModelParams<T>,
@@ -175,7 +182,8 @@ fn passing_time<T: Real>(
     Real::max(Real::min(t, path.longest_s), zero)
 }
 
-/// Whether the ball may come near a solid on the path: whether a box about the path meets that about all solids.
+/// Whether the ball may come near a solid on the path: whether a box about the path meets that
+/// about all solids.
 #[inline(always)]
 fn near_solids<T: Real>(
     params: &ModelParams<T>,
@@ -269,8 +277,8 @@ fn board_step<T: Real>(
     (touches & !in_front, plane_step.select(in_front, step))
 }
 
-/// A time before which the ball touches nothing: until it falls to the height of the hoop or reaches the plane in which
-/// it touches the board.
+/// A time before which the ball touches nothing: until it falls to the height of the hoop or
+/// reaches the plane in which it touches the board.
 #[inline(always)]
 fn untouched_time<T: Real>(
     params: &ModelParams<T>,
@@ -298,8 +306,8 @@ fn untouched_time<T: Real>(
     Real::min(plane, height.select(above, zero))
 }
 
-/// A time within which a ball that is more than `margin` away from the height |z| = `reach` cannot come to it (zero
-/// elsewhere).
+/// A time within which a ball that is more than `margin` away from the height |z| = `reach` cannot
+/// come to it (zero elsewhere).
 #[inline(always)]
 fn height_step<T: Real>(
     params: &ModelParams<T>,
@@ -330,7 +338,8 @@ fn bracket_step<T: Real>(
     }
     let reach = params.ring.reach;
     let (p, bracket) = (state.position_m, &params.ring.bracket);
-    // Far along one coordinate, or within the ring's circle, where the ring is nearer: how far at least.
+    // Far along one coordinate, or within the ring's circle, where the ring is nearer: how far at
+    // least.
     let beyond_x = p.x - bracket.high.x - reach;
     let beyond_y = p.y.abs() - bracket.high.y - reach;
     let beyond_z = p.z.abs() - reach;

@@ -1,14 +1,15 @@
 //! The first touch of the ring by a ball in free flight, found with certainty.
 //!
-//! It is the first root of `F(t) = (R_H - D)^2 + z^2 - R^2`, where `D` is the distance from the hoop's
-//! axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. (With a rod, R stands for the reach: its radius more.) Elsewhere
+//! It is the first root of `F(t) = (R_H - D)^2 + z^2 - R^2`, where `D` is the distance from the
+//! hoop's axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. (With a
+//! rod, R stands for the reach: its radius more.) Elsewhere
 //!
 //! ```text
 //! F'' = 2 (v_h^2 + v_z^2 - g z - R_H L^2/D^3),    L = x v_y - y v_x (constant in flight)
 //! ```
 //!
-//! is bounded from below by some `-M`. Then the step `2 F/(sqrt(F'^2 + 2 M F) - F')` never passes a root:
-//! grazes are found, however short. Where M = 0 (most shots) it is Newton's step.
+//! is bounded from below by some `-M`. Then the step `2 F/(sqrt(F'^2 + 2 M F) - F')` never passes a
+//! root: grazes are found, however short. Where M = 0 (most shots) it is Newton's step.
 
 use super::height_path::HeightPath;
 use crate::math::real::{Mask, Real};
@@ -21,8 +22,8 @@ const TOUCH_TOLERANCE: f64 = 1e-10;
 const MIN_JUMP_S: f64 = 1e-9;
 /// Shortest step of a ball that moves away from the ring, s.
 const PARTING_STEP_S: f64 = 1e-6;
-/// Limit on the iterations. The search needs one or two, seldom more than ten; a ball that parts from the ring with
-/// hardly any speed can need hundreds.
+/// Limit on the iterations. The search needs one or two, seldom more than ten; a ball that parts
+/// from the ring with hardly any speed can need hundreds.
 const MAX_ITERATIONS: u32 = 10_000;
 
 /// The horizontal motion of an arc: `D^2 = |p|^2 + 2 (p.v) t + |v|^2 t^2`.
@@ -65,8 +66,8 @@ impl<T: Real> HorizontalMotion<T> {
         }
     }
 
-    /// Square of half the time that the ball spends within `radius` of the axis; negative if it never
-    /// comes so near.
+    /// Square of half the time that the ball spends within `radius` of the axis; negative if it
+    /// never comes so near.
     #[inline(always)]
     fn half_time_within_squared(&self, radius: T) -> T {
         (radius.squared() - self.closest_squared) * self.inverse_speed_squared
@@ -93,8 +94,9 @@ struct SearchBounds<T> {
     curvature_bound: T,
     /// The part from -z z''.
     height_bound: T,
-    /// F at the start where it is negative (the small overlap that a separation leaves), zero elsewhere. It
-    /// counts as zero: otherwise a ball that parts slowly would take tiny steps until it is free.
+    /// F at the start where it is negative (the small overlap that a separation leaves), zero
+    /// elsewhere. It counts as zero: otherwise a ball that parts slowly would take tiny steps until
+    /// it is free.
     overlap: T,
 }
 
@@ -132,9 +134,9 @@ impl<T: Real> SearchBounds<T> {
     }
 }
 
-/// Time of the first touch of the ring's circle before `search_end` (else never), and whether the search reached its
-/// iteration limit. The time may be any variable in which the horizontal motion is even; `falls_to_top` is that at which the
-/// centre falls through the reach above the hoop.
+/// Time of the first touch of the ring's circle before `search_end` (else never), and whether the
+/// search reached its iteration limit. The time may be any variable in which the horizontal motion
+/// is even; `falls_to_top` is that at which the centre falls through the reach above the hoop.
 #[inline(always)]
 pub(super) fn ring_time<T: Real>(
     params: &ModelParams<T>,
@@ -153,8 +155,8 @@ pub(super) fn ring_time<T: Real>(
         | motion.is_vertical & outer.squared().lt(motion.distance_squared);
     let stop = Real::min(search_end, leave_time);
     let mut t = enter_time.select(!motion.is_vertical, zero).positive_part();
-    // Start when the ball has come near the ring and has fallen through z = R. A ball that is below z = R
-    // and still rising then (a release from beneath) starts when it has come near.
+    // Start when the ball has come near the ring and has fallen through z = R. A ball that is below
+    // z = R and still rising then (a release from beneath) starts when it has come near.
     let (z_then, _) = heights.height_and_rate(t);
     t = Real::max(falls_to_top, t).select(reach.lt(z_then), t);
 
@@ -196,8 +198,8 @@ fn search_step<T: Real>(
         (bounds.curvature_bound + bounds.height_bound - motion.speed_squared - fall_squared)
             .positive_part();
 
-    // With h = F'/2 and b = M/2: F + 2 h s - b s^2 >= 0 up to its first root s, F/(root - h) for a closing
-    // ball and (root + h)/b otherwise.
+    // With h = F'/2 and b = M/2: F + 2 h s - b s^2 >= 0 up to its first root s, F/(root - h) for a
+    // closing ball and (root + h)/b otherwise.
     let root = (half_slope.squared() + half_bound * value.positive_part()).sqrt();
     let closing = half_slope.le(zero);
     let bounded = half_bound.is_positive();
@@ -206,8 +208,8 @@ fn search_step<T: Real>(
         (half_slope + root).select(bounded, params.ball.never_s),
     );
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, params.one()));
-    // A ball that parts with hardly any speed must get away from the ring. What this step passes over is a graze
-    // of less than 1e-9 m.
+    // A ball that parts with hardly any speed must get away from the ring. What this step passes
+    // over is a graze of less than 1e-9 m.
     let min_step = zero.select(closing, params.splat(PARTING_STEP_S));
     let safe = t + Real::max(numerator / denominator, min_step);
     let touches = closing & value.le(reach.squared() * TOUCH_TOLERANCE);
@@ -224,8 +226,8 @@ fn search_step<T: Real>(
         bounds.inner_leave.select(inside, zero),
     );
     let jumps = (t + MIN_JUMP_S).lt(jump);
-    // The bound holds up to the inner circle and, for a rising ball, up to z = R. Beyond them comes a part
-    // to jump over.
+    // The bound holds up to the inner circle and, for a rising ball, up to z = R. Beyond them comes
+    // a part to jump over.
     let reaches_inner = t.lt(bounds.inner_enter) & bounds.inner_enter.lt(safe);
     let reaches_top = t.lt(bounds.rises_to_top) & bounds.rises_to_top.lt(safe) & !reaches_inner;
     let step = bounds

@@ -7,8 +7,8 @@ pub(super) const TOUCH_M: f64 = 1e-11;
 /// Shortest step of a ball that moves away.
 pub(super) const PARTING_STEP: f64 = 1e-6;
 
-/// Whether a ball with a gap G and its rate touches, and a step within which the gap cannot close: `G'' >= -A`, with A the
-/// `acceleration_bound`.
+/// Whether a ball with a gap G and its rate touches, and a step within which the gap cannot close:
+/// `G'' >= -A`, with A the `acceleration_bound`.
 #[inline(always)]
 pub(super) fn gap_step<T: Real>(gap: T, rate: T, acceleration_bound: T) -> (T::Mask, T) {
     let zero = gap.zero();

@@ -8,8 +8,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 /// Parts of a flight that are followed at most.
 const MAX_PARTS: u32 = 10_000;
 
-/// The state in which an undisturbed ball falls through `z = height`, m, and the time until then, s; `None` if it is
-/// below and never rises to it.
+/// The state in which an undisturbed ball falls through `z = height`, m, and the time until then,
+/// s; `None` if it is below and never rises to it.
 pub(crate) fn falls_through(
     params: &ModelParams,
     start: &BallState,
@@ -50,7 +50,8 @@ pub(crate) fn state_after(params: &ModelParams, start: &BallState, t: f64) -> Ba
         if left.abs() <= path.longest_s || !params.ball.has_air {
             return path.state_after(left);
         }
-        // Half of a path: backwards in time the speed decreases, and with it the reach of the series.
+        // Half of a path: backwards in time the speed decreases, and with it the reach of the
+        // series.
         let part = (0.5 * path.longest_s).copysign(left);
         state = path.state_after(part);
         left -= part;
@@ -78,8 +79,8 @@ pub(crate) fn highest_point_m(params: &ModelParams, path: &FlightPath, dt: f64) 
 /// Depth at which a path is given up, m.
 const LOWEST_M: f64 = -1000.0;
 
-/// The height at which an undisturbed ball passes the horizontal distance `length_m` from its start, m; negative and
-/// infinite if it does not get there.
+/// The height at which an undisturbed ball passes the horizontal distance `length_m` from its
+/// start, m; negative and infinite if it does not get there.
 pub(crate) fn height_at_length_m(params: &ModelParams, start: &BallState, length_m: f64) -> f64 {
     let ball = &params.ball;
     let v = start.velocity_m_s;

@@ -1,5 +1,6 @@
-//! The default integrator: closed-form flight in which every touch is found, and contacts in long steps
-//! that end at contact events (the slip reaches zero, rolling fails, the ball parts, the other solid is touched).
+//! The default integrator: closed-form flight in which every touch is found, and contacts in long
+//! steps that end at contact events (the slip reaches zero, rolling fails, the ball parts, the
+//! other solid is touched).
 
 use crate::dynamics::contact::contact_step::{Contact, MacroStep};
 use crate::dynamics::contact::friction::FrictionState;
@@ -21,7 +22,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{CONTACT_VALUES, ContactMotion, Solid, TOUCH_GAP_M};
 use crate::model::{BallState, SolidId};
 
-/// Limit on the segments (flights and contacts) of one shot, so that every run ends. Never reached so far.
+/// Limit on the segments (flights and contacts) of one shot, so that every run ends. Never reached
+/// so far.
 pub(crate) const MAX_SEGMENTS: u32 = 100_000;
 
 /// The contacts of the ball at present.
@@ -57,7 +59,8 @@ pub(crate) struct ShotProgress {
     pub(crate) time_s: f64,
     pub(crate) contacts: ContactSequence,
     pub(crate) crossing: HoopCrossing,
-    /// Segments so far. (In a batch, a contact in the lanes is not counted; the limit is far away in any case.)
+    /// Segments so far. (In a batch, a contact in the lanes is not counted; the limit is far away
+    /// in any case.)
     pub(crate) segments: u32,
     /// Steps in contact so far.
     pub(crate) steps: u32,
@@ -122,8 +125,8 @@ impl ShotProgress {
         self.friction[arrived.index()] = FrictionState::new(params);
     }
 
-    /// Sets the solids that the ball touches: it then flies, or is in contact in the frame of one solid
-    /// where there is one.
+    /// Sets the solids that the ball touches: it then flies, or is in contact in the frame of one
+    /// solid where there is one.
     pub(crate) fn set_touching(&mut self, params: &ModelParams, touching: [bool; SolidId::COUNT]) {
         self.touching = touching;
         self.contact = ContactState::InWorld;
@@ -226,8 +229,8 @@ fn is_touched<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState)
     kinematics.compression > TOUCH_GAP_M && solid.acts(state)
 }
 
-/// One step of one shot. A function of its own: it is compiled once for each solid and number type, not for each
-/// observer.
+/// One step of one shot. A function of its own: it is compiled once for each solid and number type,
+/// not for each observer.
 #[inline(never)]
 fn single_step<T: ScalarReal, S: Solid<T>>(
     contact: &Contact<'_, T, S>,
@@ -250,7 +253,8 @@ fn world_step<A: Solid<f64>, B: Solid<f64>>(
     world_contact_step::step(params, solids, state, friction, contact)
 }
 
-/// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next segment.
+/// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next
+/// segment.
 pub(crate) fn run_segment(
     params: &ModelParams,
     limits: &ShotLimits,
@@ -312,7 +316,8 @@ impl<O: Observer> Run<'_, O> {
             return Some(self.shot.verdict(Ending::TimeLimit, false));
         }
         self.advance_flight(dt);
-        // The ring is searched only up to the time of the board, so at most one of the two is touched.
+        // The ring is searched only up to the time of the board, so at most one of the two is
+        // touched.
         for solid in [SolidId::Ring, SolidId::Board] {
             if flight.touch_of(solid) <= dt {
                 self.touch(solid);
@@ -473,7 +478,8 @@ impl<O: Observer> Run<'_, O> {
         }
     }
 
-    /// After a step in contact with one solid: updates the state in the world frame, and reports the step.
+    /// After a step in contact with one solid: updates the state in the world frame, and reports
+    /// the step.
     fn report_contact_step(&mut self, solid: SolidId, contact_time_s: f64) {
         let shot = &mut self.shot;
         let before = shot.state;
@@ -491,8 +497,8 @@ impl<O: Observer> Run<'_, O> {
             .step(start, dt, (&before, &self.shot.state), impulses);
     }
 
-    /// Contact in the world frame until the ball flies, goes on in the frame of a contact, is lodged, or the shot
-    /// ends.
+    /// Contact in the world frame until the ball flies, goes on in the frame of a contact, is
+    /// lodged, or the shot ends.
     fn contact_in_world<A: Solid<f64>, B: Solid<f64>>(
         &mut self,
         solids: (&A, &B),
@@ -554,7 +560,8 @@ impl<O: Observer> Run<'_, O> {
         }
     }
 
-    /// Impulse per unit of mass of the only contact of a step: the change of velocity without that by gravity and air.
+    /// Impulse per unit of mass of the only contact of a step: the change of velocity without that
+    /// by gravity and air.
     fn impulse_since(&self, before: &BallState, dt: f64) -> Vec3<f64> {
         let (v, u) = (self.shot.state.velocity_m_s, before.velocity_m_s);
         let free = |v| self.params.ball.free_acceleration(v, before.spin_rad_s);

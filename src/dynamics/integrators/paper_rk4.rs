@@ -1,11 +1,12 @@
-//! The paper's integrator with its errata corrected: variable-step RK4 of Eqs. 16 and 17, with friction by
-//! the sliding law alone.
+//! The paper's integrator with its errata corrected: variable-step RK4 of Eqs. 16 and 17, with
+//! friction by the sliding law alone.
 //!
-//! On the way into a contact the step is halved until it is `dt_min`. It stays there in contact, and
-//! doubles on the way out up to `dt_max`. (This is the paper's tuned bisection. Its Table 1 is lost; the
-//! text gives 0.015 and 0.0005 s.) Contact is detected only at the stages and ends of steps, so a graze
-//! between them is missed. The errata of `docs/model.md` are applied: the sign of u_B', the full moment of
-//! the ring's friction, friction only while N > 0, and no contact from behind the board.
+//! On the way into a contact the step is halved until it is `dt_min`. It stays there in contact,
+//! and doubles on the way out up to `dt_max`. (This is the paper's tuned bisection. Its Table 1 is
+//! lost; the text gives 0.015 and 0.0005 s.) Contact is detected only at the stages and ends of
+//! steps, so a graze between them is missed. The errata of `docs/model.md` are applied: the sign of
+//! u_B', the full moment of the ring's friction, friction only while N > 0, and no contact from
+//! behind the board.
 
 use crate::dynamics::end_rules::{ShotEndFlags, ShotLimits, fell_below_ring, flight_ending};
 use crate::dynamics::flight::FlightPath;

@@ -1,4 +1,5 @@
-//! The board: a rectangle in the plane `x = -a`, or a plate with rounded edges whose front face lies there.
+//! The board: a rectangle in the plane `x = -a`, or a plate with rounded edges whose front face
+//! lies there.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};

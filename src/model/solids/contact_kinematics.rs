@@ -88,7 +88,8 @@ impl<T: Real> ContactKinematics<T> {
         Vec2::new(v.x - self.lever * w.y, v.y + self.lever * w.x)
     }
 
-    /// Normal force per unit of mass, (k u + c u')/m (Eqs. 2 and 12); negative just before the ball separates.
+    /// Normal force per unit of mass, (k u + c u')/m (Eqs. 2 and 12); negative just before the ball
+    /// separates.
     #[inline(always)]
     pub(crate) fn normal_force(&self, material: &Material<T>) -> T {
         material.stiffness * self.compression - material.damping * self.velocity.normal
@@ -112,7 +113,8 @@ impl<T: Real> ContactKinematics<T> {
         )
     }
 
-    /// Rate of the slip from motion alone, without forces: `-(v_n (n' + w x n) + (R-u) w_n (n x n'))`.
+    /// Rate of the slip from motion alone, without forces: `-(v_n (n' + w x n) + (R-u) w_n (n x
+    /// n'))`.
     #[inline(always)]
     fn slip_rate_of_motion(&self) -> Vec2<T> {
         let v = self.velocity;

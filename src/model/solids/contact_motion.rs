@@ -14,8 +14,8 @@ pub(crate) struct ContactMotion<T = f64> {
     pub(crate) velocity: ContactVector<T>,
     /// Angular velocity, rad/s.
     pub(crate) spin: ContactVector<T>,
-    /// Where the contact is on the solid. On the ring: cos phi, sin phi and the angle by which theta has changed
-    /// since the start. On the board: y, z and zero.
+    /// Where the contact is on the solid. On the ring: cos phi, sin phi and the angle by which
+    /// theta has changed since the start. On the board: y, z and zero.
     pub(crate) coordinates: [T; 3],
     /// On the ring: cos theta and sin theta at the start.
     pub(crate) start: [T; 2],
@@ -94,8 +94,8 @@ impl<T: Real> ContactMotion<T> {
         v.normal.abs() + v.tangent.x.abs() + v.tangent.y.abs()
     }
 
-    /// Whether the centre is below the plane of the hoop: the second value of the coordinates has the sign of z on
-    /// either solid.
+    /// Whether the centre is below the plane of the hoop: the second value of the coordinates has
+    /// the sign of z on either solid.
     #[inline(always)]
     pub(crate) fn is_below_hoop(&self) -> T::Mask {
         self.coordinates[1].is_negative()

@@ -1,19 +1,21 @@
 //! The solids that the ball can touch: the board, and the hoop with its bracket.
 //!
-//! Each solid is a flat core swept by a sphere, and a type that implements [`Solid`]: nearest point, normal,
-//! curvature and material. The core of the ring is a circle, that of board and bracket a rectangle. The ball
-//! touches where the distance d of its centre from the core is less than the sum of both radii, the *reach*; the
-//! compression is u = reach - d. The ball gives and the solid does not, so the contact point is the *lever* R - u
-//! from the centre. For a core of radius 0, as all of the paper's, the lever is d.
+//! Each solid is a flat core swept by a sphere, and a type that implements [`Solid`]: nearest
+//! point, normal, curvature and material. The core of the ring is a circle, that of board and
+//! bracket a rectangle. The ball touches where the distance d of its centre from the core is less
+//! than the sum of both radii, the *reach*; the compression is u = reach - d. The ball gives and
+//! the solid does not, so the contact point is the *lever* R - u from the centre. For a core of
+//! radius 0, as all of the paper's, the lever is d.
 //!
-//! The equations of contact are written once, in the frame of the contact. The unit normal `n` points from the
-//! solid to the ball's centre; `(n, 1, 2)` is right-handed: `(i, j, k)` at the face of the board,
-//! `(u_n, u_phi, u_theta)` at the ring (Eq. 6). The solids differ in how the frame turns as the ball moves along
-//! the surface, `n' = (kappa_1 v_1, kappa_2 v_2)`: not at all at a face, with the curvatures `1/d` and
-//! `-cos(phi)/D_theta` at the ring (Eq. 7), with `1/d` across an edge and around a corner.
+//! The equations of contact are written once, in the frame of the contact. The unit normal `n`
+//! points from the solid to the ball's centre; `(n, 1, 2)` is right-handed: `(i, j, k)` at the face
+//! of the board, `(u_n, u_phi, u_theta)` at the ring (Eq. 6). The solids differ in how the frame
+//! turns as the ball moves along the surface, `n' = (kappa_1 v_1, kappa_2 v_2)`: not at all at a
+//! face, with the curvatures `1/d` and `-cos(phi)/D_theta` at the ring (Eq. 7), with `1/d` across
+//! an edge and around a corner.
 //!
-//! A ball on the ring's circle or on the board's face is followed in that frame ([`ContactMotion`]); on the bracket, on
-//! an edge, and on two solids at once, in the world frame.
+//! A ball on the ring's circle or on the board's face is followed in that frame
+//! ([`ContactMotion`]); on the bracket, on an edge, and on two solids at once, in the world frame.
 
 mod board;
 mod contact_kinematics;

@@ -1,8 +1,9 @@
 //! A flat rectangle swept by a sphere: the core of the board and of the bracket.
 //!
 //! The nearest point of the rectangle is the centre of the ball with each coordinate limited to the
-//! rectangle's range. Where a coordinate is within its range the solid is flat in that direction; where it is
-//! limited the normal turns about the nearest point, with the curvature 1/d (d the distance from it).
+//! rectangle's range. Where a coordinate is within its range the solid is flat in that direction;
+//! where it is limited the normal turns about the nearest point, with the curvature 1/d (d the
+//! distance from it).
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use crate::math::real::Real;
@@ -16,7 +17,8 @@ const LEAST_DISTANCE_M: f64 = 1e-9;
 /// The core of a plate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rectangle<T = f64> {
-    /// The corner with the least coordinates, and that with the greatest. One coordinate is the same in both.
+    /// The corner with the least coordinates, and that with the greatest. One coordinate is the
+    /// same in both.
     pub(crate) low: Vec3<T>,
     pub(crate) high: Vec3<T>,
     /// Distance of the centre of a touching ball from the core, m.

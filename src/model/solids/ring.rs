@@ -1,4 +1,5 @@
-//! The hoop: a rod around a circle of radius R_H about the origin, and the bracket between it and the board.
+//! The hoop: a rod around a circle of radius R_H about the origin, and the bracket between it and
+//! the board.
 
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
@@ -76,8 +77,8 @@ impl<T: Real> RingFrame<T> {
     }
 }
 
-/// Cosine and sine of an angle of at most [`LARGEST_TURN_RAD`] and one step: Taylor polynomials of degree 12 and
-/// 13, with an error below 1e-13.
+/// Cosine and sine of an angle of at most [`LARGEST_TURN_RAD`] and one step: Taylor polynomials of
+/// degree 12 and 13, with an error below 1e-13.
 #[inline(always)]
 fn cos_sin<T: Real>(angle: T) -> (T, T) {
     const TERMS: i32 = 6;
@@ -109,8 +110,8 @@ fn theta<T: Real>(motion: &ContactMotion<T>) -> [T; 2] {
 }
 
 impl<T: Real> Ring<T> {
-    /// The frame of a ball whose centre is at `position`, its distance from the circle, and the inverses of its
-    /// distances from the hoop's axis and from the circle.
+    /// The frame of a ball whose centre is at `position`, its distance from the circle, and the
+    /// inverses of its distances from the hoop's axis and from the circle.
     #[inline(always)]
     fn frame_at(&self, ball: &BallParams<T>, position: Vec3<T>) -> (RingFrame<T>, T, [T; 2]) {
         let [x, y, z] = position.into();

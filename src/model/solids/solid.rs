@@ -53,8 +53,8 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// Distance of the centre of a touching ball from the core, m.
     fn reach(&self, ball: &BallParams<T>) -> T;
 
-    /// Position and motion of the ball relative to the nearest point of the solid, in the frame of the
-    /// contact, and the directions (n, 1, 2) of that frame in the world frame.
+    /// Position and motion of the ball relative to the nearest point of the solid, in the frame of
+    /// the contact, and the directions (n, 1, 2) of that frame in the world frame.
     fn contact(
         &self,
         ball: &BallParams<T>,
@@ -103,11 +103,12 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// Keeps the values of a long contact within the range of their formulas.
     fn rebase(&self, motion: &mut ContactMotion<T>);
 
-    /// Whether the solid acts on a ball there: the paper's board does so only in front of its rectangle.
+    /// Whether the solid acts on a ball there: the paper's board does so only in front of its
+    /// rectangle.
     fn acts(&self, state: &BallState<T>) -> T::Mask;
 
-    /// Whether the nearest point lies on that part of the solid which the frame of [`ContactMotion`] describes: the
-    /// face of the board, or the ring's circle.
+    /// Whether the nearest point lies on that part of the solid which the frame of
+    /// [`ContactMotion`] describes: the face of the board, or the ring's circle.
     fn is_in_frame(&self, state: &BallState<T>) -> T::Mask;
 }
 

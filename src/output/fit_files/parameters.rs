@@ -32,8 +32,9 @@ pub fn value_units(units: UnitSystem) -> [(&'static str, f64); 4] {
     ]
 }
 
-/// All parameters of a posterior: means (of further places with the number of the place), standard deviations,
-/// correlations, the tail weight (one over the degrees of freedom) where it was fitted, and the coefficients of the speed's standard deviation where there are several.
+/// All parameters of a posterior: means (of further places with the number of the place), standard
+/// deviations, correlations, the tail weight (one over the degrees of freedom) where it was fitted,
+/// and the coefficients of the speed's standard deviation where there are several.
 #[must_use]
 pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
     let of_value = value_units(units);
@@ -70,7 +71,8 @@ pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
         }
     }
     for (i, name) in VALUE_NAMES.iter().enumerate() {
-        // The scatter of a spin that was not measured is the population's, also where its mean was given.
+        // The scatter of a spin that was not measured is the population's, also where its mean was
+        // given.
         let source = if i < measured { "measured" } else { "assumed" };
         add(format!("{name}_sd"), of_value[i], source, &|draw| {
             draw.sds[i]

@@ -24,7 +24,8 @@ pub fn shots_csv(fit: &ShooterFit, rejected: &[(u64, String)], units: UnitSystem
             );
         }
         let made = shot.made.map_or("", |made| if made { "1" } else { "0" });
-        // Beyond this distance are 1 in 1000 shots of a normal shooter (chi with 4 degrees of freedom).
+        // Beyond this distance are 1 in 1000 shots of a normal shooter (chi with 4 degrees of
+        // freedom).
         let flag = if shot.distance > 4.3 { "far" } else { "" };
         out += &format!(
             ",{:.3},{:.3},{made},{:.2},{flag}\n",

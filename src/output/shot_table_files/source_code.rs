@@ -1,7 +1,7 @@
 //! A table of best shots as source that looks a shot up: Java, C++ and Python.
 //!
-//! Each has one function of distance and court angle, linear between the nodes. It gives NaN outside the table and beside a
-//! place without a clean shot.
+//! Each has one function of distance and court angle, linear between the nodes. It gives NaN
+//! outside the table and beside a place without a clean shot.
 
 use super::table_text::check_text;
 use crate::best_shot::{ShotTable, TableShot};
@@ -34,11 +34,12 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 5] {
     ]
 }
 
-/// The source; `origin` says where the table comes from.
+/// The source in a language (Java: with the name of the class); `origin` says where the table comes
+/// from.
 #[must_use]
 pub fn source_code(
     table: &ShotTable,
-    language: Language,
+    (language, class): (Language, &str),
     units: UnitSystem,
     origin: &str,
 ) -> String {
@@ -109,6 +110,7 @@ pub fn source_code(
     };
     template
         .replace("@ABOUT@", &comment(prefix))
+        .replace("@CLASS@", class)
         .replace("@DISTANCES@", &list(&table.distances_m, metre))
         .replace("@ANGLES@", &list(&table.angles_rad, DEGREE_RAD))
         .replace("@ROWS@", &rows.concat())
@@ -116,13 +118,13 @@ pub fn source_code(
 }
 
 const JAVA: &str = "\
-@ABOUT@public final class ShotTable {
+@ABOUT@public final class @CLASS@ {
     private static final double[] DISTANCES = {@DISTANCES@};
     private static final double[] ANGLES = {@ANGLES@};
     private static final double[][] SHOTS = {
 @ROWS@    };
 
-    private ShotTable() {}
+    private @CLASS@() {}
 
     public static double[] lookUp(double distance, double angle) {
         double[] result = new double[@VALUES@];

@@ -79,30 +79,35 @@ fn nodes(
 #[must_use]
 pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
     let (long, _) = units.length();
+    let speed_unit = format!("{long}/s");
+    let tolerance_unit = format!("{long}/s, deg");
+    let header = [
+        [
+            "from", "angle", "speed", "pitch", "aim", "spin", "time", "entry", "P", "range",
+            "goes in",
+        ],
+        [
+            long,
+            "deg",
+            &speed_unit,
+            "deg",
+            "deg",
+            "rev/s",
+            "s",
+            "deg",
+            "",
+            &tolerance_unit,
+            "",
+        ],
+    ];
     let mut text = format!(
-        "{} shots; P is the chance of each, \"range\" the width in which an exact shot still goes in\n{:>8} {:>6} {:>7} {:>6} {:>6} {:>7} {:>6} {:>6} {:>7} {:>12}\n{:>8} {:>6} {:>7} {:>6} {:>6} {:>7} {:>6} {:>6} {:>7} {:>12}\n",
-        table.kind.name(),
-        "distance",
-        "angle",
-        "speed",
-        "pitch",
-        "aim",
-        "spin",
-        "time",
-        "entry",
-        "P",
-        "range",
-        long,
-        "deg",
-        format!("{long}/s"),
-        "deg",
-        "deg",
-        "rev/s",
-        "s",
-        "deg",
-        "",
-        format!("{long}/s, deg"),
+        "Best {} shots. P: the chance of each. range: how much the speed and the pitch\n\
+         of an otherwise exact shot may vary. time, entry: until it falls through.\n",
+        table.kind.name()
     );
+    for cells in header {
+        text += &line(&cells.map(str::to_owned));
+    }
     let columns = columns(units);
     let cell = |shot: &TableShot, i: usize| {
         let (_, decimals, value, size) = &columns[i];
@@ -119,8 +124,9 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
     };
     for (distance, angle, shot) in nodes(table, units) {
         text += &match shot {
-            Some(shot) => format!(
-                "{distance:>8.2} {angle:>6.1} {:>7} {:>6} {:>6} {:>7} {:>6} {:>6} {:>7} {:>12}\n",
+            Some(shot) => line(&[
+                format!("{distance:.2}"),
+                format!("{angle:.1}"),
                 cell(shot, 0),
                 cell(shot, 1),
                 cell(shot, 2),
@@ -129,11 +135,24 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
                 cell(shot, 5),
                 cell(shot, 6),
                 format!("{}, {}", cell(shot, 8), cell(shot, 9)),
-            ),
-            None => format!("{distance:>8.2} {angle:>6.1} no clean shot\n"),
+                shot.outcome.name().to_owned(),
+            ]),
+            None => format!("{distance:>5.2} {angle:>5.1} no clean shot\n"),
         };
     }
     text + &check_text(table)
+}
+
+/// A line of the table for people.
+fn line(cells: &[String; 11]) -> String {
+    const WIDTHS: [usize; 10] = [5, 5, 6, 5, 6, 5, 5, 5, 6, 11];
+    let mut line = String::new();
+    for (cell, width) in cells.iter().zip(WIDTHS) {
+        line += &format!("{cell:>width$} ");
+    }
+    line += &cells[WIDTHS.len()];
+    line.truncate(line.trim_end().len());
+    line + "\n"
 }
 
 /// What interpolation costs, in words.
@@ -141,11 +160,11 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
 pub fn check_text(table: &ShotTable) -> String {
     match table.greatest_loss() {
         Some(loss) => format!(
-            "between the nodes, linear interpolation costs at most {:.4} in P ({} places checked)\n",
+            "Between the places, interpolation costs at most {:.4} in P ({} checked).\n",
             loss.max(0.0),
             table.checks.len()
         ),
-        None => "no place between the nodes could be checked\n".to_owned(),
+        None => "No place between could be checked.\n".to_owned(),
     }
 }
 
@@ -155,7 +174,10 @@ pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
     let (long, _) = units.length();
     let columns = columns(units);
     let names: Vec<&str> = columns.iter().map(|(name, ..)| name.as_str()).collect();
-    let mut text = format!("kind,distance_{long},court_angle_deg,{}\n", names.join(","));
+    let mut text = format!(
+        "kind,distance_{long},court_angle_deg,outcome,{}\n",
+        names.join(",")
+    );
     for (distance, angle, shot) in nodes(table, units) {
         let cells: Vec<String> = columns
             .iter()
@@ -165,8 +187,9 @@ pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
             })
             .collect();
         text += &format!(
-            "{},{distance},{angle},{}\n",
+            "{},{distance},{angle},{},{}\n",
             table.kind.name(),
+            shot.map_or("", |shot| shot.outcome.name()),
             cells.join(",")
         );
     }
@@ -184,6 +207,7 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
             named(&format!("distance_{long}"), number(distance)),
             named("court_angle_deg", number(angle)),
             named("is_clean_shot", shot.is_some().into()),
+            named("outcome", shot.map(|shot| shot.outcome.name()).into()),
         ];
         record.extend(columns.iter().map(|(name, _, value, size)| {
             let value = shot

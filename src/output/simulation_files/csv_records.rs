@@ -1,7 +1,8 @@
 //! Splits a CSV text into records with their line numbers, in bounded memory.
 //!
-//! The `csv` crate decodes the records; this scanner only finds where they end. So it can say on which line a quote
-//! was opened that is never closed, and go on after that line instead of swallowing the rest of the file.
+//! The `csv` crate decodes the records; this scanner only finds where they end. So it can say on
+//! which line a quote was opened that is never closed, and go on after that line instead of
+//! swallowing the rest of the file.
 
 use csv::ByteRecord;
 use std::io::{self, Read};
@@ -96,7 +97,8 @@ impl<R: Read> CsvRecords<R> {
         Ok(())
     }
 
-    /// The end of the record at `self.start`, whose bytes are then all in the buffer; `None` at the end of the text.
+    /// The end of the record at `self.start`, whose bytes are then all in the buffer; `None` at the
+    /// end of the text.
     fn find_end(&mut self) -> io::Result<Option<End>> {
         let mut scan = Scan::default();
         loop {
@@ -199,7 +201,8 @@ impl<R: Read> CsvRecords<R> {
     /// # Errors
     /// The text cannot be read.
     pub fn next_rows(&mut self, most: usize, bytes: usize) -> io::Result<Vec<Row>> {
-        // The reader skips the empty line. At the start it would also skip the bytes of a byte order mark.
+        // The reader skips the empty line. At the start it would also skip the bytes of a byte
+        // order mark.
         let mut text = b"\n".to_vec();
         let mut rows = Vec::new();
         while rows.len() < most && text.len() <= bytes {
@@ -254,13 +257,14 @@ struct Scan {
     position: usize,
     /// Where the open quote is.
     quote: Option<usize>,
-    /// A quote that spans lines is followed by more text in its cell: it was not meant to be closed there.
+    /// A quote that spans lines is followed by more text in its cell: it was not meant to be closed
+    /// there.
     is_misplaced: bool,
 }
 
 impl Scan {
-    /// Scans on; returns the length of the record with the end of its line, once that is known. `at_end`: the record
-    /// has all bytes of the text.
+    /// Scans on; returns the length of the record with the end of its line, once that is known.
+    /// `at_end`: the record has all bytes of the text.
     fn advance(&mut self, record: &[u8], at_end: bool) -> Option<usize> {
         while !self.is_misplaced && self.position < record.len() {
             let rest = &record[self.position..];
@@ -274,7 +278,8 @@ impl Scan {
                     self.position = at + 2;
                     continue;
                 }
-                // What follows decides whether this quote closes the cell. Blanks may stand between.
+                // What follows decides whether this quote closes the cell. Blanks may stand
+                // between.
                 let is_blank = |byte: &&u8| matches!(byte, b' ' | b'\t');
                 let blanks = record[at + 1..].iter().take_while(is_blank).count();
                 let closes = match record.get(at + 1 + blanks) {

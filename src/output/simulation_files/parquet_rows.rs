@@ -154,8 +154,8 @@ thread_local! {
     static IN_LIBRARY: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs a part of the Parquet library, which panics at some damaged files; that is an error here. The message of such a
-/// panic is not printed.
+/// Runs a part of the Parquet library, which panics at some damaged files; that is an error here.
+/// The message of such a panic is not printed.
 fn without_panic<T>(read: impl FnOnce() -> Result<T>) -> Result<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -172,7 +172,8 @@ fn without_panic<T>(read: impl FnOnce() -> Result<T>) -> Result<T> {
     result.unwrap_or_else(|_| Err(ParquetError::General("the file is damaged".into())))
 }
 
-/// Refuses a file whose chunks are compressed in a way that is not supported, or do not lie within the file.
+/// Refuses a file whose chunks are compressed in a way that is not supported, or do not lie within
+/// the file.
 fn check_chunks(file: &SerializedFileReader<File>, bytes: u64) -> Result<()> {
     let lies_within = |offset: i64, length: i64| {
         let (offset, length) = (u64::try_from(offset).ok(), u64::try_from(length).ok());

@@ -89,8 +89,8 @@ impl ReleaseColumns {
     /// Finds the columns of the parameters in a header.
     ///
     /// # Errors
-    /// All columns that are missing, given twice, unknown quantities that are not in `carried`, or have the name of
-    /// an added column; and all of `carried` that do not exist.
+    /// All columns that are missing, given twice, unknown quantities that are not in `carried`, or
+    /// have the name of an added column; and all of `carried` that do not exist.
     pub fn new(header: &ByteRecord, carried: &[String]) -> Result<Self, HeaderError> {
         let mut errors = Vec::new();
         let mut columns = [None; 9];
@@ -204,7 +204,8 @@ impl ReleaseColumns {
     }
 }
 
-/// Adds an error for each unknown quantity that is not carried, and for each carried column that cannot be.
+/// Adds an error for each unknown quantity that is not carried, and for each carried column that
+/// cannot be.
 fn check_other_columns(header: &ByteRecord, carried: &[String], errors: &mut Vec<String>) {
     for cell in header {
         let name = String::from_utf8_lossy(cell.trim_ascii());
@@ -243,7 +244,8 @@ fn parameter_columns() -> impl Iterator<Item = &'static str> {
         .map(|(name, _)| name)
 }
 
-/// Whether a column that is not known is named like a quantity: it has a unit, or the word of a parameter.
+/// Whether a column that is not known is named like a quantity: it has a unit, or the word of a
+/// parameter.
 fn is_unknown_quantity(name: &str) -> bool {
     const UNITS: [&str; 22] = [
         "ft", "feet", "in", "inch", "inches", "m", "cm", "mm", "deg", "degrees", "rad", "mph",

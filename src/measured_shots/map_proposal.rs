@@ -1,0 +1,170 @@
+//! What to write as `--map` for a file whose columns have other names.
+
+use super::columns::{Columns, Quantity};
+
+/// Parts of the names that others give to a quantity or a label, in small letters without spaces.
+/// What is named first is found first.
+const OTHER_NAMES: [(&str, &[&str]); 16] = [
+    (
+        "release_height",
+        &["releaseheight", "releaseht", "heightofrelease"],
+    ),
+    ("entry_angle", &["entry", "incoming"]),
+    ("speed", &["speed", "velocity", "velo"]),
+    (
+        "pitch",
+        &["pitch", "releaseangle", "launch", "elevation", "arc"],
+    ),
+    ("polar", &["polar", "azimuth"]),
+    ("aim", &["aim", "direction", "lateral", "horizontalangle"]),
+    ("backspin", &["backspin", "spinrate", "spin"]),
+    ("depth", &["depth"]),
+    ("left_right", &["leftright", "leftorright"]),
+    ("court_angle", &["courtangle"]),
+    ("distance", &["distance", "dist"]),
+    ("made", &["made", "make", "result", "outcome", "goal"]),
+    ("shooter", &["shooter", "player", "athlete", "subject"]),
+    ("session", &["session", "date"]),
+    ("shot", &["shotid", "shotnumber", "shotno", "trial"]),
+    ("time", &["time"]),
+];
+
+/// Units as others write them, longest first, and their suffixes here.
+const OTHER_UNITS: [(&str, &str); 22] = [
+    ("degrees", "deg"),
+    ("inches", "in"),
+    ("metres", "m"),
+    ("meters", "m"),
+    ("km/h", "km_h"),
+    ("feet", "ft"),
+    ("ft/s", "ft_s"),
+    ("ft_s", "ft_s"),
+    ("kmh", "km_h"),
+    ("kph", "km_h"),
+    ("mph", "mph"),
+    ("fps", "ft_s"),
+    ("m/s", "m_s"),
+    ("m_s", "m_s"),
+    ("mps", "m_s"),
+    ("rpm", "rpm"),
+    ("deg", "deg"),
+    ("rad", "rad"),
+    ("cm", "cm"),
+    ("in", "in"),
+    ("ft", "ft"),
+    ("°", "deg"),
+];
+
+/// The columns of a file, and maps for those whose names say what they may hold. `UNIT` stands where
+/// the name does not say the unit.
+#[must_use]
+pub(super) fn map_proposal(columns: &Columns) -> String {
+    let unused = columns.unused();
+    let mut taken: Vec<&str> = Vec::new();
+    let mut maps = Vec::new();
+    let mut has_no_unit = Vec::new();
+    for name in &unused {
+        let Some(target) = target_of(name, &taken) else {
+            continue;
+        };
+        let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
+        if quantity.is_some_and(|quantity| columns.quantity(quantity).is_some()) {
+            continue;
+        }
+        taken.push(target);
+        maps.push(match quantity {
+            None => format!("--map '{target}={name}'"),
+            Some(quantity) => {
+                let unit = unit_of(name, quantity);
+                if unit.is_none() {
+                    has_no_unit.push(quantity);
+                }
+                format!("--map '{target}={name}:{}'", unit.unwrap_or("UNIT"))
+            }
+        });
+    }
+    let mut text = format!("\nits columns are {}", columns.names().join(", "));
+    if maps.is_empty() {
+        text += "; name them with --map 'speed=ReleaseSpeed:mph'";
+        return text;
+    }
+    text += &format!("\nperhaps: {}", maps.join(" "));
+    for quantity in has_no_unit {
+        text += &format!(
+            "\n  UNIT of {}: {}",
+            quantity.name(),
+            quantity.unit_names().join(", ")
+        );
+    }
+    text
+}
+
+/// What a column may hold, if nothing else is taken as that.
+fn target_of(name: &str, taken: &[&str]) -> Option<&'static str> {
+    let letters: String = name
+        .to_lowercase()
+        .chars()
+        .filter(|c| c.is_alphanumeric())
+        .collect();
+    let found = OTHER_NAMES
+        .iter()
+        .find(|(_, parts)| parts.iter().any(|part| letters.contains(part)))?;
+    (!taken.contains(&found.0)).then_some(found.0)
+}
+
+/// The unit that the name of a column ends with or has in brackets.
+fn unit_of(name: &str, quantity: Quantity) -> Option<&'static str> {
+    let name = name.to_lowercase();
+    let name = name.trim_end_matches([')', ']', ' ', '.']);
+    let known = quantity.unit_names();
+    OTHER_UNITS
+        .into_iter()
+        .filter(|(_, unit)| known.contains(unit))
+        .find(|(other, _)| {
+            name.strip_suffix(other)
+                .is_some_and(|rest| !rest.ends_with(|c: char| c.is_alphabetic()))
+        })
+        .map(|(_, unit)| unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_maps_are_proposed_for_other_names() {
+        let header = [
+            "Player",
+            "Release Speed (mph)",
+            "LaunchAngle",
+            "Aim [deg]",
+            "Result",
+            "note",
+        ];
+        let header: Vec<String> = header.map(str::to_owned).to_vec();
+        let columns = Columns::new(&header, &[]).unwrap();
+        let text = map_proposal(&columns);
+        for map in [
+            "--map 'shooter=Player'",
+            "--map 'speed=Release Speed (mph):mph'",
+            "--map 'pitch=LaunchAngle:UNIT'",
+            "--map 'aim=Aim [deg]:deg'",
+            "--map 'made=Result'",
+            "UNIT of pitch: deg, rad",
+        ] {
+            assert!(text.contains(map), "{text}");
+        }
+        assert!(!text.contains("note:"), "{text}");
+        // What is proposed is understood.
+        let maps = ["speed=Release Speed (mph):mph".to_owned()];
+        assert!(Columns::new(&header, &maps).is_ok());
+    }
+
+    #[test]
+    fn contract_units_are_read_off_names() {
+        assert_eq!(unit_of("speed_fps", Quantity::Speed), Some("ft_s"));
+        assert_eq!(unit_of("Depth (in)", Quantity::Depth), Some("in"));
+        assert_eq!(unit_of("margin", Quantity::Depth), None);
+        assert_eq!(unit_of("Spin", Quantity::Backspin), None);
+    }
+}

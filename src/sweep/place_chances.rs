@@ -1,0 +1,157 @@
+//! What a finished sweep says of one player at each place: P of both kinds of shot, and which of
+//! them to shoot.
+
+use super::bank_direct_difference::{difference, is_significant};
+use super::columns;
+use super::court_region::CourtPlace;
+use super::job_list::Jobs;
+use super::result_row::ResultRow;
+use super::sweep_toml::SweepConfig;
+use crate::analysis::sensitivity::Difference;
+use crate::shooter::ShotKind;
+use crate::units::UnitSystem;
+use std::collections::BTreeMap;
+
+/// Which kind of shot is better, by the rule of
+/// [`SIGNIFICANT_SIGMAS`](super::bank_direct_difference::SIGNIFICANT_SIGMAS).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preference {
+    /// The direct shot, or there is no bank shot.
+    Direct,
+    /// The bank shot, or there is no direct shot.
+    Bank,
+    /// The difference is within the error of both.
+    Either,
+}
+
+impl Preference {
+    /// Of P of both kinds; `None` without any shot.
+    #[must_use]
+    pub fn of(direct: Option<Difference>, bank: Option<Difference>) -> Option<Self> {
+        Some(match (direct, bank) {
+            (None, None) => return None,
+            (Some(_), None) => Self::Direct,
+            (None, Some(_)) => Self::Bank,
+            (Some(direct), Some(bank)) => {
+                let gain = difference(bank, direct);
+                match (is_significant(gain), gain.value > 0.0) {
+                    (false, _) => Self::Either,
+                    (true, true) => Self::Bank,
+                    (true, false) => Self::Direct,
+                }
+            }
+        })
+    }
+
+    /// The name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Bank => "bank",
+            Self::Either => "either",
+        }
+    }
+}
+
+/// A player's chances at one place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaceChances {
+    /// The place.
+    pub place: CourtPlace,
+    /// Its name, if the sweep gives one.
+    pub name: Option<String>,
+    /// P of the best direct shot.
+    pub direct: Option<Difference>,
+    /// P of the best bank shot.
+    pub bank: Option<Difference>,
+    /// Where on the board the best bank shot hits it: to the right of its middle line and above the
+    /// hoop, m.
+    pub board_aim_m: Option<(f64, f64)>,
+}
+
+impl PlaceChances {
+    /// Of every place of a sweep, in order.
+    #[must_use]
+    pub fn of_sweep(config: &SweepConfig, rows: &BTreeMap<u64, ResultRow>) -> Vec<Self> {
+        let jobs = Jobs::new(config);
+        let row_of = |source: usize, wanted: ShotKind| {
+            let kind = jobs.kinds.iter().position(|&kind| kind == wanted)?;
+            let source = &jobs.sources[source];
+            let row = rows.get(&jobs.number(source.computed, kind))?;
+            Some(if source.mirrored {
+                row.mirrored()
+            } else {
+                row.clone()
+            })
+        };
+        (0..jobs.sources.len())
+            .map(|place| {
+                let bank = row_of(place, ShotKind::Bank);
+                Self {
+                    place: jobs.sources[place].place,
+                    name: config
+                        .place_names
+                        .get(place)
+                        .filter(|name| !name.is_empty())
+                        .cloned(),
+                    direct: row_of(place, ShotKind::Direct).and_then(|row| row.probability()),
+                    bank: bank.as_ref().and_then(ResultRow::probability),
+                    board_aim_m: bank.and_then(|row| {
+                        Some((
+                            row.real(columns::BOARD_AIM_ACROSS)?,
+                            row.real(columns::BOARD_AIM_ABOVE_HOOP)?,
+                        ))
+                    }),
+                }
+            })
+            .collect()
+    }
+
+    /// The greater P of both kinds.
+    #[must_use]
+    pub fn best(&self) -> Option<Difference> {
+        let both = [self.direct, self.bank].into_iter().flatten();
+        both.reduce(|a, b| if b.value > a.value { b } else { a })
+    }
+
+    /// Which kind to shoot; `None` without any shot.
+    #[must_use]
+    pub fn preference(&self) -> Option<Preference> {
+        Preference::of(self.direct, self.bank)
+    }
+
+    /// P of the bank shot minus that of the direct one; `None` where one of them is missing.
+    #[must_use]
+    pub fn bank_gain(&self) -> Option<Difference> {
+        Some(difference(self.bank?, self.direct?))
+    }
+
+    /// The place: its name, or where it is.
+    #[must_use]
+    pub fn in_words(&self, units: UnitSystem) -> String {
+        self.name
+            .clone()
+            .unwrap_or_else(|| self.place.location().in_words(units))
+    }
+
+    /// Where on the board the bank shot is aimed, such as `14 in above the ring, 8 in left of the
+    /// board's middle`.
+    #[must_use]
+    pub fn board_aim_in_words(&self, units: UnitSystem) -> Option<String> {
+        let (across_m, above_m) = self.board_aim_m?;
+        let (short, metre) = units.short_length();
+        let height = format!(
+            "{:.0} {short} {} the ring",
+            (above_m / metre).abs(),
+            if above_m < 0.0 { "below" } else { "above" }
+        );
+        let across = (across_m / metre).abs();
+        Some(if across < 0.5 {
+            format!("{height}, on the board's middle line")
+        } else {
+            let side = if across_m > 0.0 { "right" } else { "left" };
+            format!("{height}, {across:.0} {short} {side} of the board's middle")
+        })
+    }
+}
