@@ -77,3 +77,6 @@ pub mod plots;
 
 #[cfg(feature = "app")]
 pub mod report;
+
+#[cfg(feature = "app")]
+pub mod cli;

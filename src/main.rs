@@ -1,7 +1,5 @@
 //! The program `bankshot`: see `bankshot --help`.
 
-mod cli;
-
 fn main() -> std::process::ExitCode {
-    cli::main()
+    bankshot::cli::main()
 }

@@ -20,7 +20,7 @@ use super::commands::table::TableOptions;
 use super::commands::team::TeamOptions;
 use super::commands::trace::TraceOptions;
 use super::value_parsers::instruction_set;
-use bankshot::dynamics::InstructionSet;
+use crate::dynamics::InstructionSet;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 

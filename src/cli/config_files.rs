@@ -3,13 +3,13 @@
 use super::failure::Failure;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
-use bankshot::config::{
+use crate::config::{
     MAX_FILE_BYTES, MAX_TOML_BYTES, has_physics_table, parse_physics, parse_profile,
 };
-use bankshot::dynamics::Integrator;
-use bankshot::model::{PRESETS, Physics, Preset};
-use bankshot::shooter::{Profile, implausible_values, nominal_values_not_fixed};
-use bankshot::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
+use crate::dynamics::Integrator;
+use crate::model::{PRESETS, Physics, Preset};
+use crate::shooter::{Profile, implausible_values, nominal_values_not_fixed};
+use crate::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
 

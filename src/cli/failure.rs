@@ -1,12 +1,12 @@
 //! Why a command failed, with its exit code.
 
-use bankshot::best_shot::BestShotError;
-use bankshot::config::ConfigError;
-use bankshot::dynamics::StateError;
-use bankshot::search_space::PlanError;
-use bankshot::shooter::{IdentityError, ProfileError};
-use bankshot::sweep::SweepFolderError;
-use bankshot::sweep::sqlite_results::StoreError;
+use crate::best_shot::BestShotError;
+use crate::config::ConfigError;
+use crate::dynamics::StateError;
+use crate::search_space::PlanError;
+use crate::shooter::{IdentityError, ProfileError};
+use crate::sweep::SweepFolderError;
+use crate::sweep::sqlite_results::StoreError;
 use std::fmt::Display;
 use std::io::ErrorKind;
 

@@ -3,13 +3,13 @@
 use super::config_files::{load_profile, read_text};
 use super::failure::{Failure, code};
 use super::value_parsers::PhysicsArg;
-use bankshot::fitting::{
+use crate::fitting::{
     Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile, values_of,
 };
-use bankshot::output::fit_files::draws_table::read_draws;
-use bankshot::output::fit_files::fit_text::probability_text;
-use bankshot::shooter::{Location, Nominal, Profile};
-use bankshot::units::{DEGREE_RAD, FOOT_M};
+use crate::output::fit_files::draws_table::read_draws;
+use crate::output::fit_files::fit_text::probability_text;
+use crate::shooter::{Location, Nominal, Profile};
+use crate::units::{DEGREE_RAD, FOOT_M};
 use std::fs::File;
 use std::path::Path;
 

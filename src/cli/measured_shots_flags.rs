@@ -3,18 +3,18 @@
 use super::config_files::{load_physics, read_text};
 use super::failure::Failure;
 use super::value_parsers::{PhysicsArg, UnitsArg};
-use bankshot::dynamics::Simulator;
-use bankshot::fitting::{
+use crate::dynamics::Simulator;
+use crate::fitting::{
     FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tails, Tracker,
     TrackerNoise, fit_shooter, tails_of,
 };
-use bankshot::measured_shots::columns::Columns;
-use bankshot::measured_shots::court_frame::CourtFrame;
-use bankshot::measured_shots::read::{ReadOptions, ShooterShots, Source, read};
-use bankshot::measured_shots::table::Table;
-use bankshot::model::{Air, Physics};
-use bankshot::output::fit_files::fit_json::FitSource;
-use bankshot::units::{self, Dimension, UnitSystem};
+use crate::measured_shots::columns::Columns;
+use crate::measured_shots::court_frame::CourtFrame;
+use crate::measured_shots::read::{ReadOptions, ShooterShots, Source, read};
+use crate::measured_shots::table::Table;
+use crate::model::{Air, Physics};
+use crate::output::fit_files::fit_json::FitSource;
+use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -271,7 +271,7 @@ fn tracker_of_file(text: &str, source: Source) -> Result<TrackerNoise, String> {
 
 /// The `[physics]` table of a preset or a file.
 fn physics_table(name: &str) -> Result<String, Failure> {
-    if bankshot::model::Preset::named(name).is_some() {
+    if crate::model::Preset::named(name).is_some() {
         return Ok(format!("[physics]\npreset = \"{name}\""));
     }
     let text = read_text(Path::new(name))?;

@@ -1,8 +1,11 @@
 //! The command line: parses options, calls the library, prints answers. Only this module prints.
+//!
+//! [`main`] is the program; [`answer_of`] runs one command inside another program.
 
 mod command_line;
 mod commands;
 mod config_files;
+mod embedded_session;
 mod failure;
 mod fit_folder;
 mod measured_shots_flags;
@@ -14,6 +17,7 @@ mod signals;
 mod terminal;
 mod value_parsers;
 
+use crate::probability::Progress;
 use clap::{CommandFactory, Parser};
 use command_line::{Arguments, Command};
 use commands::{
@@ -21,33 +25,73 @@ use commands::{
     probability, report, simulate, sweep, sweep_status, table, team, trace,
 };
 use failure::{Failure, code};
+use std::ffi::OsString;
 use std::process::ExitCode;
+use std::sync::Arc;
+
+pub use embedded_session::{CommandAnswer, stop};
 
 /// Runs the program. `--help` lists the exit codes.
-pub(crate) fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+#[must_use]
+pub fn main() -> ExitCode {
+    ExitCode::from(main_with(std::env::args_os()))
+}
+
+/// The same with other arguments than those of the process, the first of which is the name of the
+/// program. Returns the exit code.
+#[must_use]
+pub fn main_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             let printed = error.print();
-            return ExitCode::from(match (error.use_stderr(), printed) {
+            return match (error.use_stderr(), printed) {
                 (true, _) => code::USAGE,
                 (false, Ok(())) => code::DONE,
                 (false, Err(_)) => code::IO,
-            });
+            };
         }
     };
     signals::handle();
-    match std::panic::catch_unwind(|| run(&arguments)) {
-        Ok(Ok(code)) => ExitCode::from(code),
+    run_caught(&arguments)
+}
+
+/// Runs a command inside another program: its answer is returned instead of printed. The first
+/// argument is the name of the program. One command runs at a time; `progress` may end it with
+/// [`stop`].
+#[must_use]
+pub fn answer_of(arguments: &[String], progress: Arc<dyn Progress + Send>) -> CommandAnswer {
+    embedded_session::run(progress, || match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => run_caught(&arguments),
+        Err(error) => {
+            let text = error.render().to_string();
+            if error.use_stderr() {
+                terminal::print_remark(text.trim_end());
+                code::USAGE
+            } else {
+                terminal::print_answer(&text).unwrap_or(code::IO)
+            }
+        }
+    })
+}
+
+/// Runs a command. Its exit code; what failed is printed.
+fn run_caught(arguments: &Arguments) -> u8 {
+    match std::panic::catch_unwind(|| run(arguments)) {
+        Ok(Ok(code)) => code,
         Ok(Err(failure)) => {
             terminal::print_error(&failure.message);
-            ExitCode::from(failure.code)
+            failure.code
+        }
+        Err(payload) if embedded_session::is_stop(payload.as_ref()) => {
+            terminal::print_remark("stopped");
+            code::INTERRUPTED
         }
         Err(_) => {
             terminal::print_error(
                 "this is a bug in bankshot; please report it with the command and its input",
             );
-            ExitCode::from(code::BUG)
+            code::BUG
         }
     }
 }
@@ -134,4 +178,43 @@ fn thread_pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
             code: code::IO,
             message: format!("threads cannot be started: {error}"),
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probability::Silent;
+
+    struct StopAtOnce;
+
+    impl Progress for StopAtOnce {
+        fn begin(&self, _stage: &str, _total: u64) {}
+        fn advance(&self, _units: u64) {
+            stop();
+        }
+        fn end(&self) {}
+    }
+
+    fn arguments(words: &[&str]) -> Vec<String> {
+        words.iter().map(|word| (*word).to_owned()).collect()
+    }
+
+    #[test]
+    fn contract_an_embedded_command_answers_fails_and_can_be_stopped() {
+        let silent = || Arc::new(Silent);
+        let profile = concat!(env!("CARGO_MANIFEST_DIR"), "/configs/free_throw.toml");
+        let answer = answer_of(&arguments(&["bankshot", "check", profile]), silent());
+        assert_eq!(answer.exit_code, 0);
+        assert!(String::from_utf8(answer.answer).unwrap().contains("valid"));
+        let faulty = answer_of(&arguments(&["bankshot", "check", "no.toml"]), silent());
+        assert_eq!(faulty.exit_code, 2);
+        assert!(faulty.remarks.contains("no.toml"), "{faulty:?}");
+        let unknown = answer_of(&arguments(&["bankshot", "chek"]), silent());
+        assert_eq!(unknown.exit_code, 2);
+        let command = ["bankshot", "probability", profile, "--speed", "24 ft/s"];
+        let command = [&command[..], &["--pitch", "53 deg", "--target", "1e-5"]].concat();
+        let stopped = answer_of(&arguments(&command), Arc::new(StopAtOnce));
+        assert_eq!(stopped.exit_code, code::INTERRUPTED);
+        assert_eq!(stopped.remarks, "stopped\n");
+    }
 }

@@ -1,8 +1,8 @@
 //! The nominal shot of a command: from the flags, then from the profile's `[nominal]` table.
 
 use super::failure::Failure;
-use bankshot::shooter::{Nominal, NominalVariable, Profile};
-use bankshot::units::{self, DEGREE_RAD};
+use crate::shooter::{Nominal, NominalVariable, Profile};
+use crate::units::{self, DEGREE_RAD};
 use clap::Args;
 
 /// Greatest speed of a release, m/s.

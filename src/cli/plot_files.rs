@@ -2,9 +2,9 @@
 
 use super::failure::{Failure, code};
 use super::terminal::{print_answer, print_remark};
-use bankshot::output::atomic_file;
-use bankshot::plots::rasterise::to_png;
-use bankshot::plots::svg::Plot;
+use crate::output::atomic_file;
+use crate::plots::rasterise::to_png;
+use crate::plots::svg::Plot;
 use std::path::Path;
 
 /// Pixels of a PNG for each unit of its drawing.

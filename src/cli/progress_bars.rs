@@ -1,8 +1,9 @@
 //! Progress bars on standard error, if it is a terminal.
 
-use bankshot::probability::Progress;
+use super::embedded_session;
+use crate::probability::Progress;
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// The rate in whole units, such as `1,234/s`; below 10 with one decimal.
 fn write_rate(state: &ProgressState, text: &mut dyn std::fmt::Write) {
@@ -19,6 +20,8 @@ fn write_rate(state: &ProgressState, text: &mut dyn std::fmt::Write) {
 pub(crate) struct ProgressBars {
     quiet: bool,
     bar: Mutex<Option<ProgressBar>>,
+    /// Of a command that runs inside another program.
+    embedded: Option<Arc<dyn Progress + Send>>,
 }
 
 impl ProgressBars {
@@ -26,6 +29,7 @@ impl ProgressBars {
         Self {
             quiet,
             bar: Mutex::new(None),
+            embedded: embedded_session::progress(),
         }
     }
 
@@ -38,6 +42,9 @@ impl ProgressBars {
 
 impl Progress for ProgressBars {
     fn begin(&self, stage: &str, total: u64) {
+        if let Some(progress) = &self.embedded {
+            return progress.begin(stage, total);
+        }
         let target = if self.quiet {
             ProgressDrawTarget::hidden()
         } else {
@@ -57,6 +64,9 @@ impl Progress for ProgressBars {
     }
 
     fn advance(&self, units: u64) {
+        if let Some(progress) = &self.embedded {
+            return progress.advance(units);
+        }
         self.with(|bar| {
             if let Some(bar) = bar {
                 bar.inc(units);
@@ -65,6 +75,9 @@ impl Progress for ProgressBars {
     }
 
     fn end(&self) {
+        if let Some(progress) = &self.embedded {
+            return progress.end();
+        }
         self.with(|bar| {
             if let Some(bar) = bar.take() {
                 bar.finish_and_clear();

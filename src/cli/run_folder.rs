@@ -1,12 +1,12 @@
 //! The folder of a run of `best`: its name and its files.
 
 use super::failure::{Failure, code};
-use bankshot::best_shot::BestShots;
-use bankshot::output::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
-use bankshot::output::best_shot_json::best_shots_json;
-use bankshot::output::{atomic_file, json_object};
-use bankshot::shooter::Profile;
-use bankshot::sweep::SweepConfig;
+use crate::best_shot::BestShots;
+use crate::output::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
+use crate::output::best_shot_json::best_shots_json;
+use crate::output::{atomic_file, json_object};
+use crate::shooter::Profile;
+use crate::sweep::SweepConfig;
 use std::path::{Path, PathBuf};
 
 /// The file beside the plots of a sweep that names the sweep's folder, and that of the sweep it is

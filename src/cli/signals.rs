@@ -2,7 +2,7 @@
 
 use super::failure::code;
 use super::terminal::print_remark;
-use bankshot::output::atomic_file;
+use crate::output::atomic_file;
 use std::sync::Mutex;
 
 /// The remark to print on a signal.

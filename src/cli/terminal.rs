@@ -1,7 +1,8 @@
 //! Standard output and standard error, without panics if they are closed.
 
+use super::embedded_session;
 use super::failure::{Failure, code};
-use bankshot::shooter::is_control_or_direction;
+use crate::shooter::is_control_or_direction;
 use std::io::{self, Write};
 
 /// Prints an answer. A closed reader (`| head -1`) is not a failure.
@@ -11,6 +12,9 @@ pub(crate) fn print_answer(text: &str) -> Result<u8, Failure> {
 
 /// As [`print_answer`], for bytes.
 pub(crate) fn print_bytes(bytes: &[u8]) -> Result<u8, Failure> {
+    if embedded_session::take_answer(bytes) {
+        return Ok(code::DONE);
+    }
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Ok(()) => Ok(code::DONE),
@@ -21,7 +25,10 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<u8, Failure> {
 
 /// Prints a remark on standard error. A failure to print it is ignored.
 pub(crate) fn print_remark(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
+    let text = harmless(text);
+    if !embedded_session::take_remark(&text) {
+        let _ = writeln!(io::stderr().lock(), "{text}");
+    }
 }
 
 /// The text without characters that steer a terminal or turn the direction of text: a message can

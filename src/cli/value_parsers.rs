@@ -1,9 +1,9 @@
 //! Parsers of option values.
 
-use bankshot::dynamics::InstructionSet;
-use bankshot::sweep::job_list::Shard;
-use bankshot::sweep::run::FaultInjection;
-use bankshot::units::UnitSystem;
+use crate::dynamics::InstructionSet;
+use crate::sweep::job_list::Shard;
+use crate::sweep::run::FaultInjection;
+use crate::units::UnitSystem;
 use clap::{Args, ValueEnum};
 
 /// Another physics than that of the file.

@@ -6,10 +6,10 @@ use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;
-use bankshot::fitting::{Posterior, advise};
-use bankshot::output::fit_files::advice_text::{advice_json, advice_text};
-use bankshot::shooter::Profile;
-use bankshot::units::DEGREE_RAD;
+use crate::fitting::{Posterior, advise};
+use crate::output::fit_files::advice_text::{advice_json, advice_text};
+use crate::shooter::Profile;
+use crate::units::DEGREE_RAD;
 use clap::Args;
 use std::path::PathBuf;
 

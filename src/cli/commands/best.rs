@@ -1,5 +1,6 @@
 //! `bankshot best`: load, plan, search, write.
 
+use crate::best_shot;
 use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
@@ -7,12 +8,11 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use bankshot::best_shot;
-use bankshot::output::best_shot_json::best_shots_json;
-use bankshot::output::best_shot_text::{
+use crate::output::best_shot_json::best_shots_json;
+use crate::output::best_shot_text::{
     PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, what_matters,
 };
-use bankshot::search_space::TablePlan;
+use crate::search_space::TablePlan;
 use clap::Args;
 use std::path::PathBuf;
 

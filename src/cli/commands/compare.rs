@@ -2,6 +2,7 @@
 //! shooters.
 
 use super::sweep_summary;
+use crate::best_shot::{self, BestShots};
 use crate::cli::config_files::{load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
@@ -9,20 +10,19 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
-use bankshot::best_shot::{self, BestShots};
-use bankshot::output::atomic_file;
-use bankshot::plots::shot_with_probability::PlottedShot;
-use bankshot::plots::svg::Plot;
-use bankshot::plots::sweep_results::SweepResults;
-use bankshot::plots::{
+use crate::output::atomic_file;
+use crate::plots::shot_with_probability::PlottedShot;
+use crate::plots::svg::Plot;
+use crate::plots::sweep_results::SweepResults;
+use crate::plots::{
     bank_direct_release_map, sweep_bank_direct_map, sweep_best_shot_maps, sweep_difference_map,
 };
-use bankshot::shooter::Profile;
-use bankshot::sweep::SweepConfig;
-use bankshot::sweep::job_list::Jobs;
-use bankshot::sweep::result_row::ResultRow;
-use bankshot::sweep::sweep_folder::SweepFolder;
-use bankshot::sweep::sweep_toml::is_sweep;
+use crate::shooter::Profile;
+use crate::sweep::SweepConfig;
+use crate::sweep::job_list::Jobs;
+use crate::sweep::result_row::ResultRow;
+use crate::sweep::sweep_folder::SweepFolder;
+use crate::sweep::sweep_toml::is_sweep;
 use clap::Args;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

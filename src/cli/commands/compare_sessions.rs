@@ -4,11 +4,11 @@ use super::fit::{failure, report_rejected};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::terminal::print_answer;
-use bankshot::fitting::{
+use crate::fitting::{
     SessionComparison, ShooterFit, VALUE_NAMES, compare_probabilities, compare_sessions,
 };
-use bankshot::measured_shots::read::ShooterShots;
-use bankshot::output::fit_files::parameters::value_units;
+use crate::measured_shots::read::ShooterShots;
+use crate::output::fit_files::parameters::value_units;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -6,7 +6,7 @@ use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;
 use crate::cli::value_parsers::PhysicsArg;
-use bankshot::fitting::{
+use crate::fitting::{
     Covariance, FitError, Landing, Place, Tracker, design, landing_of, release_of_landing,
     values_of,
 };
@@ -98,8 +98,8 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
 /// The tracker's errors as errors of the usual release.
 fn noise(
     tracker: &Tracker,
-    profile: &bankshot::shooter::Profile,
-    nominal: &bankshot::shooter::Nominal,
+    profile: &crate::shooter::Profile,
+    nominal: &crate::shooter::Nominal,
 ) -> Result<Covariance, Failure> {
     if tracker.name != "noah" {
         return Ok(tracker.noise.release_covariance());

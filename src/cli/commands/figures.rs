@@ -2,7 +2,7 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::plot_files;
-use bankshot::plots::paper_figures;
+use crate::plots::paper_figures;
 use std::path::Path;
 
 pub(crate) fn run(out: &Path, quiet: bool) -> Result<u8, Failure> {

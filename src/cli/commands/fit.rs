@@ -6,21 +6,21 @@ use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_remark};
-use bankshot::fitting::{
+use crate::fitting::{
     ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
     likelihood_curve,
 };
-use bankshot::measured_shots::read::ShooterShots;
-use bankshot::output::atomic_file;
-use bankshot::output::fit_files::draws_table::draws_parquet;
-use bankshot::output::fit_files::fit_json::fit_json;
-use bankshot::output::fit_files::fit_text::fit_text;
-use bankshot::output::fit_files::fitted_profile_toml::fitted_profile_toml;
-use bankshot::output::fit_files::shots_table::shots_csv;
-use bankshot::plots::measured_shots;
-use bankshot::probability::Progress;
-use bankshot::report::fit_page::fit_page;
-use bankshot::units::REV_RAD;
+use crate::measured_shots::read::ShooterShots;
+use crate::output::atomic_file;
+use crate::output::fit_files::draws_table::draws_parquet;
+use crate::output::fit_files::fit_json::fit_json;
+use crate::output::fit_files::fit_text::fit_text;
+use crate::output::fit_files::fitted_profile_toml::fitted_profile_toml;
+use crate::output::fit_files::shots_table::shots_csv;
+use crate::plots::measured_shots;
+use crate::probability::Progress;
+use crate::report::fit_page::fit_page;
+use crate::units::REV_RAD;
 use clap::Args;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -191,9 +191,7 @@ fn cell(text: &str) -> String {
 pub(crate) fn failure(place: &str, error: &ShooterFitError) -> Failure {
     Failure {
         code: match error {
-            ShooterFitError::Fit(bankshot::fitting::FitError::NotConverged { .. }) => {
-                code::IMPRECISE
-            }
+            ShooterFitError::Fit(crate::fitting::FitError::NotConverged { .. }) => code::IMPRECISE,
             _ => code::USAGE,
         },
         message: format!("{place}: {error}"),

@@ -2,9 +2,9 @@
 
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_remark};
-use bankshot::config::parse_profile;
-use bankshot::shooter::{Profile, is_control_or_direction};
-use bankshot::units::{self, Dimension};
+use crate::config::parse_profile;
+use crate::shooter::{Profile, is_control_or_direction};
+use crate::units::{self, Dimension};
 use clap::{Args, ValueEnum};
 use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};

@@ -1,15 +1,15 @@
 //! `bankshot physics`: how much of the answer rests on the physics.
 
+use crate::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use bankshot::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
-use bankshot::plots::physics_probabilities;
-use bankshot::shooter::Profile;
-use bankshot::units::{DEGREE_RAD, UnitSystem};
+use crate::plots::physics_probabilities;
+use crate::shooter::Profile;
+use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use comfy_table::{CellAlignment, Table, presets};
 use serde_json::{Value, json};

@@ -1,6 +1,7 @@
 //! `bankshot probability`: P of one nominal shot under up to nine errors.
 
 use super::trace;
+use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
@@ -8,14 +9,11 @@ use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg, sample, standard_error};
-use bankshot::analysis::miss_breakdown::classify_misses;
-use bankshot::dynamics::Release;
-use bankshot::output::probability_text_json::{ProbabilityAnswer, answer_json, answer_text};
-use bankshot::probability::{
-    Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo,
-};
-use bankshot::search_space::TablePlan;
-use bankshot::shooter::{Nominal, Profile};
+use crate::dynamics::Release;
+use crate::output::probability_text_json::{ProbabilityAnswer, answer_json, answer_text};
+use crate::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo};
+use crate::search_space::TablePlan;
+use crate::shooter::{Nominal, Profile};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

@@ -6,20 +6,20 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
-use bankshot::output::atomic_file;
-use bankshot::plots::sweep_difference_map;
-use bankshot::plots::sweep_results::SweepResults;
-use bankshot::report::ReportError;
-use bankshot::report::best_shot_page::best_shot_page;
-use bankshot::report::best_shot_run::{
+use crate::output::atomic_file;
+use crate::plots::sweep_difference_map;
+use crate::plots::sweep_results::SweepResults;
+use crate::report::ReportError;
+use crate::report::best_shot_page::best_shot_page;
+use crate::report::best_shot_run::{
     BEST_SHOTS_FILE, BestShotRun, CURVES_FILE, PROFILE_FILE, RunTexts, SENSITIVITY_FILE,
 };
-use bankshot::report::page::Page;
-use bankshot::report::sweep_page::sweep_page;
-use bankshot::sweep::SweepConfig;
-use bankshot::sweep::job_list::Jobs;
-use bankshot::sweep::result_row::ResultRow;
-use bankshot::sweep::sweep_folder::SweepFolder;
+use crate::report::page::Page;
+use crate::report::sweep_page::sweep_page;
+use crate::sweep::SweepConfig;
+use crate::sweep::job_list::Jobs;
+use crate::sweep::result_row::ResultRow;
+use crate::sweep::sweep_folder::SweepFolder;
 use clap::Args;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -5,15 +5,15 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::cli::value_parsers::PhysicsArg;
-use bankshot::dynamics::{Integrator, Simulator};
-use bankshot::output::atomic_file::{AtomicFile, same_file};
-use bankshot::output::simulation_files::csv_records::{CsvRecords, Row};
-use bankshot::output::simulation_files::outcome_columns::{
+use crate::dynamics::{Integrator, Simulator};
+use crate::output::atomic_file::{AtomicFile, same_file};
+use crate::output::simulation_files::csv_records::{CsvRecords, Row};
+use crate::output::simulation_files::outcome_columns::{
     OUTCOME_COLUMNS, OUTCOME_TYPES, outcome_cells,
 };
-use bankshot::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
-use bankshot::output::simulation_files::release_columns::{ReleaseColumns, RowError};
-use bankshot::probability::Progress;
+use crate::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
+use crate::output::simulation_files::release_columns::{ReleaseColumns, RowError};
+use crate::probability::Progress;
 use clap::{Args, ValueEnum};
 use csv::{ByteRecord, Writer};
 use parquet::basic::Type as Physical;

@@ -1,11 +1,11 @@
 //! Summaries of a sweep's results as text.
 
 use crate::cli::failure::code;
-use bankshot::sweep::bank_direct_difference::BankAdvantage;
-use bankshot::sweep::job_list::Jobs;
-use bankshot::sweep::result_row::{JobStatus, ResultRow};
-use bankshot::sweep::{SweepConfig, columns};
-use bankshot::units::{DEGREE_RAD, at_most_two_decimals};
+use crate::sweep::bank_direct_difference::BankAdvantage;
+use crate::sweep::job_list::Jobs;
+use crate::sweep::result_row::{JobStatus, ResultRow};
+use crate::sweep::{SweepConfig, columns};
+use crate::units::{DEGREE_RAD, at_most_two_decimals};
 use std::collections::BTreeMap;
 
 /// Greatest number of listed failures.

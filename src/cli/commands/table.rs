@@ -1,19 +1,17 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
+use crate::best_shot::{ShotKind, ShotTable, ShotTableError, ShotTableRequest};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use bankshot::best_shot::{ShotKind, ShotTable, ShotTableError, ShotTableRequest};
-use bankshot::dynamics::OutcomeKind;
-use bankshot::output::atomic_file;
-use bankshot::output::shot_table_files::source_code::{Language, source_code};
-use bankshot::output::shot_table_files::table_text::{
-    check_text, table_csv, table_json, table_text,
-};
-use bankshot::shooter::NominalVariable;
-use bankshot::units::{self, Dimension};
+use crate::dynamics::OutcomeKind;
+use crate::output::atomic_file;
+use crate::output::shot_table_files::source_code::{Language, source_code};
+use crate::output::shot_table_files::table_text::{check_text, table_csv, table_json, table_text};
+use crate::shooter::NominalVariable;
+use crate::units::{self, Dimension};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,10 @@
 //! The trace of a shot as text, JSON and CSV.
 
-use bankshot::dynamics::{Ending, EventKind, Outcome, OutcomeKind, Trace};
-use bankshot::math::vector::Vec3;
-use bankshot::model::SolidId;
-use bankshot::output::json_object::{number, object};
-use bankshot::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::dynamics::{Ending, EventKind, Outcome, OutcomeKind, Trace};
+use crate::math::vector::Vec3;
+use crate::model::SolidId;
+use crate::output::json_object::{number, object};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use std::fmt::Write;
 
 /// The outcome of a shot as text.

@@ -154,54 +154,71 @@ impl ReleaseColumns {
                 *value = cell(row, index, name)? * unit;
             }
         }
-        let [
-            distance_m,
-            court,
-            height,
-            speed,
-            pitch_rad,
-            polar_rad,
-            back,
-            rifle,
-            side,
-        ] = values;
-        let name = |i: usize| self.columns[i].map_or("", |(_, name, _)| name);
-        let refuse = |i: usize, reason: &str| {
-            Err(RowError {
-                column: name(i).to_owned(),
-                reason: reason.to_owned(),
-            })
-        };
-        let reach = physics.ring_radius_m + physics.ball_radius_m;
-        if !(distance_m > reach && distance_m < 100.0) {
-            return refuse(0, "the place is inside the ring's reach or over 100 m away");
-        }
-        if !(distance_m * libm::cos(court) > physics.ball_radius_m - physics.board_distance_m) {
-            return refuse(1, "the place is behind the board");
-        }
-        if !(height.abs() < 100.0) {
-            return refuse(2, "the height must be within 100 m");
-        }
-        if !((0.0..=1000.0).contains(&speed)) {
-            return refuse(3, "the speed must be from 0 to 1000 m/s");
-        }
-        for (i, spin) in [(6, back), (7, rifle), (8, side)] {
-            if !(spin.abs() <= 10_000.0) {
-                return refuse(i, "the spin must be within 10000 rad/s");
-            }
-        }
-        Ok(Release {
-            distance_m,
-            court_angle_rad: court,
-            height_above_hoop_m: height - physics.hoop_plane_height_m(),
-            speed_m_s: speed,
-            pitch_rad,
-            polar_rad,
-            backspin_rad_s: back,
-            rifle_spin_rad_s: rifle,
-            side_spin_rad_s: side,
+        release_of_values(values, physics).map_err(|(parameter, reason)| RowError {
+            column: self.columns[parameter]
+                .map_or("", |(_, name, _)| name)
+                .to_owned(),
+            reason: reason.to_owned(),
         })
     }
+
+    /// The index, the name and the unit (in SI units) of the column of each parameter, in the order
+    /// of [`release_of_values`]; `None` where it is not given.
+    #[must_use]
+    pub fn of_parameters(&self) -> [Option<(usize, &'static str, f64)>; 9] {
+        self.columns
+    }
+}
+
+/// The release of nine parameters in SI units: distance, court angle, height above the floor, speed,
+/// pitch, polar angle, backspin, rifle spin, side spin.
+///
+/// # Errors
+/// The index of the first parameter that is out of range, and what is allowed.
+pub fn release_of_values(
+    values: [f64; 9],
+    physics: &Physics,
+) -> Result<Release, (usize, &'static str)> {
+    let [
+        distance_m,
+        court,
+        height,
+        speed,
+        pitch_rad,
+        polar_rad,
+        back,
+        rifle,
+        side,
+    ] = values;
+    let reach = physics.ring_radius_m + physics.ball_radius_m;
+    if !(distance_m > reach && distance_m < 100.0) {
+        return Err((0, "the place is inside the ring's reach or over 100 m away"));
+    }
+    if !(distance_m * libm::cos(court) > physics.ball_radius_m - physics.board_distance_m) {
+        return Err((1, "the place is behind the board"));
+    }
+    if !(height.abs() < 100.0) {
+        return Err((2, "the height must be within 100 m"));
+    }
+    if !((0.0..=1000.0).contains(&speed)) {
+        return Err((3, "the speed must be from 0 to 1000 m/s"));
+    }
+    for (i, spin) in [(6, back), (7, rifle), (8, side)] {
+        if !(spin.abs() <= 10_000.0) {
+            return Err((i, "the spin must be within 10000 rad/s"));
+        }
+    }
+    Ok(Release {
+        distance_m,
+        court_angle_rad: court,
+        height_above_hoop_m: height - physics.hoop_plane_height_m(),
+        speed_m_s: speed,
+        pitch_rad,
+        polar_rad,
+        backspin_rad_s: back,
+        rifle_spin_rad_s: rifle,
+        side_spin_rad_s: side,
+    })
 }
 
 /// Adds an error for each unknown quantity that is not carried, and for each carried column that

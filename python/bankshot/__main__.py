@@ -1,0 +1,5 @@
+"""``python -m bankshot`` is the program ``bankshot``."""
+
+from ._commands import main
+
+main()
