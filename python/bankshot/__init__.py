@@ -8,14 +8,14 @@
 ... )
 >>> p = guard.probability(speed="24.3 ft/s", pitch_deg=54.3, backspin_rev_s=3, target=0.002)
 >>> round(p.probability, 2)
-0.76
+0.77
 
 Floats are in the unit that their name says (``speed_ft_s=23.6``); text has its unit
 (``speed="23.6 ft/s"``); pint quantities are understood.
 """
 
-from ._commands import InputError, BankshotError, BankshotWarning
-from ._engine import OUTCOME_KINDS, __version__
+from ._commands import BankshotError, BankshotWarning
+from ._engine import OUTCOME_KINDS, InputError, __version__
 from ._measured import Advice, Estimate, Fit, Parameter, advise, fit
 from ._profile import Physics, Profile
 from ._shots import BestShot, BestShots, Probability, Trace

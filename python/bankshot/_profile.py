@@ -47,9 +47,9 @@ class Physics:
     by the keys of a ``[physics]`` table:
 
     >>> import bankshot
-    >>> soft = bankshot.Physics("ncaa", hoop_restitution=0.5, altitude="5280 ft", temperature="20 degC")
+    >>> soft = bankshot.Physics("ncaa", hoop_restitution=0.5, altitude="5280 ft", temperature="20 C")
     >>> soft
-    Physics('ncaa', hoop_restitution=0.5, altitude='5280 ft', temperature='20 degC')
+    Physics('ncaa', hoop_restitution=0.5, altitude='5280 ft', temperature='20 C')
     """
 
     def __init__(self, name: str = "paper", **values: Any) -> None:
@@ -154,6 +154,7 @@ class Profile:
         self._name: str = checked["shooter"]
         self._distance_m: float = checked["distance_m"]
         self._angle_rad: float = checked["court_angle_rad"]
+        self._release_height_m: float = checked["release_height_m"]
 
     @property
     def toml(self) -> str:
@@ -174,6 +175,18 @@ class Profile:
     def angle_rad(self) -> float:
         """Court angle, rad."""
         return self._angle_rad
+
+    @property
+    def release_height_m(self) -> float:
+        """Height of the release above the floor, m."""
+        return self._release_height_m
+
+    @property
+    def physics(self) -> Physics:
+        """The ball and the hoop."""
+        others = ("shooter", "location", "nominal", "search", "grid", "output")
+        text = _engine.text_with(self._text, [(table, None) for table in others])
+        return Physics.from_toml(text) if "[physics]" in text else Physics()
 
     def __repr__(self) -> str:
         feet, degrees = self._distance_m / 0.3048, self._angle_rad * 57.29577951308232

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -198,7 +199,7 @@ class _Pandas(_Table):
             raise InputError(f"column {doubled[0]}: is there twice; rename one")
 
     def with_outcomes(self, outcomes: dict[str, Any]) -> Any:
-        import pandas as pd
+        pd: Any = importlib.import_module("pandas")
 
         columns: dict[str, Any] = dict(outcomes)
         if "kind" in columns:
@@ -223,20 +224,19 @@ class _Arrow(_Table):
                 columns.append((name, (array, list(_engine.OUTCOME_KINDS))))
             else:
                 columns.append((name, array))
-        added = _engine.arrow_table(columns)
         module = type(self.releases).__module__.partition(".")[0]
         if module == "polars":
-            import polars as pl
+            pl: Any = importlib.import_module("polars")
 
-            return self.releases.hstack(pl.DataFrame(added))
+            return self.releases.hstack(pl.DataFrame(_engine.arrow_table(columns)))
         if module == "pyarrow":
-            import pyarrow as pa
+            pa: Any = importlib.import_module("pyarrow")
 
-            table = pa.table(self.releases)
-            for name, column in zip(pa.table(added).column_names, pa.table(added).columns):
-                table = table.append_column(name, column)
+            table, added = pa.table(self.releases), pa.table(_engine.arrow_table(columns))
+            for name in added.column_names:
+                table = table.append_column(name, added[name])
             return table
-        return added
+        return _engine.arrow_table(columns, self.releases)
 
 
 def _arrow_names(releases: Any) -> list[str]:

@@ -1,10 +1,12 @@
 //! Columns of numbers: NumPy arrays, or tables of the Arrow PyCapsule interface.
 
+use crate::errors::InputError;
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type};
 use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int32Array, RecordBatch};
 use arrow_array::{DictionaryArray, Int8Array, StringArray};
 use arrow_schema::{DataType, Field, Schema};
+use arrow_select::concat::concat_batches;
 use numpy::PyReadonlyArray1;
 use numpy::ndarray::{ArrayView1, CowArray, Ix1};
 use pyo3::exceptions::PyTypeError;
@@ -106,7 +108,7 @@ fn numbers(batch: &RecordBatch, index: usize) -> PyResult<CowArray<'_, f64, Ix1>
             values.map(|x| x.map_or(f64::NAN, |x| x as f64)).collect()
         }
         other => {
-            return Err(PyTypeError::new_err(format!(
+            return Err(InputError::new_err(format!(
                 "column {}: is of type {other}; it must be of float64, float32, int64 or int32",
                 batch.schema().field(index).name()
             )));
@@ -126,11 +128,23 @@ pub(crate) enum Values<'py> {
     Text(Vec<String>),
 }
 
-/// A table with the Arrow PyCapsule interface from named arrays. NaN becomes null.
+/// A table with the Arrow PyCapsule interface from named arrays, which follow the columns of `beside`
+/// if it is given. NaN becomes null.
 #[pyfunction]
-pub(crate) fn arrow_table(columns: Vec<(String, Values<'_>)>) -> PyResult<PyTable> {
+#[pyo3(signature = (columns, beside=None))]
+pub(crate) fn arrow_table(
+    columns: Vec<(String, Values<'_>)>,
+    beside: Option<PyTable>,
+) -> PyResult<PyTable> {
     let mut fields = Vec::new();
     let mut arrays: Vec<ArrayRef> = Vec::new();
+    if let Some(beside) = beside {
+        let (batches, schema) = beside.into_inner();
+        let joined = concat_batches(&schema, &batches)
+            .map_err(|error| PyTypeError::new_err(error.to_string()))?;
+        fields.extend(schema.fields().iter().map(|field| field.as_ref().clone()));
+        arrays.extend(joined.columns().iter().cloned());
+    }
     for (name, values) in columns {
         let array: ArrayRef = match values {
             Values::Real(values) => {

@@ -4,6 +4,7 @@
 mod background;
 mod columns;
 mod commands;
+mod errors;
 mod simulate;
 
 use pyo3::prelude::*;
@@ -16,7 +17,9 @@ mod _engine {
     #[pymodule_export]
     use super::commands::{Command, main, text_with};
     #[pymodule_export]
-    use super::simulate::{InputError, simulate};
+    use super::errors::InputError;
+    #[pymodule_export]
+    use super::simulate::simulate;
 
     use pyo3::prelude::*;
 

@@ -2,6 +2,7 @@
 
 use crate::background::{Monitor, thread_pool, wait};
 use crate::columns::{Rows, Source};
+use crate::errors::InputError;
 use bankshot::config::parse_physics;
 use bankshot::dynamics::{BatchWorkspace, Integrator, OutcomeKind, Release, Simulator};
 use bankshot::model::{BallState, Physics, Preset, SolidId};
@@ -9,8 +10,6 @@ use bankshot::output::simulation_files::release_columns::{ReleaseColumns, releas
 use bankshot::probability::Progress;
 use bankshot::units::DEGREE_RAD;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::create_exception;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use pyo3_arrow::PyTable;
@@ -18,13 +17,6 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError, mpsc};
-
-create_exception!(
-    bankshot,
-    InputError,
-    PyValueError,
-    "An input that cannot be used: the message has the place, the value and what is allowed."
-);
 
 /// Shots that one thread takes at a time: enough to keep the lanes full.
 const SHOTS_AT_A_TIME: usize = 65_536;
@@ -42,8 +34,11 @@ fn simulator(physics: &str, integrator: Option<&str>) -> PyResult<Simulator> {
     let preset = Preset::named(physics);
     let (physics, own): (Physics, Integrator) = match preset {
         Some(preset) => (preset.physics(), Integrator::default()),
-        None => parse_physics(physics, "physics")
-            .map_err(|error| InputError::new_err(error.to_string()))?,
+        None => parse_physics(physics, "physics").map_err(|error| {
+            let message = error.to_string();
+            let message = message.strip_prefix("error: ").unwrap_or(&message);
+            InputError::new_err(message.to_owned())
+        })?,
     };
     let integrator = match integrator {
         None => own,
@@ -302,7 +297,11 @@ impl Work<'_> {
             };
             let given = rows.value(i, row);
             if !(given.abs() < 1e9) {
-                self.note(rows.start + row, name, &format!("{given} is not a finite number"));
+                self.note(
+                    rows.start + row,
+                    name,
+                    &format!("{given} is not a finite number"),
+                );
                 return None;
             }
             *value = given * unit;
@@ -320,7 +319,9 @@ impl Work<'_> {
     fn note(&self, row: usize, column: &str, reason: &str) {
         let mut faults = self.faults.lock().unwrap_or_else(PoisonError::into_inner);
         faults.1 += 1;
-        faults.0.insert(row, format!("row {row}: column {column}: {reason}"));
+        faults
+            .0
+            .insert(row, format!("row {row}: column {column}: {reason}"));
         if faults.0.len() > MOST_NAMED {
             faults.0.pop_last();
         }

@@ -106,6 +106,7 @@ fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
                     "shooter": profile.shooter().name,
                     "distance_m": location.distance_m,
                     "court_angle_rad": location.angle_rad,
+                    "release_height_m": profile.shooter().release_height_m,
                     "warnings": implausible_values(&profile),
                 }),
             ))
