@@ -128,8 +128,8 @@ pub(crate) enum Values<'py> {
     Text(Vec<String>),
 }
 
-/// A table with the Arrow PyCapsule interface from named arrays, which follow the columns of `beside`
-/// if it is given. NaN becomes null.
+/// A table with the Arrow PyCapsule interface from named arrays, which follow the columns of
+/// `beside` if it is given. NaN becomes null.
 #[pyfunction]
 #[pyo3(signature = (columns, beside=None))]
 pub(crate) fn arrow_table(
@@ -178,8 +178,8 @@ pub(crate) fn arrow_table(
     PyTable::try_new(vec![batch], schema)
 }
 
-/// The names of the columns of a table with the Arrow PyCapsule interface. The table must allow to be
-/// read more than once.
+/// The names of the columns of a table with the Arrow PyCapsule interface. The table must allow to
+/// be read more than once.
 #[pyfunction]
 pub(crate) fn column_names(table: PyTable) -> Vec<String> {
     let (_, schema) = table.into_inner();

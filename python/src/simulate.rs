@@ -4,7 +4,9 @@ use crate::background::{Monitor, thread_pool, wait};
 use crate::columns::{Rows, Source};
 use crate::errors::InputError;
 use bankshot::config::parse_physics;
-use bankshot::dynamics::{BatchWorkspace, Integrator, OutcomeKind, Release, Simulator};
+use bankshot::dynamics::{
+    BatchWorkspace, Integrator, OutcomeKind, Release, ReleaseStates, Simulator,
+};
 use bankshot::model::{BallState, Physics, Preset, SolidId};
 use bankshot::output::simulation_files::release_columns::{ReleaseColumns, release_of_values};
 use bankshot::probability::Progress;
@@ -61,9 +63,9 @@ pub(crate) enum Given<'py> {
     Table(PyTable),
 }
 
-/// Simulates releases. `names` are those of all columns, `carry` those that are no parameters though
-/// they are named so; `releases` are the arrays of the parameters, in the order that `parameters`
-/// returns, or an Arrow table.
+/// Simulates releases. `names` are those of all columns, `carry` those that are no parameters
+/// though they are named so; `releases` are the arrays of the parameters, in the order that
+/// `parameters` returns, or an Arrow table.
 #[pyfunction]
 #[pyo3(signature = (names, carry, releases, physics, integrator, details, threads, progress))]
 #[allow(clippy::too_many_arguments)]
@@ -334,10 +336,11 @@ impl Work<'_> {
         workspace: &mut BatchWorkspace,
     ) {
         states.clear();
+        let mut in_turn = ReleaseStates::default();
         for row in 0..block.made.len() {
             // The other rows are still checked, to name them.
             if let Some(release) = self.release(block.rows, block.first + row) {
-                states.push(release.state());
+                states.push(in_turn.next_state(&release));
             }
         }
         if states.len() < block.made.len() {

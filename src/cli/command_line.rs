@@ -109,6 +109,8 @@ pub(crate) enum Command {
     Report(ReportOptions),
     /// Simulate one shot and list its events.
     Trace(TraceOptions),
+    /// Print the JSON schema of profiles and sweeps, for editors of TOML.
+    Schema,
     /// Print a completion script for a shell.
     Completions {
         /// The shell.

@@ -125,6 +125,9 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Report(options) => report::run(options, quiet),
         Command::Figures { out } => figures::run(out, quiet),
         Command::Trace(options) => trace::run(options, quiet),
+        Command::Schema => {
+            terminal::print_answer(&format!("{:#}\n", crate::config::schema::schema()))
+        }
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "bankshot", &mut script);

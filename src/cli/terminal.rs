@@ -3,11 +3,52 @@
 use super::embedded_session;
 use super::failure::{Failure, code};
 use crate::shooter::is_control_or_direction;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 
 /// Prints an answer. A closed reader (`| head -1`) is not a failure.
 pub(crate) fn print_answer(text: &str) -> Result<u8, Failure> {
     print_bytes(text.as_bytes())
+}
+
+/// As [`print_answer`], for prose: lines of more than 80 columns are wrapped. What follows a label
+/// stays in its column.
+pub(crate) fn print_prose(text: &str) -> Result<u8, Failure> {
+    print_answer(&wrapped(text))
+}
+
+/// Columns of a terminal of the usual width.
+const COLUMNS: usize = 80;
+
+fn wrapped(text: &str) -> String {
+    let mut wrapped = String::with_capacity(text.len());
+    for line in text.lines() {
+        if line.chars().count() <= COLUMNS {
+            wrapped += line;
+        } else {
+            let hanging = " ".repeat(column_of_text(line));
+            let options = textwrap::Options::new(COLUMNS)
+                .subsequent_indent(&hanging)
+                .break_words(false)
+                .word_splitter(textwrap::WordSplitter::NoHyphenation);
+            wrapped += &textwrap::fill(line, options);
+        }
+        wrapped.push('\n');
+    }
+    wrapped
+}
+
+/// The column of what follows the label of a line (two or more spaces stand between), or the
+/// indentation.
+fn column_of_text(line: &str) -> usize {
+    let indentation = line.chars().take_while(|c| *c == ' ').count();
+    let label = line.trim_start();
+    match label.find("  ") {
+        Some(end) if end < 16 => {
+            let rest = label[end..].chars().take_while(|c| *c == ' ').count();
+            indentation + label[..end].chars().count() + rest
+        }
+        _ => indentation,
+    }
 }
 
 /// As [`print_answer`], for bytes.
@@ -26,9 +67,61 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<u8, Failure> {
 /// Prints a remark on standard error. A failure to print it is ignored.
 pub(crate) fn print_remark(text: &str) {
     let text = harmless(text);
-    if !embedded_session::take_remark(&text) {
-        let _ = writeln!(io::stderr().lock(), "{text}");
+    if embedded_session::take_remark(&text) {
+        return;
     }
+    let mut out = io::stderr().lock();
+    let text = if has_colours(&out) {
+        coloured(&text)
+    } else {
+        text
+    };
+    let _ = writeln!(out, "{text}");
+}
+
+/// Whether standard error is a terminal and the user has not asked for none
+/// (<https://no-color.org>).
+fn has_colours(out: &impl IsTerminal) -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_dumb = std::env::var_os("TERM").is_some_and(|name| name == "dumb");
+    !is_set("NO_COLOR") && !is_dumb && (out.is_terminal() || is_set("CLICOLOR_FORCE"))
+}
+
+/// The text with the colours of cargo's messages: errors red, warnings yellow, places blue.
+fn coloured(text: &str) -> String {
+    const RED: &str = "\x1b[1;31m";
+    const YELLOW: &str = "\x1b[1;33m";
+    const BLUE: &str = "\x1b[1;34m";
+    const PLAIN: &str = "\x1b[0m";
+    let lines = text.lines().map(|line| {
+        for (word, colour) in [("error", RED), ("warning", YELLOW), ("note", BLUE)] {
+            if let Some(rest) = line.strip_prefix(word)
+                && rest.starts_with(':')
+            {
+                return format!("{colour}{word}{PLAIN}{rest}");
+            }
+        }
+        // A place, or a line of a quoted file: `  --> file:1:2`, `3 | text`, `  | ^^^^ text`.
+        let (gutter, rest) = match line.find("-->").or_else(|| line.find('|')) {
+            Some(at) if is_gutter(&line[..at]) => {
+                let mark = if line[at..].starts_with('|') { 1 } else { 3 };
+                line.split_at(at + mark)
+            }
+            _ => return line.to_owned(),
+        };
+        let is_mark = rest.trim_start().starts_with('^');
+        if is_mark {
+            format!("{BLUE}{gutter}{RED}{rest}{PLAIN}")
+        } else {
+            format!("{BLUE}{gutter}{PLAIN}{rest}")
+        }
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Whether this can stand before the bar of a quoted line: spaces and its number.
+fn is_gutter(text: &str) -> bool {
+    text.chars().all(|c| c == ' ' || c.is_ascii_digit())
 }
 
 /// The text without characters that steer a terminal or turn the direction of text: a message can
@@ -53,4 +146,40 @@ pub(crate) fn print_error(text: &str) {
         "error: "
     };
     print_remark(&format!("{prefix}{text}"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_long_lines_are_wrapped_below_their_text() {
+        let line = format!("errors  {}", "speed 0.250 ft/s, ".repeat(8));
+        let text = wrapped(&format!("short\n{line}\n"));
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "short");
+        assert!(lines.iter().all(|line| line.chars().count() <= COLUMNS));
+        assert!(lines.len() == 4 && lines[2].starts_with("        speed") || lines.len() == 3);
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(words(&lines[1..].join(" ")), words(&line));
+        // No space is lost from a table.
+        let table = format!("a{}b\n", " ".repeat(60));
+        assert_eq!(wrapped(&table), table);
+    }
+
+    #[test]
+    fn contract_colours_leave_the_text_as_it_is() {
+        let message =
+            "error: a.b: is wrong\n --> file:3:1\n  |\n3 | b = 1\n  | ^^^^\nwarning: x | y\n";
+        let with = coloured(message);
+        assert!(with.starts_with("\x1b[1;31merror\x1b[0m: a.b"));
+        assert!(with.contains("\x1b[1;31m ^^^^\x1b[0m"));
+        let mut plain = String::new();
+        let mut rest = with.as_str();
+        while let Some((text, code)) = rest.split_once('\x1b') {
+            plain += text;
+            rest = code.split_once('m').unwrap().1;
+        }
+        assert_eq!((plain + rest).trim_end(), message.trim_end());
+    }
 }

@@ -5,6 +5,7 @@ mod location_table;
 mod locations_csv;
 mod physics_table;
 mod profile_file;
+pub mod schema;
 mod search_tables;
 mod shooter_tables;
 pub(crate) mod toml_reader;

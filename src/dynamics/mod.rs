@@ -45,6 +45,6 @@ mod trace;
 
 pub use batch::{BatchWorkspace, InstructionSet};
 pub use outcome::{ContactSequence, Ending, Entry, Outcome, OutcomeKind, Verdict};
-pub use release::{Release, ReleaseWithoutSpeed};
+pub use release::{Release, ReleaseStates, ReleaseWithoutSpeed};
 pub use simulator::{Integrator, Precision, Simulator, SimulatorError, StateError};
 pub use trace::{Event, EventKind, Sample, Trace};

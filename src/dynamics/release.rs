@@ -115,3 +115,105 @@ impl ReleaseWithoutSpeed {
         }
     }
 }
+
+/// The states of many releases, one after the other. An angle that is that of the release before,
+/// as in a column of one place, costs no sine again; the bits are those of [`Release::state`].
+#[derive(Clone, Copy, Debug)]
+pub struct ReleaseStates {
+    court: KnownSine,
+    pitch: KnownSine,
+    polar: KnownSine,
+}
+
+impl Default for ReleaseStates {
+    fn default() -> Self {
+        let known = KnownSine::of(0.0);
+        Self {
+            court: known,
+            pitch: known,
+            polar: known,
+        }
+    }
+}
+
+impl ReleaseStates {
+    /// The state of the next release.
+    #[must_use]
+    pub fn next_state(&mut self, release: &Release) -> BallState {
+        let (sin_court, cos_court) = self.court.sin_cos(release.court_angle_rad);
+        let (sin_pitch, cos_pitch) = self.pitch.sin_cos(release.pitch_rad);
+        let (sin_polar, cos_polar) = self.polar.sin_cos(release.polar_rad);
+        let position_m = Vec3::new(
+            release.distance_m * cos_court,
+            release.distance_m * sin_court,
+            release.height_above_hoop_m,
+        );
+        ReleaseWithoutSpeed {
+            position_m,
+            sin_pitch,
+            cos_pitch,
+            sin_polar,
+            cos_polar,
+            rifle_spin_rad_s: release.rifle_spin_rad_s,
+            side_spin_rad_s: release.side_spin_rad_s,
+        }
+        .state(release.speed_m_s, release.backspin_rad_s)
+    }
+}
+
+/// The sine and cosine of the last angle.
+#[derive(Clone, Copy, Debug)]
+struct KnownSine {
+    angle_rad: f64,
+    sin_cos: (f64, f64),
+}
+
+impl KnownSine {
+    fn of(angle_rad: f64) -> Self {
+        Self {
+            angle_rad,
+            sin_cos: libm::sincos(angle_rad),
+        }
+    }
+
+    fn sin_cos(&mut self, angle_rad: f64) -> (f64, f64) {
+        // By the bits: -0.0 is another angle than 0.0.
+        if angle_rad.to_bits() != self.angle_rad.to_bits() {
+            *self = Self::of(angle_rad);
+        }
+        self.sin_cos
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_states_in_turn_have_the_bits_of_each_alone() {
+        let mut release = Release {
+            distance_m: 4.0,
+            court_angle_rad: 0.3,
+            height_above_hoop_m: -1.0,
+            speed_m_s: 7.5,
+            pitch_rad: 0.9,
+            polar_rad: 0.31,
+            backspin_rad_s: 12.0,
+            rifle_spin_rad_s: 1.0,
+            side_spin_rad_s: -2.0,
+        };
+        let mut states = ReleaseStates::default();
+        for step in 0..12 {
+            let next = states.next_state(&release);
+            let alone = release.state();
+            let bits = |state: &BallState| format!("{state:?}");
+            assert_eq!(bits(&next), bits(&alone), "{step}");
+            match step % 4 {
+                0 => release.court_angle_rad = -release.court_angle_rad,
+                1 => release.pitch_rad += 0.1,
+                2 => release.polar_rad = -0.0 * release.polar_rad,
+                _ => release.speed_m_s += 1.0,
+            }
+        }
+    }
+}

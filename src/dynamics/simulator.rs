@@ -127,8 +127,8 @@ fn suits_single_precision(physics: &Physics) -> bool {
 const WORLD_STEP_FACTOR: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 1,000 at
-/// the default steps (four a contact of some 13 ms); some constants that are far from any ball would
-/// take steps without end. So many steps take 30 ms at most.
+/// the default steps (four a contact of some 13 ms); some constants that are far from any ball
+/// would take steps without end. So many steps take 30 ms at most.
 fn max_steps(integrator: Integrator) -> u32 {
     const STEPS: u32 = 10_000;
     const AT_STEPS_PER_CONTACT: u32 = 4;

@@ -55,8 +55,8 @@ const OTHER_UNITS: [(&str, &str); 22] = [
     ("°", "deg"),
 ];
 
-/// The columns of a file, and maps for those whose names say what they may hold. `UNIT` stands where
-/// the name does not say the unit.
+/// The columns of a file, and maps for those whose names say what they may hold. `UNIT` stands
+/// where the name does not say the unit.
 #[must_use]
 pub(super) fn map_proposal(columns: &Columns) -> String {
     let unused = columns.unused();

@@ -8,6 +8,7 @@ mod man;
 mod new;
 mod outputs;
 mod probability;
+mod schema;
 mod simulate;
 mod support;
 mod table;

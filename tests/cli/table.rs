@@ -80,24 +80,28 @@ int main() {
 fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     let folder = TempDir::new().unwrap();
     let range = ["--distances", "10 ft, 12 ft"];
-    for (format, file) in [
-        ("csv", "t.csv"),
-        ("python", "t.py"),
-        ("java", "ShotTable.java"),
-        ("cpp", "t.hpp"),
-    ] {
-        let more = ["--format", format, "--output", file];
-        table(&folder, &[&range[..], &more].concat()).exits(0);
+    // The end of the name says the form.
+    for file in ["t.csv", "t.py", "Launcher.java", "t.hpp"] {
+        table(&folder, &[&range[..], &["--output", file]].concat()).exits(0);
     }
+    table(
+        &folder,
+        &[&range[..], &["--output", "my shots.java"]].concat(),
+    )
+    .exits(2)
+    .says("the name of no Java class");
     write_file(&folder, "t.cpp", CPP_MAIN);
     let csv = fs::read_to_string(folder.path().join("t.csv")).unwrap();
     let speeds: Vec<f64> = csv
         .lines()
         .skip(1)
-        .map(|line| line.split(',').nth(3).unwrap().parse().unwrap())
+        .map(|line| line.split(',').nth(4).unwrap().parse().unwrap())
         .collect();
     let middle = 0.25 * speeds[0] + 0.75 * speeds[1];
-    let java = fs::read_to_string(folder.path().join("ShotTable.java")).unwrap();
+    let how = csv.lines().nth(1).unwrap().split(',').nth(3).unwrap();
+    assert!(how == "swish" || how == "rim-in", "{how}");
+    let java = fs::read_to_string(folder.path().join("Launcher.java")).unwrap();
+    assert!(java.contains("public final class Launcher {"));
     assert!(!java.contains("\\u000a"), "a name must not end a comment");
     for (tool, arguments, missing) in [
         (
@@ -144,11 +148,11 @@ fn is_installed(program: &str) -> bool {
 fn contract_wrong_ranges_are_refused() {
     let folder = TempDir::new().unwrap();
     for (distances, message) in [
-        ("10 ft to 14 ft", "has no step; write FROM to TO by STEP"),
+        ("10 ft to 14 ft", "has no step; write '6 ft, 8 ft' or"),
         ("14 ft to 10 ft by 1 ft", "must ascend, with a step above 0"),
         ("10 ft to 14 ft by 0 ft", "must ascend, with a step above 0"),
         ("10 ft to 14 ft by 1e-9 ft", "has more than 2000 values"),
-        ("12 ft, 10 ft", "the values must ascend"),
+        ("12 ft, 10 ft", "does not ascend"),
         ("12", "has no unit"),
     ] {
         table(&folder, &["--distances", distances])

@@ -63,7 +63,7 @@ fn contract_a_team_has_a_table_maps_and_posters() {
 }
 
 #[test]
-fn contract_two_players_of_one_name_and_a_court_with_a_shooter_are_refused() {
+fn contract_two_players_of_one_name_are_refused_and_a_court_with_a_shooter_is_not() {
     let folder = TempDir::new().unwrap();
     write_file(&folder, "ann.toml", small_profile());
     write_file(&folder, "bo.toml", small_profile());
@@ -86,6 +86,28 @@ fn contract_two_players_of_one_name_and_a_court_with_a_shooter_are_refused() {
     );
     let own = COURT.replace("shooter = \"ann.toml\"\n", "") + "[shooter]" + &shooter;
     write_file(&folder, "own.toml", own);
-    team("own.toml").says("sweep.shooter");
+    team("own.toml").says("two players have the name");
+    let mut at_their_places = bankshot();
+    at_their_places.current_dir(folder.path());
+    at_their_places.args(["team", "ann.toml", "bo.toml", "--quiet"]);
+    Answer::of(&mut at_their_places)
+        .exits(2)
+        .says("two players have the name");
     assert_eq!(file_names(folder.path()).len(), 4);
+    // A sweep with a shooter of its own serves as well.
+    write_file(
+        &folder,
+        "bo.toml",
+        small_profile().replace("college guard", "Bo"),
+    );
+    let mut command = bankshot();
+    command.current_dir(folder.path());
+    command.args(["team", "ann.toml", "bo.toml", "--sweep", "own.toml"]);
+    Answer::of(command.args(["--out", "out", "--quiet"]))
+        .exits(0)
+        .prints("Bo: ");
+    let csv = fs::read_to_string(folder.path().join("out/team.csv")).unwrap();
+    assert!(csv.starts_with(
+        "place,name,x_ft,y_ft,distance_ft,court_angle_deg,best_player,\"college guard direct\""
+    ));
 }

@@ -165,7 +165,6 @@ fn resolve(
     modules: &BTreeMap<ModulePath, String>,
 ) -> Option<ModulePath> {
     let mut target = match path[0].as_str() {
-        "crate" if from[0] == "cli" => vec!["cli".to_owned()],
         "crate" | "bankshot" => Vec::new(),
         _ => from.clone(),
     };
@@ -176,9 +175,6 @@ fn resolve(
             target.pop();
             parts.remove(0);
         }
-    }
-    if from[0] == "cli" && path[0] == "crate" && parts.first().is_some_and(|p| *p == "cli") {
-        parts.remove(0);
     }
     for part in parts {
         let mut longer = target.clone();

@@ -5,7 +5,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::{print_answer, print_prose};
 use crate::fitting::{Posterior, advise};
 use crate::output::fit_files::advice_text::{advice_json, advice_text};
 use crate::shooter::Profile;
@@ -82,7 +82,7 @@ fn answer(
             ))?;
         }
         let angle = location.angle_rad;
-        print_answer(&advice_text(name, &advice, observed, angle, units))?;
+        print_prose(&advice_text(name, &advice, observed, angle, units))?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use super::fit::{failure, report_rejected};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::print_prose;
 use crate::fitting::{
     SessionComparison, ShooterFit, VALUE_NAMES, compare_probabilities, compare_sessions,
 };
@@ -37,7 +37,7 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
         }
         None => fit_by_session(&before)?,
     };
-    print_answer(&text(&names, &fits, options))?;
+    print_prose(&text(&names, &fits, options))?;
     Ok(code::DONE)
 }
 

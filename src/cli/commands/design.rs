@@ -4,7 +4,7 @@ use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::print_prose;
 use crate::cli::value_parsers::PhysicsArg;
 use crate::fitting::{
     Covariance, FitError, Landing, Place, Tracker, design, landing_of, release_of_landing,
@@ -92,7 +92,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             100.0 * row.counting_error
         );
     }
-    print_answer(&text)
+    print_prose(&text)
 }
 
 /// The tracker's errors as errors of the usual release.

@@ -5,7 +5,7 @@ use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
     ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
     likelihood_curve,
@@ -320,9 +320,9 @@ fn answer(
     if options.json {
         print_answer(&format!("{:#}\n", fit_json(fit, &source, units)))?;
     } else {
-        print_answer(&fit_text(fit, &source, units))?;
+        print_prose(&fit_text(fit, &source, units))?;
         for name in &options.free {
-            print_answer(&free_parameter(name, file, shots, fit)?)?;
+            print_prose(&free_parameter(name, file, shots, fit)?)?;
         }
     }
     if !quiet {

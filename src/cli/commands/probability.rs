@@ -7,7 +7,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg, sample, standard_error};
 use crate::dynamics::Release;
 use crate::output::probability_text_json::{ProbabilityAnswer, answer_json, answer_text};
@@ -134,13 +134,13 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         seed: precision.seed,
         target: precision.target,
     };
-    print_answer(&if options.json {
-        format!("{:#}\n", answer_json(&answer))
+    if options.json {
+        print_answer(&format!("{:#}\n", answer_json(&answer)))?;
     } else {
-        answer_text(&answer)
-    })?;
+        print_prose(&answer_text(&answer))?;
+    }
     if let Some(folder) = &options.draws {
-        print_answer(&fit_folder::text_over_draws(folder, &profile, &nominal)?)?;
+        print_prose(&fit_folder::text_over_draws(folder, &profile, &nominal)?)?;
     }
     if estimate.standard_error <= precision.target {
         return Ok(code::DONE);

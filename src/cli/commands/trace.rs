@@ -5,7 +5,7 @@ use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::plot_files;
-use crate::cli::terminal::{print_answer, print_bytes, print_remark};
+use crate::cli::terminal::{print_answer, print_bytes, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::dynamics::{Release, Trace};
 use crate::output::atomic_file;
@@ -13,7 +13,7 @@ use crate::plots::shot_views::{self, MADE_COLOUR, MISSED_COLOUR, ShotPath};
 use crate::plots::svg::shortened;
 use crate::probability::Sampler;
 use crate::shooter::{Nominal, Profile};
-use crate::units::{DEGREE_RAD, REV_RAD};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -72,11 +72,7 @@ pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
     if let Some(path) = &options.plot {
         write_plot(path, options.swarm, &profile, &nominal, &trace)?;
     }
-    print_answer(&if options.json {
-        format!("{:#}\n", trace_json(&trace, units))
-    } else {
-        trace_text(&trace, units)
-    })?;
+    print(&trace, units, options.json)?;
     if let (Some(path), false) = (&options.plot, quiet) {
         print_remark(&format!("plot written to {}", path.display()));
     }
@@ -93,12 +89,15 @@ fn trace_of(profile: &Profile, release: &Release) -> Result<Trace, Failure> {
 /// Prints the trace of one release.
 pub(crate) fn show(profile: &Profile, release: &Release, as_json: bool) -> Result<u8, Failure> {
     let trace = trace_of(profile, release)?;
-    let units = profile.output().units;
-    print_answer(&if as_json {
-        format!("{:#}\n", trace_json(&trace, units))
+    print(&trace, profile.output().units, as_json)
+}
+
+fn print(trace: &Trace, units: UnitSystem, as_json: bool) -> Result<u8, Failure> {
+    if as_json {
+        print_answer(&format!("{:#}\n", trace_json(trace, units)))
     } else {
-        trace_text(&trace, units)
-    })
+        print_prose(&trace_text(trace, units))
+    }
 }
 
 fn colour_of(trace: &Trace) -> &'static str {

@@ -170,8 +170,8 @@ impl ReleaseColumns {
     }
 }
 
-/// The release of nine parameters in SI units: distance, court angle, height above the floor, speed,
-/// pitch, polar angle, backspin, rifle spin, side spin.
+/// The release of nine parameters in SI units: distance, court angle, height above the floor,
+/// speed, pitch, polar angle, backspin, rifle spin, side spin.
 ///
 /// # Errors
 /// The index of the first parameter that is out of range, and what is allowed.
@@ -194,7 +194,10 @@ pub fn release_of_values(
     if !(distance_m > reach && distance_m < 100.0) {
         return Err((0, "the place is inside the ring's reach or over 100 m away"));
     }
-    if !(distance_m * libm::cos(court) > physics.ball_radius_m - physics.board_distance_m) {
+    let least_x_m = physics.ball_radius_m - physics.board_distance_m;
+    // In front of the hoop no cosine is needed.
+    let is_in_front = court.abs() < std::f64::consts::FRAC_PI_2 && least_x_m < 0.0;
+    if !is_in_front && !(distance_m * libm::cos(court) > least_x_m) {
         return Err((1, "the place is behind the board"));
     }
     if !(height.abs() < 100.0) {
