@@ -2,6 +2,7 @@
 //! it.
 
 pub mod aim_past_hoop;
+pub mod bank_aim;
 pub mod miss_breakdown;
 pub mod probability_curves;
 pub mod release_map;

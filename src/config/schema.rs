@@ -1,6 +1,7 @@
 //! The JSON schema of profiles and sweeps, for editors.
 //!
-//! The reader of each table is what decides; a test holds the keys here against those that it knows.
+//! The reader of each table is what decides; a test holds the keys here against those that it
+//! knows.
 
 use crate::model::PRESETS;
 use serde_json::{Map, Value, json};

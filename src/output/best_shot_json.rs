@@ -1,6 +1,7 @@
 //! The best shots as JSON, and the record of one shot that JSON and CSV share.
 
 use super::json_object::{Record, number, object, provenance};
+use crate::analysis::bank_aim::closed_form_polar_rad;
 use crate::analysis::sensitivity::{Difference, Variation};
 use crate::best_shot::{BestShot, BestShots, Limit, ShotKind};
 use crate::shooter::{NominalVariable, Profile};
@@ -211,6 +212,11 @@ fn add_kind(
     match shot {
         Ok(shot) => {
             let mut value = shot_record(profile, shot, units);
+            if kind == ShotKind::Bank {
+                let closed_form = closed_form_polar_rad(profile.physics(), profile.location());
+                let closed_form = number(closed_form / DEGREE_RAD);
+                value.push(("closed_form_polar_deg".to_owned(), closed_form));
+            }
             value.push(("sensitivity".to_owned(), sensitivity_value(shot, units)));
             record.push((kind.name().to_owned(), object(value)));
         }

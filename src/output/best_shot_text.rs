@@ -1,6 +1,7 @@
 //! The best shots as text: a table, and their sensitivity in points of P.
 
 use super::best_shot_json::bank_minus_direct;
+use crate::analysis::bank_aim::{closed_form_polar_rad, meeting_behind_board_m};
 use crate::analysis::sensitivity::{Difference, ErrorCost, Sensitivity, ShotWindow};
 use crate::best_shot::{BestShot, BestShots, Limit, ShotKind};
 use crate::shooter::{NominalVariable, Profile, ReleaseVariable};
@@ -327,6 +328,9 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
             shares.ring,
             shares.banked()
         );
+        if kind == ShotKind::Bank {
+            add_bank_aim(&mut text, profile, shot, units);
+        }
         add_errors(&mut text, &sensitivity.errors);
         if let Some(gain) = sensitivity.backspin_gain() {
             let verdict = if gain.is_surely_positive() {
@@ -339,6 +343,25 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
         add_heights(&mut text, profile, sensitivity, units);
     }
     text
+}
+
+/// The aim beside the closed form of the paper, and the point behind the board that it passes.
+fn add_bank_aim(text: &mut String, profile: &Profile, shot: &BestShot, units: UnitSystem) {
+    let (short, metre) = units.short_length();
+    let (physics, location) = (profile.physics(), profile.location());
+    let _ = writeln!(
+        text,
+        "  aim          polar {:.2} deg; the closed form (Eq. 27) {:.2} deg",
+        shot.nominal.polar_rad / DEGREE_RAD,
+        closed_form_polar_rad(physics, location) / DEGREE_RAD
+    );
+    if let Some(behind_m) = meeting_behind_board_m(physics, location, shot.nominal.polar_rad) {
+        let _ = writeln!(
+            text,
+            "               at a point {:.1} {short} behind the board, on its middle line",
+            behind_m / metre
+        );
+    }
 }
 
 fn windows_text(sensitivity: &Sensitivity, units: UnitSystem) -> String {

@@ -12,6 +12,7 @@ fn shipped_file(path: &str) -> String {
 fn contract_the_stored_schema_is_that_of_the_program() {
     let stored = fs::read_to_string(shipped_file("docs/bankshot.schema.json")).unwrap();
     let printed = Answer::of(bankshot().arg("schema")).exits(0).stdout;
+    let printed = String::from_utf8(printed).unwrap();
     assert!(
         stored == printed,
         "run: bankshot schema > docs/bankshot.schema.json"

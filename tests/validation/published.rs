@@ -6,6 +6,7 @@
 
 use crate::common::{at, grid, load, nominal, with_search};
 use bankshot::analysis::aim_past_hoop::centre_speed_m_s;
+use bankshot::analysis::bank_aim::{closed_form_polar_rad, meeting_behind_board_m};
 use bankshot::analysis::sensitivity::SensitivityTopics;
 use bankshot::best_shot::{self, BestShot, Limit, ShotKind};
 use bankshot::probability::{Estimate, Sampler, Silent, grid_integration, monte_carlo};
@@ -232,10 +233,21 @@ fn check_bank_against_direct(effort: Effort) {
         let profile = college(distance_ft * FOOT_M, angle_deg, 7.0 * FOOT_M, effort);
         let [direct, bank] = best_of(&profile, ShotKind::ALL);
         let (gain, error) = difference(&bank.estimate, &direct.estimate);
+        let (physics, location) = (profile.physics(), profile.location());
+        let meeting = meeting_behind_board_m(physics, location, bank.nominal.polar_rad);
+        let closed_form = closed_form_polar_rad(physics, location);
+        let from_closed_form = (bank.nominal.polar_rad - closed_form) / DEGREE_RAD;
         println!(
-            "| {distance_ft} ft | {angle_deg} deg | {:.3} | {:.3} | {gain:+.3} +- {error:.3} |",
-            direct.estimate.probability, bank.estimate.probability
+            "| {distance_ft} ft | {angle_deg} deg | {:.3} | {:.3} | {gain:+.3} ± {error:.3} | {} | {from_closed_form:+.2} deg |",
+            direct.estimate.probability,
+            bank.estimate.probability,
+            meeting.map_or("-".to_owned(), |m| format!("{:.1} in", m / INCH_M))
         );
+        // Published: the lines of aim pass a point 3.33 in behind the board.
+        if let Some(meeting) = meeting {
+            assert!((2.8..=4.2).contains(&(meeting / INCH_M)), "{meeting} m");
+            assert!(from_closed_form.abs() < 0.25, "{from_closed_form} deg");
+        }
         assert_eq!(
             gain > 0.0,
             bank_is_better,
