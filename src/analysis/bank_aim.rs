@@ -49,8 +49,8 @@ mod tests {
     use crate::model::Preset;
     use crate::units::{DEGREE_RAD, FOOT_M, INCH_M};
 
-    /// Authority: Fig. 15 of the paper (13.75 ft, 67.5 deg, restitution 0.8457) aims at 62.107 deg; and
-    /// the point behind the board of Silverberg, Tran and Adams 2011 is 3.33 in behind it.
+    /// Authority: Fig. 15 of the paper (13.75 ft, 67.5 deg, restitution 0.8457) aims at 62.107 deg;
+    /// and the point of Silverberg, Tran and Adams 2011 is 3.33 in behind the board.
     #[test]
     fn val_closed_form_of_the_paper() {
         let mut physics = Preset::named("paper").unwrap().physics();
