@@ -320,3 +320,21 @@ def test_progress_is_told_and_its_exceptions_are_passed_on():
 
     with pytest.raises(ZeroDivisionError):
         simulate(big, progress=fails)
+
+
+@pytest.mark.parametrize("has_tqdm", [True, False])
+def test_a_bar_is_shown_with_and_without_tqdm(has_tqdm, capfd, monkeypatch):
+    if not has_tqdm:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    assert_expected(simulate(SHOTS, progress=True))
+    shown = capfd.readouterr().err
+    assert "simulating" in shown and "100" in shown
+
+
+def test_duckdb_relations():
+    duckdb = pytest.importorskip("duckdb")
+    shots = pa.table(SHOTS)
+    relation = duckdb.sql("select * from shots")
+    result = pa.table(simulate(relation))
+    assert_expected({name: result[name].to_numpy(zero_copy_only=False) for name in EXPECTED})
+    assert shots.num_rows == result.num_rows

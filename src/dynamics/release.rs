@@ -82,8 +82,17 @@ impl ReleaseWithoutSpeed {
 
     /// The same for a release whose position is known.
     pub(crate) fn at(position_m: Vec3<f64>, release: &Release) -> Self {
-        let (sin_pitch, cos_pitch) = libm::sincos(release.pitch_rad);
-        let (sin_polar, cos_polar) = libm::sincos(release.polar_rad);
+        let pitch = libm::sincos(release.pitch_rad);
+        Self::of(position_m, pitch, libm::sincos(release.polar_rad), release)
+    }
+
+    /// The same with known sines and cosines of both angles.
+    fn of(
+        position_m: Vec3<f64>,
+        (sin_pitch, cos_pitch): (f64, f64),
+        (sin_polar, cos_polar): (f64, f64),
+        release: &Release,
+    ) -> Self {
         Self {
             position_m,
             sin_pitch,
@@ -141,23 +150,15 @@ impl ReleaseStates {
     #[must_use]
     pub fn next_state(&mut self, release: &Release) -> BallState {
         let (sin_court, cos_court) = self.court.sin_cos(release.court_angle_rad);
-        let (sin_pitch, cos_pitch) = self.pitch.sin_cos(release.pitch_rad);
-        let (sin_polar, cos_polar) = self.polar.sin_cos(release.polar_rad);
+        let pitch = self.pitch.sin_cos(release.pitch_rad);
+        let polar = self.polar.sin_cos(release.polar_rad);
         let position_m = Vec3::new(
             release.distance_m * cos_court,
             release.distance_m * sin_court,
             release.height_above_hoop_m,
         );
-        ReleaseWithoutSpeed {
-            position_m,
-            sin_pitch,
-            cos_pitch,
-            sin_polar,
-            cos_polar,
-            rifle_spin_rad_s: release.rifle_spin_rad_s,
-            side_spin_rad_s: release.side_spin_rad_s,
-        }
-        .state(release.speed_m_s, release.backspin_rad_s)
+        ReleaseWithoutSpeed::of(position_m, pitch, polar, release)
+            .state(release.speed_m_s, release.backspin_rad_s)
     }
 }
 
