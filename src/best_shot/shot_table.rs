@@ -9,6 +9,7 @@ use crate::search_space::PlanError;
 use crate::shooter::{
     Location, Nominal, NominalVariable, Profile, ProfileError, SearchChoice, ShotKind,
 };
+use std::collections::HashMap;
 
 /// The best shot at one node.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +71,57 @@ pub struct ShotTableRequest {
     pub angles_rad: Vec<f64>,
     /// Values that the shooter cannot change.
     pub fixed: Vec<(NominalVariable, f64)>,
+    /// The most that interpolation may cost in P. Where it costs more, nodes are added halfway, at
+    /// most [`MOST_HALVINGS`] times and up to [`MOST_NODES`] nodes; 1 adds none.
+    pub max_loss: f64,
+}
+
+/// Most nodes of a table.
+pub const MOST_NODES: usize = 2000;
+/// Most times that a step between two nodes is halved.
+pub const MOST_HALVINGS: usize = 4;
+
+/// The best shots of places; `None` where there is no clean one.
+#[derive(Default)]
+struct ShotsOfPlaces(HashMap<[u64; 2], Option<TableShot>>);
+
+impl ShotsOfPlaces {
+    fn key(place: &Location) -> [u64; 2] {
+        [place.distance_m.to_bits(), place.angle_rad.to_bits()]
+    }
+
+    fn at(&self, place: &Location) -> Option<&TableShot> {
+        self.0.get(&Self::key(place))?.as_ref()
+    }
+
+    /// Finds the shots of those places that have none yet.
+    fn find<'a>(
+        &mut self,
+        (profile, kind): (&Profile, ShotKind),
+        places: impl Iterator<Item = &'a Location>,
+        progress: &dyn Progress,
+    ) -> Result<(), ShotTableError> {
+        let is_new = |place: &&Location| !self.0.contains_key(&Self::key(place));
+        let new: Vec<&Location> = places.filter(is_new).collect();
+        progress.begin("finding shots", new.len() as u64);
+        for place in new {
+            let shot = best(&profile.moved_to(*place)?, kind)?;
+            let shot = shot.map(|shot| TableShot {
+                nominal: shot.nominal,
+                aim_rad: shot.nominal.polar_rad - place.angle_rad,
+                probability: shot.estimate.probability,
+                standard_error: shot.estimate.standard_error,
+                outcome: shot.outcome.kind,
+                time_s: shot.outcome.verdict.time_s,
+                entry_rad: shot.outcome.entry.map(|entry| entry.angle_rad),
+                tolerances: [0, 1].map(|i| shot.sensitivity.windows[i].width()),
+            });
+            self.0.insert(Self::key(place), shot);
+            progress.advance(1);
+        }
+        progress.end();
+        Ok(())
+    }
 }
 
 /// Why there is no table.
@@ -84,7 +136,8 @@ pub enum ShotTableError {
 }
 
 impl ShotTable {
-    /// Computes a table, with a check between all nodes.
+    /// Computes a table, with a check between all nodes. Where interpolation costs more than the
+    /// request allows, nodes are added halfway.
     ///
     /// # Errors
     /// A fixed value or a place is not possible, or the search is too large.
@@ -94,72 +147,86 @@ impl ShotTable {
         progress: &dyn Progress,
     ) -> Result<Self, ShotTableError> {
         let profile = with_fixed(profile, &request.fixed)?;
-        let (distances, angles) = (&request.distances_m, &request.angles_rad);
-        let between_distances = midpoints(distances);
-        let between_angles = if angles.len() > 1 {
-            midpoints(angles)
-        } else {
-            angles.clone()
-        };
-        let nodes = distances.len() * angles.len();
-        let checks = between_distances.len() * between_angles.len();
-        progress.begin("finding shots", (nodes + checks) as u64);
+        let mut shots = ShotsOfPlaces::default();
         let mut table = Self {
             kind: request.kind,
-            distances_m: distances.clone(),
-            angles_rad: angles.clone(),
-            shots: Vec::with_capacity(nodes),
-            checks: Vec::with_capacity(checks),
+            distances_m: request.distances_m.clone(),
+            angles_rad: request.angles_rad.clone(),
+            shots: Vec::new(),
+            checks: Vec::new(),
         };
-        for &angle_rad in angles {
-            for &distance_m in distances {
-                let here = profile.moved_to(Location {
-                    distance_m,
-                    angle_rad,
-                })?;
-                let topics = SensitivityTopics {
-                    windows: true,
-                    ..SensitivityTopics::NONE
-                };
-                let shot = best(&here, request.kind, topics)?;
-                table.shots.push(shot.map(|shot| TableShot {
-                    nominal: shot.nominal,
-                    aim_rad: shot.nominal.polar_rad - angle_rad,
-                    probability: shot.estimate.probability,
-                    standard_error: shot.estimate.standard_error,
-                    outcome: shot.outcome.kind,
-                    time_s: shot.outcome.verdict.time_s,
-                    entry_rad: shot.outcome.entry.map(|entry| entry.angle_rad),
-                    tolerances: [0, 1].map(|i| shot.sensitivity.windows[i].width()),
-                }));
-                progress.advance(1);
+        for halving in 0..=MOST_HALVINGS {
+            let nodes = grid(&table.distances_m, &table.angles_rad);
+            let between = table.places_between();
+            shots.find(
+                (&profile, request.kind),
+                nodes.iter().chain(&between),
+                progress,
+            )?;
+            table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
+            table.checks.clear();
+            for &location in &between {
+                table.check(&profile, location, &shots)?;
             }
-        }
-        for &angle_rad in &between_angles {
-            for &distance_m in &between_distances {
-                let location = Location {
-                    distance_m,
-                    angle_rad,
-                };
-                let here = profile.moved_to(location)?;
-                if let Some(nominal) = table.interpolated(location)
-                    && let Some(shot) = best(&here, request.kind, SensitivityTopics::NONE)?
-                {
-                    let search = here.search();
-                    let (target, seed) = (search.standard_error, search.seed);
-                    let estimate = Sampler::new(&here)
-                        .estimate_within(&nominal, target, MAX_SHOTS, seed, &Silent);
-                    table.checks.push(InterpolationCheck {
-                        location,
-                        interpolated: estimate.probability,
-                        best: shot.estimate.probability,
-                    });
-                }
-                progress.advance(1);
+            let Some(finer) = table.finer(request.max_loss) else {
+                break;
+            };
+            if halving == MOST_HALVINGS || finer.0.len() * finer.1.len() > MOST_NODES {
+                break;
             }
+            (table.distances_m, table.angles_rad) = finer;
         }
-        progress.end();
         Ok(table)
+    }
+
+    /// The places halfway between the nodes. One angle alone is kept.
+    fn places_between(&self) -> Vec<Location> {
+        let distances = midpoints(&self.distances_m);
+        if self.angles_rad.len() > 1 {
+            grid(&distances, &midpoints(&self.angles_rad))
+        } else {
+            grid(&distances, &self.angles_rad)
+        }
+    }
+
+    /// Compares the interpolated shot at a place with the best one, where there are both.
+    fn check(
+        &mut self,
+        profile: &Profile,
+        location: Location,
+        shots: &ShotsOfPlaces,
+    ) -> Result<(), ShotTableError> {
+        let (Some(nominal), Some(best)) = (self.interpolated(location), shots.at(&location)) else {
+            return Ok(());
+        };
+        let here = profile.moved_to(location)?;
+        let search = here.search();
+        let (target, seed) = (search.standard_error, search.seed);
+        let estimate =
+            Sampler::new(&here).estimate_within(&nominal, target, MAX_SHOTS, seed, &Silent);
+        self.checks.push(InterpolationCheck {
+            location,
+            interpolated: estimate.probability,
+            best: best.probability,
+        });
+        Ok(())
+    }
+
+    /// Distances and angles with others halfway, where a check lost more than `max_loss`; `None`
+    /// where none did.
+    fn finer(&self, max_loss: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut distances = self.distances_m.clone();
+        let mut angles = self.angles_rad.clone();
+        let costly = |check: &&InterpolationCheck| check.best - check.interpolated > max_loss;
+        for check in self.checks.iter().filter(costly) {
+            distances.push(check.location.distance_m);
+            angles.push(check.location.angle_rad);
+        }
+        for values in [&mut distances, &mut angles] {
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+        }
+        (distances.len() > self.distances_m.len()).then_some((distances, angles))
     }
 
     /// The shot at a node.
@@ -222,6 +289,17 @@ fn cell(values: &[f64], value: f64) -> Option<(usize, f64)> {
     Some((next - 1, (value - low) / (high - low)))
 }
 
+/// All pairs, angle by angle.
+fn grid(distances_m: &[f64], angles_rad: &[f64]) -> Vec<Location> {
+    let line = |&angle_rad: &f64| {
+        distances_m.iter().map(move |&distance_m| Location {
+            distance_m,
+            angle_rad,
+        })
+    };
+    angles_rad.iter().flat_map(line).collect()
+}
+
 fn midpoints(values: &[f64]) -> Vec<f64> {
     values
         .windows(2)
@@ -249,11 +327,11 @@ fn with_fixed(
 }
 
 /// The best shot of a kind, if there is a clean one.
-fn best(
-    profile: &Profile,
-    kind: ShotKind,
-    topics: SensitivityTopics,
-) -> Result<Option<BestShot>, BestShotError> {
+fn best(profile: &Profile, kind: ShotKind) -> Result<Option<BestShot>, BestShotError> {
+    let topics = SensitivityTopics {
+        windows: true,
+        ..SensitivityTopics::NONE
+    };
     match find_kinds(profile, &[kind], topics, &Silent) {
         Ok((_, mut shots)) => Ok(shots.pop().and_then(Result::ok)),
         Err(BestShotError::Plan(PlanError::OutOfReach)) => Ok(None),

@@ -17,7 +17,7 @@ pub(crate) fn print_prose(text: &str) -> Result<u8, Failure> {
 }
 
 /// Columns of a terminal of the usual width.
-const COLUMNS: usize = 80;
+pub(crate) const COLUMNS: usize = 80;
 
 fn wrapped(text: &str) -> String {
     let mut wrapped = String::with_capacity(text.len());
@@ -25,16 +25,21 @@ fn wrapped(text: &str) -> String {
         if line.chars().count() <= COLUMNS {
             wrapped += line;
         } else {
-            let hanging = " ".repeat(column_of_text(line));
-            let options = textwrap::Options::new(COLUMNS)
-                .subsequent_indent(&hanging)
-                .break_words(false)
-                .word_splitter(textwrap::WordSplitter::NoHyphenation);
-            wrapped += &textwrap::fill(line, options);
+            wrapped += &wrapped_line(line, column_of_text(line));
         }
         wrapped.push('\n');
     }
     wrapped
+}
+
+/// A line in lines of at most 80 columns, of which all but the first are indented.
+pub(crate) fn wrapped_line(line: &str, indentation: usize) -> String {
+    let hanging = " ".repeat(indentation);
+    let options = textwrap::Options::new(COLUMNS)
+        .subsequent_indent(&hanging)
+        .break_words(false)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation);
+    textwrap::fill(line, options)
 }
 
 /// The column of what follows the label of a line (two or more spaces stand between), or the

@@ -8,11 +8,11 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::TOUCH_GAP_M;
 use crate::model::{BallState, SolidId};
 
-/// Limits of a simulation that are not part of the equations.
+/// Settings of a simulation that are not part of the equations: limits, steps and precision.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotLimits {
     /// Longest step of a contact in the world frame, s.
-    pub(crate) longest_step_s: f64,
+    pub(crate) longest_world_step_s: f64,
     /// Contacts with one solid are computed in single precision.
     pub(crate) single_precision: bool,
     /// The normal motion and the longest step in contact with each solid, by [`SolidId::index`].
@@ -88,7 +88,7 @@ pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T
     height.lt(state.position_m.z)
 }
 
-/// A ball faster than this is one that no accurate step gives, m/s.
+/// The speed above which a shot has diverged, m/s. No ball that comes to a hoop is so fast.
 const LARGEST_SPEED_M_S: f64 = 1000.0;
 
 /// Whether the numerics have lost a ball: its speed is above the limit, or not a number. (Seen

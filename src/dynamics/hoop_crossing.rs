@@ -1,7 +1,7 @@
 //! How the ball crosses the plane of the hoop: with the contacts, this decides between made and
 //! missed.
 //!
-//! A shot is made if it falls through `z = -R` inside the ring, has been above the plane of the
+//! A shot is made if it falls through `z = -reach` inside the ring, has been above the plane of the
 //! hoop, and its centre never rose through the hoop from below. The last condition is the paper's,
 //! taken literally: a ball that dips below the plane inside the ring and bounces up through it
 //! again is missed, even if it then falls in (6 of 1000 shots that would count as made without this
@@ -70,7 +70,7 @@ impl<T: Real> HoopCrossing<T> {
         self.has_been_above = self.has_been_above | rises;
     }
 
-    /// Whether a ball that has fallen through `z = -R` at `state` is made.
+    /// Whether a ball that has fallen through `z = -reach` at `state` is made.
     #[inline(always)]
     pub(crate) fn is_made(&self, params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
         self.has_been_above

@@ -16,14 +16,15 @@
 //! | rolling | friction below `mu N` keeps the slip at zero |
 //! | at zero slip | rolling, or about to roll or slide |
 //! | solid | the board or the ring |
-//! | single, double contact | with one solid, with board and ring at once |
-//! | segment | one flight, or one single or double contact, of a shot |
+//! | contact on a solid | with the face of the board or the ring alone, in the frame of the contact |
+//! | contact in the world frame | with the bracket, an edge of the board, or both solids at once |
+//! | phase | one flight or one contact of a shot; a shot waits for its next phase |
+//! | segment | a part of a flight for which one polynomial holds |
 //! | step | one time step |
 //! | batch | the shots of one call of [`Simulator::verdicts`], simulated in SIMD lanes |
 //! | lane | one element of a SIMD number; it holds one shot |
 //! | slot | the index of the memory of one shot in progress within a batch |
 //! | block | the shots in the lanes of one step |
-//! | phase | the kind of segment that a shot waits for |
 //!
 //! The type parameter `T` is the number type: `f64` for one shot, a SIMD number for one shot a
 //! lane. A constant in all lanes needs a token of the vector instructions, which every SIMD number

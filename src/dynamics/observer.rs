@@ -14,7 +14,7 @@ pub(crate) type Impulses = [Vec3<f64>; SolidId::COUNT];
 /// No impulse.
 pub(crate) const NO_IMPULSES: Impulses = [Vec3::new(0.0, 0.0, 0.0); SolidId::COUNT];
 
-/// Receives each segment of a shot in order.
+/// Receives each part of a shot in order.
 pub(crate) trait Observer {
     /// Free flight for `dt` along a path that starts at the time `t`.
     fn flight(&mut self, _params: &ModelParams, _t: f64, _dt: f64, _path: &FlightPath) {}

@@ -89,11 +89,13 @@ impl fmt::Display for ContactSequence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// The centre fell through `z = -R`, below which the ring cannot touch the ball.
+    /// The centre fell through `z = -reach` (the radius of the ball and that of the rod), below which
+    /// the ring cannot touch the ball.
     Fell,
-    /// The ball never rose to `z = -R`.
+    /// The ball never rose to `z = -reach`.
     NeverRose,
-    /// The centre is behind the face of the board.
+    /// The centre is behind the plane of the board's core: its face, on a board with round edges
+    /// their radius behind it.
     BehindBoard,
     /// The ball rolled on two solids at once for the physics' `lodged_after_s`.
     Lodged,
@@ -236,6 +238,7 @@ pub struct Outcome {
     /// Position of the centre at the first touch of the board (x, y, z), m.
     pub board_point_m: Option<(f64, f64, f64)>,
     /// Where the undisturbed path (a bank shot: the path off the board) meets the plane of the
-    /// hoop: distance to the right of the centre, facing the hoop (a bank shot: the board), m.
+    /// hoop: distance to the right of the centre, facing the hoop (a bank shot: the board), m; 0 if
+    /// it does not meet the plane.
     pub right_of_centre_m: f64,
 }

@@ -24,9 +24,10 @@ pub struct Release {
     /// Backspin omega_beta0, about the horizontal axis across the flight, rad/s; positive is
     /// backwards.
     pub backspin_rad_s: f64,
-    /// Rifle spin omega_r0, about the horizontal flight direction, rad/s.
+    /// Rifle spin omega_r0, about the level line of flight, rad/s; positive is clockwise as the hoop
+    /// sees it (the axis points from the hoop to the shooter).
     pub rifle_spin_rad_s: f64,
-    /// Side spin omega_z0, about the vertical, rad/s.
+    /// Side spin omega_z0, about the vertical, rad/s; positive is counter-clockwise from above.
     pub side_spin_rad_s: f64,
 }
 
@@ -125,18 +126,18 @@ impl ReleaseWithoutSpeed {
     }
 }
 
-/// The states of many releases, one after the other. An angle that is that of the release before,
-/// as in a column of one place, costs no sine again; the bits are those of [`Release::state`].
+/// The states of many releases, one after the other. The sine and cosine of an angle
+/// that has not changed are used again; the bits are those of [`Release::state`].
 #[derive(Clone, Copy, Debug)]
 pub struct ReleaseStates {
-    court: KnownSine,
-    pitch: KnownSine,
-    polar: KnownSine,
+    court: CachedSinCos,
+    pitch: CachedSinCos,
+    polar: CachedSinCos,
 }
 
 impl Default for ReleaseStates {
     fn default() -> Self {
-        let known = KnownSine::of(0.0);
+        let known = CachedSinCos::of(0.0);
         Self {
             court: known,
             pitch: known,
@@ -164,12 +165,12 @@ impl ReleaseStates {
 
 /// The sine and cosine of the last angle.
 #[derive(Clone, Copy, Debug)]
-struct KnownSine {
+struct CachedSinCos {
     angle_rad: f64,
     sin_cos: (f64, f64),
 }
 
-impl KnownSine {
+impl CachedSinCos {
     fn of(angle_rad: f64) -> Self {
         Self {
             angle_rad,

@@ -47,7 +47,7 @@ impl Physics {
             format!("{c:.4}")
         };
         let edge = match self.board_edge {
-            BoardEdge::None => "none: the board ends at its face".to_owned(),
+            BoardEdge::None => "none: ends at its face".to_owned(),
             BoardEdge::Rounded { radius_m } => inches(radius_m),
         };
         let (board, hoop) = (&self.board_contact, &self.hoop_contact);
@@ -56,7 +56,7 @@ impl Physics {
             (
                 "ball_radius",
                 format!(
-                    "{} (circumference {})",
+                    "{} ({} around)",
                     inches(self.ball_radius_m),
                     inches(2.0 * PI * self.ball_radius_m)
                 ),

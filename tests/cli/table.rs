@@ -47,7 +47,8 @@ fn table(folder: &TempDir, more: &[&str]) -> Answer {
 fn contract_a_table_has_a_shot_for_each_distance_and_a_check_between() {
     let folder = TempDir::new().unwrap();
     let range = ["--distances", "10 ft to 14 ft by 2 ft"];
-    let json = table(&folder, &[&range[..], &["--format", "json"]].concat())
+    let more = ["--format", "json", "--max-loss", "1"];
+    let json = table(&folder, &[&range[..], &more].concat())
         .exits(0)
         .json();
     let shots = json["shots"].as_array().unwrap();
@@ -65,6 +66,32 @@ fn contract_a_table_has_a_shot_for_each_distance_and_a_check_between() {
     assert!(speed(0) < speed(1) && speed(1) < speed(2));
 }
 
+#[test]
+fn contract_nodes_are_added_where_interpolation_costs_too_much() {
+    let folder = TempDir::new().unwrap();
+    let range = ["--distances", "8 ft, 16 ft", "--format", "json"];
+    let losses_and_shots = |max_loss: &str| {
+        let json = table(&folder, &[&range[..], &["--max-loss", max_loss]].concat())
+            .exits(0)
+            .json();
+        let shots = json["shots"].as_array().unwrap().clone();
+        (json["greatest_loss"].as_f64().unwrap(), shots)
+    };
+    let (loss, shots) = losses_and_shots("1");
+    assert!(loss > 0.03 && shots.len() == 2, "{loss} {}", shots.len());
+    let (loss, shots) = losses_and_shots("0.03");
+    assert!(loss <= 0.03 && shots.len() > 2, "{loss} {}", shots.len());
+    let distances: Vec<f64> = shots
+        .iter()
+        .map(|shot| shot["distance_ft"].as_f64().unwrap())
+        .collect();
+    assert!(distances.iter().any(|d| (d - 12.0).abs() < 1e-9));
+    assert!(distances.windows(2).all(|pair| pair[1] > pair[0]));
+    table(&folder, &["--distances", "8 ft, 16 ft", "--max-loss", "2"])
+        .exits(2)
+        .says("give a number from 0 to 1");
+}
+
 const CPP_MAIN: &str = r#"
 #include "t.hpp"
 #include <cstdio>
@@ -79,7 +106,7 @@ int main() {
 #[test]
 fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     let folder = TempDir::new().unwrap();
-    let range = ["--distances", "10 ft, 12 ft"];
+    let range = ["--distances", "10 ft, 12 ft", "--max-loss", "1"];
     // The end of the name says the form.
     for file in ["t.csv", "t.py", "Launcher.java", "t.hpp"] {
         table(&folder, &[&range[..], &["--output", file]].concat()).exits(0);
@@ -186,6 +213,6 @@ fn campaign_interpolation_of_three_launchers() {
         let loss = json["greatest_loss"].as_f64().unwrap();
         let checks = json["checks"].as_array().unwrap().len();
         println!("{name}: interpolation costs at most {loss:.4} in P over {checks} places");
-        assert!(loss < 0.01 && checks == 14, "{name}: {loss} {checks}");
+        assert!(loss < 0.01 && checks >= 14, "{name}: {loss} {checks}");
     }
 }

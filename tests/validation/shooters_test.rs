@@ -374,13 +374,14 @@ fn campaign_shooters_test_covers() {
     // Of a coverage of 95 %: 1.1 % of 400 repetitions. Beyond 3.3 of them is 1 in 1000.
     let binomial = (0.95 * 0.05 / repetitions as f64).sqrt();
     let mut failures = Vec::new();
+    // One cell alone: BANKSHOT_CELL='population 30 Noah 3'.
+    let wanted_cell = std::env::var("BANKSHOT_CELL").ok();
+    let is_wanted = |name: &str| wanted_cell.as_ref().is_none_or(|wanted| wanted == name);
     for shots in [30, 100, 400] {
         for noise in [Noise::None, Noise::Noah, Noise::Optical, Noise::AsScatter] {
             for places in [1, 3] {
                 let cell = cell(shots, noise, places);
-                // One cell alone: BANKSHOT_CELL='30 Noah 3'.
-                let of_cell = format!("{shots} {noise:?} {places}");
-                if std::env::var("BANKSHOT_CELL").is_ok_and(|wanted| wanted != of_cell) {
+                if !is_wanted(&format!("population {shots} {noise:?} {places}")) {
                     continue;
                 }
                 let truth = move |random: &mut ChaCha12Rng| shooter_of_population(places, random);
@@ -409,17 +410,16 @@ fn campaign_shooters_test_covers() {
     // wider.
     let fewer = repetitions / 2;
     let binomial = (0.95 * 0.05 / fewer as f64).sqrt();
-    let is_single = std::env::var("BANKSHOT_CELL").is_ok();
     for (label, factors, r) in [
         ("typical", [1.0, 1.0, 1.0], 0.1),
         ("steady", [0.58, 0.61, 0.73], -0.25),
         ("wild", [1.73, 1.65, 1.36], 0.5),
     ] {
-        if is_single {
-            break;
-        }
         for shots in [30, 100, 400] {
             for noise in [Noise::None, Noise::Noah, Noise::Optical, Noise::AsScatter] {
+                if !is_wanted(&format!("{label} {shots} {noise:?} 1")) {
+                    continue;
+                }
                 let cell = cell(shots, noise, 1);
                 let truth = move |random: &mut ChaCha12Rng| {
                     let mut sds = PRIOR.median_sd;
@@ -455,8 +455,8 @@ fn campaign_shooters_test_covers() {
         }
     }
     for (shots, noise) in [(100, Noise::None), (100, Noise::Noah)] {
-        if is_single {
-            break;
+        if !is_wanted(&format!("t {shots} {noise:?} 1")) {
+            continue;
         }
         let cell = Cell {
             tails: Some(5.0),

@@ -2,7 +2,7 @@
 
 use crate::cli::config_files::{load_profile, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::{print_answer, wrapped_line};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::config::parse_profile;
 use crate::model::{PRESETS, Physics, PhysicsValue};
@@ -118,6 +118,9 @@ fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
     }
 }
 
+/// The column of the source of a value.
+const SOURCE_COLUMN: usize = 52;
+
 /// Every value of the physics, and whether it is measured, from a rule book or assumed.
 fn physics_text(physics: &Physics) -> String {
     let values = physics.values();
@@ -141,7 +144,8 @@ fn physics_text(physics: &Physics) -> String {
         } else {
             own.source.to_owned()
         };
-        let _ = writeln!(text, "  {:<20} {:<36} {source}", own.key, own.value);
+        let line = format!("  {:<20} {:<28} {source}", own.key, own.value);
+        let _ = writeln!(text, "{}", wrapped_line(&line, SOURCE_COLUMN));
     }
     text
 }

@@ -2,16 +2,16 @@
 
 use crate::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
 use crate::cli::config_files::load_profile;
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::Failure;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{COLUMNS, print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::plots::physics_probabilities;
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -49,12 +49,11 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
             print_remark(&format!("plot written to {}", path.display()));
         }
     }
-    print_answer(&if options.json {
-        format!("{:#}\n", rows_json(&rows))
+    if options.json {
+        print_answer(&format!("{:#}\n", rows_json(&rows)))
     } else {
-        rows_text(&profile, &rows)
-    })?;
-    Ok(code::DONE)
+        print_prose(&rows_text(&profile, &rows))
+    }
 }
 
 fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
@@ -66,6 +65,8 @@ fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
     };
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_content_arrangement(ContentArrangement::Dynamic);
+    table.set_width(COLUMNS as u16);
     table.set_header(vec![
         "physics".to_owned(),
         "direct\nP".to_owned(),

@@ -1,6 +1,6 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
-use crate::best_shot::{ShotKind, ShotTable, ShotTableError, ShotTableRequest};
+use crate::best_shot::{MOST_NODES, ShotKind, ShotTable, ShotTableError, ShotTableRequest};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
@@ -11,7 +11,7 @@ use crate::output::atomic_file;
 use crate::output::shot_table_files::source_code::{Language, source_code};
 use crate::output::shot_table_files::table_text::{check_text, table_csv, table_json, table_text};
 use crate::shooter::NominalVariable;
-use crate::units::{self, Dimension};
+use crate::units::{self, DEGREE_RAD, Dimension, UnitSystem};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are
-interpolated, and the table says how much P that costs.
+interpolated. Where that costs more than --max-loss in P, nodes are added halfway. The table says what is left.
 
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --pitch '60 deg' --backspin '2 rev/s'
@@ -48,6 +48,9 @@ pub(crate) struct TableOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
+    /// The most that interpolation may cost in P; 1 adds no nodes.
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
+    pub(crate) max_loss: f64,
     /// The form of the table [default: by the end of the output's name, else text].
     #[arg(long, value_enum)]
     pub(crate) format: Option<TableFormat>,
@@ -95,11 +98,6 @@ impl TableFormat {
     }
 }
 
-/// Most places of a table.
-const MOST_PLACES: usize = 2000;
-/// Interpolation that costs more than this in P is worth a remark.
-const GREAT_LOSS: f64 = 0.01;
-
 pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
     if let Some(units) = options.units {
@@ -131,6 +129,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         distances_m,
         angles_rad,
         fixed,
+        max_loss: options.max_loss,
     };
     let table =
         ShotTable::compute(&profile, &request, &ProgressBars::new(quiet)).map_err(|error| {
@@ -176,7 +175,13 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         if format != TableFormat::Text {
             print_remark(check_text(&table).trim_end());
         }
-        if table.greatest_loss().is_some_and(|loss| loss > GREAT_LOSS) {
+        if let Some(added) = added_nodes(&table, &request, units) {
+            print_remark(&added);
+        }
+        if table
+            .greatest_loss()
+            .is_some_and(|loss| loss > request.max_loss)
+        {
             print_remark(&great_loss_warning(&request));
         }
         let bouncing = table.shots.iter().flatten();
@@ -227,6 +232,40 @@ fn class_name(output: Option<&Path>) -> Result<String, Failure> {
     }
 }
 
+/// A share from 0 to 1.
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+        _ => Err("give a number from 0 to 1".to_owned()),
+    }
+}
+
+/// Which distances and angles were added to those that were asked for.
+fn added_nodes(table: &ShotTable, request: &ShotTableRequest, units: UnitSystem) -> Option<String> {
+    let (long, metre) = units.length();
+    let added = |all: &[f64], asked: &[f64], unit: f64, name: &str| {
+        let new = all.iter().filter(|value| !asked.contains(value));
+        let texts: Vec<String> = new.map(|value| format!("{:.4}", value / unit)).collect();
+        let texts: Vec<&str> = texts
+            .iter()
+            .map(|text| text.trim_end_matches('0').trim_end_matches('.'))
+            .collect();
+        (!texts.is_empty()).then(|| format!("{} {name}", texts.join(", ")))
+    };
+    let parts = [
+        added(&table.distances_m, &request.distances_m, metre, long),
+        added(&table.angles_rad, &request.angles_rad, DEGREE_RAD, "deg"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "added, because interpolation would cost more than {} in P: {}",
+            request.max_loss,
+            parts.join(" and ")
+        )
+    })
+}
+
 /// What to do where interpolation costs much: neighbours are then shots of different sorts, unless
 /// what they differ in is fixed.
 fn great_loss_warning(request: &ShotTableRequest) -> String {
@@ -242,7 +281,8 @@ fn great_loss_warning(request: &ShotTableRequest) -> String {
         format!(", or fix {}", free.join(" and "))
     };
     format!(
-        "warning: between some places interpolation costs more than {GREAT_LOSS} in P; take a smaller step{fix}"
+        "warning: between some places interpolation costs more than {} in P; take a smaller step{fix}",
+        request.max_loss
     )
 }
 
@@ -270,8 +310,8 @@ fn values(flag: &str, text: &str, dimension: Dimension) -> Result<Vec<f64>, Fail
             }
             // The end belongs to the range, also where the steps do not add up exactly.
             let steps = ((to - from) / step + 1e-9).floor();
-            if steps >= MOST_PLACES as f64 {
-                return Err(refuse(format!("has more than {MOST_PLACES} values")));
+            if steps >= MOST_NODES as f64 {
+                return Err(refuse(format!("has more than {MOST_NODES} values")));
             }
             (0..=steps as usize)
                 .map(|k| from + step * k as f64)
@@ -279,8 +319,8 @@ fn values(flag: &str, text: &str, dimension: Dimension) -> Result<Vec<f64>, Fail
         }
         None => text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?,
     };
-    if values.len() > MOST_PLACES {
-        return Err(refuse(format!("has more than {MOST_PLACES} values")));
+    if values.len() > MOST_NODES {
+        return Err(refuse(format!("has more than {MOST_NODES} values")));
     }
     if values.windows(2).any(|pair| !(pair[1] > pair[0])) {
         return Err(refuse("does not ascend".to_owned()));

@@ -3,7 +3,7 @@
 use super::lane_block::LaneBlock;
 use super::workspace::{BatchWorkspace, Phase};
 use crate::dynamics::end_rules::{ShotLimits, first_ending};
-use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS};
+use crate::dynamics::integrators::event_driven::{self, MAX_PHASES};
 use crate::dynamics::outcome::Ending;
 use crate::math::real::SimdReal;
 use crate::math::simd::{F32x16, F64x8};
@@ -31,9 +31,9 @@ pub(super) type Narrow<S> = F64x8<S>;
 /// Sixteen lanes.
 pub(super) type Wide<S> = Unrolled<F64x8<S>>;
 /// Sixteen lanes in single precision.
-pub(super) type NarrowSingle<S> = F32x16<S>;
+pub(super) type NarrowF32<S> = F32x16<S>;
 /// Thirty-two lanes in single precision.
-pub(super) type WideSingle<S> = Unrolled<F32x16<S>>;
+pub(super) type WideF32<S> = Unrolled<F32x16<S>>;
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     /// The parameters in every lane, as near as the lanes can hold them.
@@ -49,12 +49,12 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[cold]
     pub(super) fn run_scalar(&mut self, slot: u32) {
         let shot = &mut self.workspace.slots[slot as usize];
-        if shot.segments >= MAX_SEGMENTS {
+        if shot.phases >= MAX_PHASES {
             self.workspace.finish(slot, Ending::Unresolved, false);
             return;
         }
-        shot.segments += 1;
-        match event_driven::run_segment(self.params, self.limits, shot) {
+        shot.phases += 1;
+        match event_driven::run_phase(self.params, self.limits, shot) {
             Some(verdict) => self.workspace.record(slot, verdict),
             None => self.workspace.enqueue(slot),
         }

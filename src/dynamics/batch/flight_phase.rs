@@ -6,7 +6,7 @@ use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
 use crate::dynamics::flight::FlightEvents;
-use crate::dynamics::integrators::event_driven::{self, MAX_SEGMENTS, solids_touched_at_release};
+use crate::dynamics::integrators::event_driven::{self, MAX_PHASES, solids_touched_at_release};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::real::{LaneBits, MAX_F64_LANES, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -170,13 +170,13 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         let mut remaining = real_lanes;
         for lane in lanes_in(real_lanes) {
             let shot = &mut self.workspace.slots[slots[lane] as usize];
-            if bit(end.needs_scalar, lane) || shot.segments >= MAX_SEGMENTS {
+            if bit(end.needs_scalar, lane) || shot.phases >= MAX_PHASES {
                 remaining &= !(1 << lane);
                 block.vacate(lane);
                 self.run_scalar(slots[lane]);
                 continue;
             }
-            shot.segments += 1;
+            shot.phases += 1;
             if bit(end.ring_motions(), lane) {
                 block.remove_on_ring(lane, shot);
             } else {

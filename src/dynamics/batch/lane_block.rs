@@ -1,4 +1,4 @@
-//! Eight or sixteen shots in flight or on two solids side by side, one in each lane.
+//! Shots in flight or in contact in the world frame side by side, one in each lane.
 
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::ShotEndFlags;

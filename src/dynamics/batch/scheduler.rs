@@ -1,4 +1,4 @@
-//! Runs the shots of a batch, eight or sixteen to a step.
+//! Runs the shots of a batch, 4 to 32 to a step.
 //!
 //! The shots wait in queues by phase: flight, contact in the frame of one solid, contact in the
 //! world frame. Flights are closed form and are done a block at a time. In contact the shots of a
@@ -9,7 +9,7 @@
 //! It is the same generic code as for one shot, with the same operations in the same order. So the
 //! verdicts are the same, bit for bit.
 
-use super::batch_state::{Batch, NARROW, Narrow, NarrowSingle, WIDE, Wide, WideSingle};
+use super::batch_state::{Batch, NARROW, Narrow, NarrowF32, WIDE, Wide, WideF32};
 use super::board_contact_phase::board_contact;
 use super::flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
@@ -84,13 +84,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             Phase::Flight if !self.params.has_paper_flight() => {}
             Phase::Flight if WIDTH == WIDE => fly::<S, Wide<S>, WIDTH>(self),
             Phase::Flight => fly::<S, Narrow<S>, WIDTH>(self),
-            Phase::Single(solid) if !self.limits.single_precision => {
+            Phase::OnSolid(solid) if !self.limits.single_precision => {
                 on_solid::<S, Narrow<S>, WIDTH>(self, solid);
             }
-            Phase::Single(solid) if WIDTH == WIDE => {
-                on_solid::<S, WideSingle<S>, WIDTH>(self, solid)
-            }
-            Phase::Single(solid) => on_solid::<S, NarrowSingle<S>, WIDTH>(self, solid),
+            Phase::OnSolid(solid) if WIDTH == WIDE => on_solid::<S, WideF32<S>, WIDTH>(self, solid),
+            Phase::OnSolid(solid) => on_solid::<S, NarrowF32<S>, WIDTH>(self, solid),
             Phase::InWorld => in_world::<S, Narrow<S>, WIDTH>(self),
         }
     }

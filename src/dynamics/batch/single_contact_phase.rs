@@ -40,7 +40,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         A: Solid<T>,
         B: Solid<T>,
     {
-        let phase = Phase::Single(A::ID);
+        let phase = Phase::OnSolid(A::ID);
         let oscillator = &self.limits.oscillators[A::ID.index()].map(
             #[inline(always)]
             |value| T::broadcast(self.simd, value),

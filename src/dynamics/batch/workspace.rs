@@ -30,7 +30,7 @@ pub struct BatchWorkspace {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Phase {
     Flight,
-    Single(SolidId),
+    OnSolid(SolidId),
     InWorld,
 }
 
@@ -39,15 +39,15 @@ impl Phase {
     /// Every phase, in the order in which they are processed.
     pub(super) const ALL: [Self; Self::COUNT] = [
         Self::Flight,
-        Self::Single(SolidId::Board),
-        Self::Single(SolidId::Ring),
+        Self::OnSolid(SolidId::Board),
+        Self::OnSolid(SolidId::Ring),
         Self::InWorld,
     ];
 
     const fn index(self) -> usize {
         match self {
             Self::Flight => 0,
-            Self::Single(solid) => 1 + solid.index(),
+            Self::OnSolid(solid) => 1 + solid.index(),
             Self::InWorld => 1 + SolidId::COUNT,
         }
     }
@@ -55,7 +55,7 @@ impl Phase {
     fn of(contact: &ContactState) -> Self {
         match contact {
             ContactState::Free => Self::Flight,
-            ContactState::Single(solid) => Self::Single(*solid),
+            ContactState::OnSolid(solid) => Self::OnSolid(*solid),
             ContactState::InWorld => Self::InWorld,
         }
     }

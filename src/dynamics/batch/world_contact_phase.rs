@@ -83,7 +83,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         let touching = block.load_touching::<T>(simd);
         let contact = WorldContact {
             touching,
-            step_s: params.splat(self.limits.longest_step_s),
+            step_s: params.splat(self.limits.longest_world_step_s),
             share: block.load_step_shares(simd),
         };
         let mut next_friction = friction;

@@ -44,8 +44,8 @@ pub(super) struct ContactPair<T> {
     pub(super) axes: [[Vec3<T>; 3]; 2],
     /// Lever over the moment of inertia (per unit of mass).
     lever_over_inertia: [T; 2],
-    /// Normal accelerations.
-    pub(super) normals: [T; 2],
+    /// Normal forces per unit of mass, m/s^2.
+    pub(super) normal_forces: [T; 2],
 }
 
 impl<T: Real> ContactPair<T> {
@@ -66,7 +66,7 @@ impl<T: Real> ContactPair<T> {
         Self {
             axes: [first_axes, second_axes],
             lever_over_inertia: for_both!(i => kinematics[i].lever * params.ball.mass_over_inertia),
-            normals: for_both!(i => kinematics[i].normal_force(&materials[i])),
+            normal_forces: for_both!(i => kinematics[i].normal_force(&materials[i])),
             kinematics,
             materials,
         }
@@ -115,7 +115,7 @@ impl<T: Real> ContactPair<T> {
             let kinematics = &mut self.kinematics[i];
             kinematics.velocity = along(state.velocity_m_s).select(changed, kinematics.velocity);
             kinematics.spin = along(state.spin_rad_s).select(changed, kinematics.spin);
-            self.normals[i] = self.kinematics[i].normal_force(&self.materials[i]);
+            self.normal_forces[i] = self.kinematics[i].normal_force(&self.materials[i]);
         }
     }
 
@@ -140,13 +140,13 @@ impl<T: Real> ContactPair<T> {
     /// The normal force of a contact alone.
     #[inline(always)]
     pub(super) fn normal_only(&self, params: &ModelParams<T>, contact: usize) -> ContactVector<T> {
-        ContactVector::new(self.normals[contact], params.zero(), params.zero())
+        ContactVector::new(self.normal_forces[contact], params.zero(), params.zero())
     }
 
     /// The greatest friction of a contact.
     #[inline(always)]
     pub(super) fn friction_limit(&self, contact: usize) -> T {
-        self.materials[contact].friction_coefficient * self.normals[contact].positive_part()
+        self.materials[contact].friction_coefficient * self.normal_forces[contact].positive_part()
     }
 
     /// The friction of both contacts; `sliding` is that of contacts that slide.
@@ -172,12 +172,12 @@ impl<T: Real> ContactPair<T> {
     /// tangential acceleration itself.
     ///
     /// The tangential acceleration at a contact changes the slip there equally in both directions,
-    /// by the inverse effective mass `s = 1 + lever^2 m/I`, and the slip at the other contact by a
+    /// by the inverse effective mass `b = 1 + lever^2 m/I`, and the slip at the other contact by a
     /// coupling matrix `C`:
     ///
     /// ```text
-    /// s_1 a_1 + C_12 a_2 = w_1        (s_2 - C_21 C_12/s_1) a_2 = w_2 - C_21 w_1/s_1
-    /// C_21 a_1 + s_2 a_2 = w_2   so   a_1 = (w_1 - C_12 a_2)/s_1
+    /// b_1 a_1 + C_12 a_2 = w_1        (b_2 - C_21 C_12/b_1) a_2 = w_2 - C_21 w_1/b_1
+    /// C_21 a_1 + b_2 a_2 = w_2   so   a_1 = (w_1 - C_12 a_2)/b_1
     /// ```
     #[inline(always)]
     pub(super) fn solve(
@@ -187,26 +187,26 @@ impl<T: Real> ContactPair<T> {
         right_side: [Vec2<T>; 2],
     ) -> [Vec2<T>; 2] {
         let [w_1, w_2] = right_side;
-        let [s_1, s_2] = for_both!(i => {
-            let compliance = self.kinematics[i].inverse_effective_mass(&params.ball);
-            compliance.select(constrained[i], params.one())
+        let [b_1, b_2] = for_both!(i => {
+            let inverse_effective_mass = self.kinematics[i].inverse_effective_mass(&params.ball);
+            inverse_effective_mass.select(constrained[i], params.one())
         });
         let [c_12, c_21] = for_both!(i => self.coupling(params, i, constrained[i]));
-        let inverse_s_1 = params.one() / s_1;
-        let from_first = c_21.times(Vec2::new(w_1.x * inverse_s_1, w_1.y * inverse_s_1));
+        let inverse_b_1 = params.one() / b_1;
+        let from_first = c_21.times(Vec2::new(w_1.x * inverse_b_1, w_1.y * inverse_b_1));
         let reduced = Vec2::new(w_2.x - from_first.x, w_2.y - from_first.y);
-        let product = c_21.product_scaled(&c_12, inverse_s_1);
+        let product = c_21.product_scaled(&c_12, inverse_b_1);
         let matrix = Matrix2 {
-            a: s_2 - product.a,
+            a: b_2 - product.a,
             b: -product.b,
             c: -product.c,
-            d: s_2 - product.d,
+            d: b_2 - product.d,
         };
-        let a_2 = matrix.solve(params, reduced, s_2);
+        let a_2 = matrix.solve(params, reduced, b_2);
         let from_second = c_12.times(a_2);
         let a_1 = Vec2::new(
-            (w_1.x - from_second.x) * inverse_s_1,
-            (w_1.y - from_second.y) * inverse_s_1,
+            (w_1.x - from_second.x) * inverse_b_1,
+            (w_1.y - from_second.y) * inverse_b_1,
         );
         [a_1, a_2]
     }

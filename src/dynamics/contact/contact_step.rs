@@ -2,7 +2,7 @@
 //!
 //! Along the normal the ball is a damped oscillator whose motion has a closed form as long as
 //! gravity and the turning of the frame (together `G`) are constant ([`super::oscillator`]). So a
-//! step can be a fifth of a bounce. What changes slowly (friction's direction, the frame, `G`) is
+//! step can be a quarter of a bounce. What changes slowly (friction's direction, the frame, `G`) is
 //! integrated with three evaluations, at the start, the middle and the end of the step, by
 //! Simpson's rule; the normal force enters by its exact impulse.
 //!
@@ -28,8 +28,10 @@ use crate::model::solids::{
 
 /// Shortest step, as a fraction of the longest.
 const SHORTEST_STEP: f64 = 1e-6;
-/// Newton steps to the end of a slip or a roll, and to the parting.
-const NEWTON_STEPS: (u32, u32) = (1, 2);
+/// Newton steps to the end of a slip or a roll.
+const NEWTON_STEPS_TO_CHANGE: u32 = 1;
+/// Newton steps to the parting, and to the end of the normal force.
+const NEWTON_STEPS_TO_PARTING: u32 = 2;
 
 /// The contact of a ball with one solid.
 pub(crate) struct Contact<'a, T, S> {
@@ -86,9 +88,9 @@ struct Evaluation<T> {
     normal_acceleration: T,
     rates: SlowRates<T>,
     slip: Vec2<T>,
-    /// The slip rate is `still + swing v_n`.
-    still: Vec2<T>,
-    swing: Vec2<T>,
+    /// The slip rate is linear in v_n: its value at v_n = 0, and what it gains per v_n.
+    slip_rate_at_zero_vn: Vec2<T>,
+    slip_rate_per_vn: Vec2<T>,
     slip_rate: Vec2<T>,
 }
 
@@ -138,6 +140,29 @@ struct StageFriction<T> {
     friction: Vec2<T>,
 }
 
+/// The normal motion of a step with G as at its start.
+struct NormalStep<T: Real> {
+    /// Length of the step and half of it, s.
+    h: T,
+    half: T,
+    /// k h^2 and c h.
+    k_h2: T,
+    c_h: T,
+    /// Compression (m) and normal velocity (m/s) in the middle and at the end.
+    middle: (T, T),
+    end: (T, T),
+    /// N is positive at the start.
+    presses: T::Mask,
+}
+
+/// The equations at a later stage of a step.
+struct Stage<T> {
+    at: Evaluation<T>,
+    /// The positive part of N, m/s^2.
+    normal: T,
+    friction: StageFriction<T>,
+}
+
 #[inline(always)]
 fn scaled<T: Real>(v: Vec2<T>, factor: T) -> Vec2<T> {
     Vec2::new(v.x * factor, v.y * factor)
@@ -166,43 +191,43 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
     #[inline(always)]
     fn evaluate(&self, motion: &ContactMotion<T>, distances: ContactDistances<T>) -> Evaluation<T> {
         let (v, w) = (motion.velocity, motion.spin);
-        let gravity = self.solid.free_acceleration(&self.params.ball, motion);
+        let free = self.solid.free_acceleration(&self.params.ball, motion);
         let slip = motion.slip(distances.lever);
         let zero = self.params.zero();
         if S::FLAT {
-            let swing = Vec2::new(-w.tangent.y, w.tangent.x);
+            let slip_rate_per_vn = Vec2::new(-w.tangent.y, w.tangent.x);
             let none = FrameTurn {
                 turn: Vec2::new(zero, zero),
                 torsion: zero,
             };
             return Evaluation {
-                normal_acceleration: gravity.normal,
+                normal_acceleration: free.normal,
                 rates: SlowRates {
-                    v1: gravity.tangent.x,
-                    v2: gravity.tangent.y,
+                    v1: free.tangent.x,
+                    v2: free.tangent.y,
                     spin: ContactVector::new(zero, zero, zero),
                     coordinates: self.solid.coordinate_rates(motion, &distances, &none),
                 },
                 slip,
-                still: gravity.tangent,
-                swing,
-                slip_rate: gravity.tangent + scaled(swing, v.normal),
+                slip_rate_at_zero_vn: free.tangent,
+                slip_rate_per_vn,
+                slip_rate: free.tangent + scaled(slip_rate_per_vn, v.normal),
                 distances,
             };
         }
         let frame = self.solid.frame_turn(motion, &distances);
         let FrameTurn { turn, torsion } = frame;
-        let twist = distances.lever * w.normal;
-        let still = Vec2::new(
-            twist * turn.y + gravity.tangent.x,
-            gravity.tangent.y - twist * turn.x,
+        let lever_spin = distances.lever * w.normal;
+        let slip_rate_at_zero_vn = Vec2::new(
+            lever_spin * turn.y + free.tangent.x,
+            free.tangent.y - lever_spin * turn.x,
         );
-        let swing = Vec2::new(-(turn.x + w.tangent.y), w.tangent.x - turn.y);
+        let slip_rate_per_vn = Vec2::new(-(turn.x + w.tangent.y), w.tangent.x - turn.y);
         Evaluation {
-            normal_acceleration: turn.x * v.tangent.x + (turn.y * v.tangent.y + gravity.normal),
+            normal_acceleration: turn.x * v.tangent.x + (turn.y * v.tangent.y + free.normal),
             rates: SlowRates {
-                v1: distances.core * (gravity.tangent.x + torsion * v.tangent.y),
-                v2: distances.axis * gravity.tangent.y,
+                v1: distances.core * (free.tangent.x + torsion * v.tangent.y),
+                v2: distances.axis * free.tangent.y,
                 spin: ContactVector::new(
                     turn.x * w.tangent.x + turn.y * w.tangent.y,
                     torsion * w.tangent.y - turn.x * w.normal,
@@ -211,9 +236,9 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 coordinates: self.solid.coordinate_rates(motion, &distances, &frame),
             },
             slip,
-            still,
-            swing,
-            slip_rate: still + scaled(swing, v.normal),
+            slip_rate_at_zero_vn,
+            slip_rate_per_vn,
+            slip_rate: slip_rate_at_zero_vn + scaled(slip_rate_per_vn, v.normal),
             distances,
         }
     }
@@ -236,11 +261,11 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             rates.coordinates[1] * h + from.coordinates[1],
             rates.coordinates[2] * h + from.coordinates[2],
         ];
-        let twist = scaled(impulse.times_lever, ball.mass_over_inertia);
+        let spin_change = scaled(impulse.times_lever, ball.mass_over_inertia);
         let spin = ContactVector::new(
             rates.spin.normal * h + from.spin.normal,
-            rates.spin.tangent.x * h + (from.spin.tangent.x + twist.y),
-            rates.spin.tangent.y * h + (from.spin.tangent.y - twist.x),
+            rates.spin.tangent.x * h + (from.spin.tangent.x + spin_change.y),
+            rates.spin.tangent.y * h + (from.spin.tangent.y - spin_change.x),
         );
         let distances = self.solid.distances(ball, compression, &coordinates);
         let v = from.velocity.tangent;
@@ -286,10 +311,10 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         if at_zero_slip.any() {
             // Friction's own impulse removes the slip.
             let removed = scaled(slip, effective_mass.select(at_zero_slip, zero));
-            let twist = scaled(removed, distances.lever * mass_over_inertia);
+            let spin_change = scaled(removed, distances.lever * mass_over_inertia);
             let (v, w) = (&mut motion.velocity.tangent, &mut motion.spin.tangent);
             *v = *v - removed;
-            *w = Vec2::new(w.x - twist.y, w.y + twist.x);
+            *w = Vec2::new(w.x - spin_change.y, w.y + spin_change.x);
         }
         let at = self.evaluate(&motion, distances);
         let normal =
@@ -298,9 +323,9 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             - material.stiffness * motion.velocity.normal;
         let pressing = normal.positive_part();
         let limit = material.friction_coefficient * pressing;
-        // Small slip after a failed roll follows the slip rate, and faster than a step can.
-        let soon = at.slip_rate.norm_squared() * self.oscillator.soon.squared();
-        let follows_rate = friction.rolling_failed & at.slip.norm_squared().le(soon);
+        // A slip that its rate can turn within half a step follows the rate after a failed roll.
+        let max_slip_squared = at.slip_rate.norm_squared() * self.oscillator.half_step_s.squared();
+        let follows_rate = friction.rolling_failed & at.slip.norm_squared().le(max_slip_squared);
         let slip_or_rate = at.slip_rate.select(at_zero_slip | follows_rate, at.slip);
         let size = slip_or_rate.norm();
         let direction = scaled(slip_or_rate, one / size.select(size.is_positive(), one));
@@ -350,7 +375,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         // Sliding: the slip along its direction. Rolling: mu N minus the friction that rolling
         // needs.
         let mu = material.friction_coefficient;
-        let d_slip_rate_d_compression_rate = -at.swing.dot(start.direction);
+        let d_slip_rate_d_compression_rate = -at.slip_rate_per_vn.dot(start.direction);
         let required_rate = start.effective_mass * d_slip_rate_d_compression_rate;
         let mu_a = mu * start.inverse_effective_mass;
         let displacement =
@@ -377,7 +402,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 oscillator,
                 normal_motion,
                 (one, compression_at_end),
-                NEWTON_STEPS.1,
+                NEWTON_STEPS_TO_PARTING,
             );
             tau = root.select(parts, one);
             // After N = 0 the formula's slip grows again: a slip that ends later does not count.
@@ -396,7 +421,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 oscillator,
                 normal_motion,
                 (until, last),
-                NEWTON_STEPS.0,
+                NEWTON_STEPS_TO_CHANGE,
             );
             change_first = changes & root.lt(tau);
             tau = root.select(change_first, tau);
@@ -439,7 +464,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             oscillator,
             normal_motion,
             (tau, last),
-            NEWTON_STEPS.1,
+            NEWTON_STEPS_TO_PARTING,
         );
         // A step that starts at the root goes on.
         let ahead = one.splat(SHORTEST_STEP * 2.0).lt(root);
@@ -507,7 +532,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         dt * self.oscillator.inverse_step
     }
 
-    /// Advances the ball by one step of at most `longest` (in units of the longest step).
+    /// Advances the ball by one step of at most `longest` (in units of the longest step): the
+    /// start, the first event, the middle, the end, and Simpson's rule over the three.
     #[inline(always)]
     pub(crate) fn step(
         &self,
@@ -515,136 +541,226 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         friction: &FrictionState<T>,
         longest: T,
     ) -> MacroStep<T> {
-        let (params, material, oscillator) = (self.params, self.material(), self.oscillator);
-        let (zero, mu) = (params.zero(), material.friction_coefficient);
+        let oscillator = self.oscillator;
         let start = self.start(motion, friction);
-        let (at, v_n) = (&start.at, start.motion.velocity.normal);
-        let g = at.normal_acceleration;
-        let shift = g * oscillator.inverse_stiffness;
+        let shift = start.at.normal_acceleration * oscillator.inverse_stiffness;
         let normal_motion = NormalMotion {
             displacement: start.motion.compression + shift,
-            velocity: v_n,
+            velocity: start.motion.velocity.normal,
         };
         let end = self.first_event(&start, &normal_motion, longest);
-        let rolling = start.rolling;
-        let presses = start.normal.is_positive();
+        let normal = self.normal_step(&start, (&normal_motion, shift), end.tau);
+        let middle = self.middle_stage(&start, &normal);
+        let (last, negative_impulse) = self.end_stage(&start, &normal, &middle);
+        let mut next = self.simpson_step(&start, &normal, (&middle, &last), negative_impulse);
+        // A ball that parts is at zero compression, but for the error of the step.
+        next.compression = self.params.zero().select(end.parts, next.compression);
+        self.solid.rebase(&mut next);
+        let (fraction, min_remainder) = oscillator.slip_remainder;
+        let remainder = Real::max(start.slip_speed * fraction, min_remainder);
+        let usual = self.params.splat(SLIP_TOLERANCE_M_S);
+        MacroStep {
+            motion: next,
+            friction: FrictionState {
+                rolling: start.rolling,
+                rolling_failed: start.rolling_failed,
+                slip_tolerance: remainder.select(end.ends_slip, usual),
+            },
+            dt: normal.h,
+            parts: end.parts,
+        }
+    }
 
-        // 3. The middle of the step, with G as at the start.
-        let h = end.tau * oscillator.step_s;
-        let half = h * 0.5;
-        let [at_half, at_end] = oscillator.at_half_and_whole(end.tau);
+    /// The normal motion of a step of length `tau`, with G as at the start.
+    #[inline(always)]
+    fn normal_step(
+        &self,
+        start: &StepStart<T>,
+        (normal_motion, shift): (&NormalMotion<T>, T),
+        tau: T,
+    ) -> NormalStep<T> {
+        let (material, oscillator) = (self.material(), self.oscillator);
+        let h = tau * oscillator.step_s;
+        let [at_half, at_end] = oscillator.at_half_and_whole(tau);
         let (x_m, vn_m) = normal_motion.after(material, oscillator, at_half);
         let (x_e, vn_e) = normal_motion.after(material, oscillator, at_end);
-        let (u_m, u_e) = (x_m - shift, x_e - shift);
-        let (kh2, ch) = (material.stiffness * h * h, material.damping * h);
-        let impulse = (mu * (vn_m - v_n - g * half))
+        NormalStep {
+            h,
+            half: h * 0.5,
+            k_h2: material.stiffness * h * h,
+            c_h: material.damping * h,
+            middle: (x_m - shift, vn_m),
+            end: (x_e - shift, vn_e),
+            presses: start.normal.is_positive(),
+        }
+    }
+
+    /// 3. The middle of the step, with G as at the start.
+    ///
+    /// If G then grows evenly by D until the middle, the compression there is less by `D h^2/24` and
+    /// the velocity greater by `D h/4`; N counts them.
+    #[inline(always)]
+    fn middle_stage(&self, start: &StepStart<T>, normal: &NormalStep<T>) -> Stage<T> {
+        let (params, material) = (self.params, self.material());
+        let (at, v_n) = (&start.at, start.motion.velocity.normal);
+        let (half, (u_m, vn_m)) = (normal.half, normal.middle);
+        let normal_impulse = (material.friction_coefficient
+            * (vn_m - v_n - at.normal_acceleration * half))
             .positive_part()
-            .select(presses, zero);
+            .select(normal.presses, params.zero());
         let path = start.motion.compression - u_m;
-        let roll_still = scaled(at.still, -start.effective_mass);
-        let roll_swing = scaled(at.swing, -start.effective_mass);
-        let linear = (scaled(roll_still, half) + scaled(roll_swing, path))
-            .select(rolling, scaled(start.direction, -impulse));
+        let rolling_constant = scaled(at.slip_rate_at_zero_vn, -start.effective_mass);
+        let rolling_per_vn = scaled(at.slip_rate_per_vn, -start.effective_mass);
+        let linear = (scaled(rolling_constant, half) + scaled(rolling_per_vn, path))
+            .select(start.rolling, scaled(start.direction, -normal_impulse));
         let mean_compression = (start.motion.compression + u_m) * 0.5;
         let mean_distances = ContactDistances {
             lever: params.ball.radius - mean_compression,
             core: self.solid.reach(&params.ball) - mean_compression,
             ..at.distances
         };
-        let kick = FrictionImpulse {
-            linear: self.times_distances(linear, &mean_distances),
-            times_lever: scaled(linear, mean_distances.lever),
-        };
-        let (middle, distances_m) = self.advance(&start, &at.rates, half, (u_m, vn_m), &kick);
-        let at_m = self.evaluate(&middle, distances_m);
-        let change_m = at_m.normal_acceleration - g;
-        let normal_m = (material.stiffness * u_m
+        let impulse = self.friction_impulse(linear, &mean_distances);
+        let (motion, distances) = self.advance(start, &at.rates, half, (u_m, vn_m), &impulse);
+        let at_m = self.evaluate(&motion, distances);
+        let change = at_m.normal_acceleration - at.normal_acceleration;
+        let force = (material.stiffness * u_m
             - material.damping * vn_m
-            - change_m * (kh2 * (1.0 / 24.0) + ch * 0.25))
+            - change * (normal.k_h2 * (1.0 / 24.0) + normal.c_h * 0.25))
             .positive_part();
-        let friction_m = self.stage_friction(&start, &at_m, normal_m);
+        Stage {
+            friction: self.stage_friction(start, &at_m, force),
+            at: at_m,
+            normal: force,
+        }
+    }
 
-        // 4. The end, with the change of G.
-        let u_end = u_e - change_m * h * h * (1.0 / 3.0);
-        let vn_end = vn_e + change_m * h * (-(kh2 * (1.0 / 12.0)) - ch * (1.0 / 3.0) + 1.0);
-        let normal_end = material.stiffness * u_end - material.damping * vn_end;
-        let lost =
-            self.negative_impulse(h, normal_end, vn_end, normal_end + at_m.normal_acceleration);
-        let impulse = (mu * (vn_end - v_n - h * at_m.normal_acceleration - lost))
+    /// 4. The end of the step, and the part of the impulse of N that is negative.
+    ///
+    /// G grows evenly, by D until the middle. To the first order in k h^2 and c h, the compression
+    /// is less by `D h^2/3` and the velocity greater by `D h (1 - k h^2/12 - c h/3)`.
+    #[inline(always)]
+    fn end_stage(
+        &self,
+        start: &StepStart<T>,
+        normal: &NormalStep<T>,
+        middle: &Stage<T>,
+    ) -> (Stage<T>, T) {
+        let (params, material) = (self.params, self.material());
+        let (at, v_n) = (&start.at, start.motion.velocity.normal);
+        let (h, (u_e, vn_e)) = (normal.h, normal.end);
+        let at_m = &middle.at;
+        let change = at_m.normal_acceleration - at.normal_acceleration;
+        let u = u_e - change * h * h * (1.0 / 3.0);
+        let vn =
+            vn_e + change * h * (-(normal.k_h2 * (1.0 / 12.0)) - normal.c_h * (1.0 / 3.0) + 1.0);
+        let force = material.stiffness * u - material.damping * vn;
+        let negative = self.negative_impulse(h, force, vn, force + at_m.normal_acceleration);
+        let normal_impulse = (material.friction_coefficient
+            * (vn - v_n - h * at_m.normal_acceleration - negative))
             .positive_part()
-            .select(presses, zero);
-        let (path, two) = (start.motion.compression - u_end, params.splat(2.0));
-        let swing_m = scaled(at_m.swing, friction_m.factor);
-        let still_m = scaled(at_m.still, friction_m.factor);
-        let linear = (scaled(scaled(still_m, two) - roll_still, h)
-            + scaled(scaled(swing_m, two) - roll_swing, path))
+            .select(normal.presses, params.zero());
+        let (path, two) = (start.motion.compression - u, params.splat(2.0));
+        let rolling_constant = scaled(at.slip_rate_at_zero_vn, -start.effective_mass);
+        let rolling_per_vn = scaled(at.slip_rate_per_vn, -start.effective_mass);
+        let per_vn_m = scaled(at_m.slip_rate_per_vn, middle.friction.factor);
+        let constant_m = scaled(at_m.slip_rate_at_zero_vn, middle.friction.factor);
+        let linear = (scaled(scaled(constant_m, two) - rolling_constant, h)
+            + scaled(scaled(per_vn_m, two) - rolling_per_vn, path))
         .select(
-            rolling,
-            scaled(scaled(friction_m.direction, two) + start.direction, impulse),
+            start.rolling,
+            scaled(
+                scaled(middle.friction.direction, two) + start.direction,
+                normal_impulse,
+            ),
         );
-        let kick = FrictionImpulse {
-            linear: self.times_distances(linear, &distances_m),
-            times_lever: scaled(linear, distances_m.lever),
-        };
+        let impulse = self.friction_impulse(linear, &at_m.distances);
         let rates = at_m.rates.mix(2.0, &at.rates, -1.0);
-        let (last, distances_e) = self.advance(&start, &rates, h, (u_end, vn_end), &kick);
-        let at_e = self.evaluate(&last, distances_e);
-        let normal_end = normal_end.positive_part();
-        let friction_e = self.stage_friction(&start, &at_e, normal_end);
+        let (motion, distances) = self.advance(start, &rates, h, (u, vn), &impulse);
+        let at_e = self.evaluate(&motion, distances);
+        let force = force.positive_part();
+        let stage = Stage {
+            friction: self.stage_friction(start, &at_e, force),
+            at: at_e,
+            normal: force,
+        };
+        (stage, negative)
+    }
 
-        // 5. Simpson's rule, with the exact moments of N and v_n.
-        let change_e = at_e.normal_acceleration - g;
-        let curve = (kh2 - ch.squared()) * (1.0 / 8.0);
-        let k_v = -(ch * 0.5) - curve + kh2.squared() * (1.0 / 384.0) + 1.0;
-        let k_u = half * (-(ch * 0.25) - curve * (1.0 / 3.0) + 1.0);
-        let vn_1 = vn_e + h * (change_m * k_v * (2.0 / 3.0) + change_e * (1.0 / 6.0));
-        let u_1 = u_e - h * change_m * k_u * (2.0 / 3.0);
+    /// 5. Simpson's rule, with the exact moments of N and v_n.
+    ///
+    /// A change of G in the middle acts for the other half of the step. Its response is that of the
+    /// oscillator: `1 - c t + (c^2 - k) t^2/2 + k^2 t^4/24` in velocity, and the integral of that in
+    /// compression, with `t = h/2`.
+    #[inline(always)]
+    fn simpson_step(
+        &self,
+        start: &StepStart<T>,
+        normal: &NormalStep<T>,
+        (middle, last): (&Stage<T>, &Stage<T>),
+        negative_impulse: T,
+    ) -> ContactMotion<T> {
+        let mu = self.material().friction_coefficient;
+        let (at, at_m, at_e) = (&start.at, &middle.at, &last.at);
+        let (g, v_n) = (at.normal_acceleration, start.motion.velocity.normal);
+        let NormalStep { h, k_h2, c_h, .. } = *normal;
+        let ((_, vn_m), (u_e, vn_e)) = (normal.middle, normal.end);
+        let (change_m, change_e) = (at_m.normal_acceleration - g, at_e.normal_acceleration - g);
+        let second_order = (k_h2 - c_h.squared()) * (1.0 / 8.0);
+        let velocity_response = -(c_h * 0.5) - second_order + k_h2.squared() * (1.0 / 384.0) + 1.0;
+        let path_response = normal.half * (-(c_h * 0.25) - second_order * (1.0 / 3.0) + 1.0);
+        let vn_1 = vn_e + h * (change_m * velocity_response * (2.0 / 3.0) + change_e * (1.0 / 6.0));
+        let u_1 = u_e - h * change_m * path_response * (2.0 / 3.0);
         let sixth = h * (1.0 / 6.0);
-        let impulse = (vn_1
+        let normal_impulse = (vn_1
             - v_n
             - simpson(sixth, g, at_m.normal_acceleration, at_e.normal_acceleration)
-            - lost)
+            - negative_impulse)
             .positive_part();
+        // What Simpson's rule misses of the impulse and of the path acts as in the middle.
         let missing_impulse = (mu
-            * (impulse - simpson(sixth, start.pressing, normal_m, normal_end)))
-        .select(presses, zero);
+            * (normal_impulse - simpson(sixth, start.pressing, middle.normal, last.normal)))
+        .select(normal.presses, self.params.zero());
         let missing_path = start.motion.compression - u_1 - simpson(sixth, v_n, vn_m, vn_1);
-        let extra = scaled(swing_m, missing_path)
-            .select(rolling, scaled(friction_m.direction, missing_impulse));
+        let per_vn_m = scaled(at_m.slip_rate_per_vn, middle.friction.factor);
+        let missing = scaled(per_vn_m, missing_path).select(
+            start.rolling,
+            scaled(middle.friction.direction, missing_impulse),
+        );
         let limit = mu * start.pressing;
-        let friction_s = scaled(start.direction, (-start.required).select(rolling, -limit));
+        let friction_s = scaled(
+            start.direction,
+            (-start.required).select(start.rolling, -limit),
+        );
         let (d_s, d_m, d_e) = (&at.distances, &at_m.distances, &at_e.distances);
-        let kick = FrictionImpulse {
+        let impulse = FrictionImpulse {
             linear: simpson_2(
                 sixth,
                 self.times_distances(friction_s, d_s),
-                self.times_distances(friction_m.friction, d_m),
-                self.times_distances(friction_e.friction, d_e),
-            ) + self.times_distances(extra, d_m),
+                self.times_distances(middle.friction.friction, d_m),
+                self.times_distances(last.friction.friction, d_e),
+            ) + self.times_distances(missing, d_m),
             times_lever: simpson_2(
                 sixth,
                 scaled(friction_s, d_s.lever),
-                scaled(friction_m.friction, d_m.lever),
-                scaled(friction_e.friction, d_e.lever),
-            ) + scaled(extra, d_m.lever),
+                scaled(middle.friction.friction, d_m.lever),
+                scaled(last.friction.friction, d_e.lever),
+            ) + scaled(missing, d_m.lever),
         };
         let ends = at.rates.mix(1.0 / 6.0, &at_e.rates, 1.0 / 6.0);
         let rates = ends.mix(1.0, &at_m.rates, 4.0 / 6.0);
-        let (mut next, _) = self.advance(&start, &rates, h, (u_1, vn_1), &kick);
-        // A ball that parts is at zero compression, but for the error of the step.
-        next.compression = zero.select(end.parts, next.compression);
-        self.solid.rebase(&mut next);
-        let (fraction, min_remainder) = oscillator.slip_remainder;
-        let remainder = Real::max(start.slip_speed * fraction, min_remainder);
-        MacroStep {
-            motion: next,
-            friction: FrictionState {
-                rolling,
-                rolling_failed: start.rolling_failed,
-                slip_tolerance: remainder.select(end.ends_slip, params.splat(SLIP_TOLERANCE_M_S)),
-            },
-            dt: h,
-            parts: end.parts,
+        self.advance(start, &rates, h, (u_1, vn_1), &impulse).0
+    }
+
+    /// The impulse `linear`, at fixed distances.
+    #[inline(always)]
+    fn friction_impulse(
+        &self,
+        linear: Vec2<T>,
+        distances: &ContactDistances<T>,
+    ) -> FrictionImpulse<T> {
+        FrictionImpulse {
+            linear: self.times_distances(linear, distances),
+            times_lever: scaled(linear, distances.lever),
         }
     }
 

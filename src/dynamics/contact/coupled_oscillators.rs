@@ -15,7 +15,7 @@ use super::oscillator::parabola_root;
 use crate::math::real::{Mask, Real};
 use crate::model::solids::Material;
 
-/// Terms of the series of the force. (With a fifth of a bounce for a step the next term is below
+/// Terms of the series of the force. (With a sixth of a bounce for a step the next term is below
 /// 1e-5.)
 const TERMS: usize = 8;
 /// Newton steps to an event.

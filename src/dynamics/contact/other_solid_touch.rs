@@ -15,12 +15,13 @@ use crate::model::{BallState, SolidId};
 /// Gap at which an approached solid counts as touched, m. A compression of this size changes the
 /// speed of a bounce by less than 1e-6 m/s.
 pub(crate) const ARRIVED_M: f64 = 2e-6;
-/// A solid that is touched first with a greater compression than this does not act, m.
+/// Greatest overlap that counts as a new touch, m: a solid in which the ball is deeper does not act.
 const DEEPEST_M: f64 = 1e-4;
-/// Closest approach within a step up to which it is looked at again, m.
+/// An approach closer than this within a step is looked at again, m.
 const GRAZE_M: f64 = 1e-5;
-/// Least and greatest part of a step that is taken again.
-const SHARE: (f64, f64) = (0.02, 0.98);
+/// The least and the greatest share of a step that is taken again.
+const MIN_SHARE: f64 = 0.02;
+const MAX_SHARE: f64 = 0.98;
 /// Newton steps to the root of the cubic.
 const NEWTON_STEPS: u32 = 4;
 
@@ -101,8 +102,7 @@ pub(crate) fn passed<T: Real, O: Solid<T>>(
         share = Real::max(Real::min(next.select(falls, share * 0.5), one), one.zero());
     }
     let share = closest.select(grazes, share);
-    let (min_share, max_share) = SHARE;
-    let share = Real::max(Real::min(share, one * max_share), one * min_share);
+    let share = Real::max(Real::min(share, one * MAX_SHARE), one * MIN_SHARE);
     let again = near & is_separated & (passes | grazes);
     (again, share.select(again, one))
 }
@@ -232,7 +232,7 @@ mod tests {
                 let reached = gap_at(share * dt);
                 prop_assert!(share < 1.0 && reached > min_gap - 1e-9);
                 // A touch in the first hundredths of the step is passed by the shortest step.
-                prop_assert!(reached < gap_at(0.0) + 1e-9 || share <= SHARE.0);
+                prop_assert!(reached < gap_at(0.0) + 1e-9 || share <= MIN_SHARE);
             }
         }
     }

@@ -42,9 +42,9 @@ struct FrictionMode<T: Real> {
     rolling: [T::Mask; 2],
     /// Contacts at zero slip that cannot roll from now on.
     fails_now: [T::Mask; 2],
-    /// Contacts that slide, but so slowly that their direction is that against the friction which
-    /// rolling needs.
-    follows: [T::Mask; 2],
+    /// Contacts that slide, but so slowly that friction acts against the direction in which they
+    /// would slip without it.
+    slip_follows_rate: [T::Mask; 2],
     /// Friction at the start.
     frictions: [Vec2<T>; 2],
     /// Slips at the start, 0 where they have ended.
@@ -76,7 +76,7 @@ struct StepEnd<T: Real> {
     ends_slip: [T::Mask; 2],
 }
 
-/// What a ball in contact is on, for how long a step.
+/// The solids that a ball touches, and the limits of its next step.
 #[derive(Clone, Copy)]
 pub(crate) struct WorldContact<T: Real> {
     /// Whether the ball touches each solid.
@@ -117,8 +117,8 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     let end = first_event(params, &pair, &mode, &base, contact);
     let (dt, half) = (end.tau * step_s, end.tau * 0.5);
 
-    // The remainder in the middle and, with twice that of the middle (Kutta's third-order rule), at
-    // the end.
+    // The remainder in the middle, and at the end. The end is predicted with twice the remainder of
+    // the middle (Kutta's third-order rule).
     let middle = base.advance(state, half);
     let on = (solids, touching);
     let at_middle = remainder(params, on, &middle, &mode, &base, half);
@@ -240,7 +240,7 @@ impl<T: Real> FrictionMode<T> {
             rolling,
             fails_now,
             frictions,
-            follows: for_both!(i => follows[i] & !rolling[i]),
+            slip_follows_rate: for_both!(i => follows[i] & !rolling[i]),
             slip_speeds: for_both!(i => params.zero().select(candidates[i], sizes[i])),
             directions,
         }
@@ -259,7 +259,7 @@ impl<T: Real> BaseForces<T> {
         let zero = params.zero();
         let none = Vec2::splat(zero);
         let sliding = for_both!(i => {
-            let slides = pair.normals[i].is_positive() & !mode.rolling[i];
+            let slides = pair.normal_forces[i].is_positive() & !mode.rolling[i];
             let mu = pair.materials[i].friction_coefficient;
             let against = friction_against(mu, mode.directions[i]);
             pair.response_to_friction(i, against.select(slides, none))
@@ -396,7 +396,7 @@ fn first_event<T: Real>(
         reserve.select(mode.rolling[i], &oscillators.slip_series(i, &slip))
     });
     let changes = for_both!(i => {
-        let slides = mode.slip_speeds[i].is_positive() & pair.normals[i].is_positive();
+        let slides = mode.slip_speeds[i].is_positive() & pair.normal_forces[i].is_positive();
         changing[i].first_root(Real::min(until, zero_force[i]), mode.rolling[i] | slides)
     });
     let change = Real::min(changes[FIRST].1, changes[SECOND].1);
@@ -488,18 +488,18 @@ fn remainder_at<T: Real, A: Solid<T>, B: Solid<T>>(
         friction_against(pair.friction_limit(i), now.select(has_direction, initial))
     });
     let mut sliding = sliding;
-    if (mode.follows[FIRST] | mode.follows[SECOND]).any() {
-        let constrained = for_both!(i => mode.rolling[i] | mode.follows[i]);
+    if (mode.slip_follows_rate[FIRST] | mode.slip_follows_rate[SECOND]).any() {
+        let constrained = for_both!(i => mode.rolling[i] | mode.slip_follows_rate[i]);
         let required = pair.frictions(params, constrained, sliding);
         sliding = for_both!(i => {
             let against_required = unit(-required[i], required[i].norm());
             let now = friction_against(pair.friction_limit(i), against_required);
-            now.select(mode.follows[i], sliding[i])
+            now.select(mode.slip_follows_rate[i], sliding[i])
         });
     }
     let frictions = pair.frictions(params, mode.rolling, sliding);
     for_both!(i => {
-        let force = ContactVector { normal: pair.normals[i], tangent: frictions[i] };
+        let force = ContactVector { normal: pair.normal_forces[i], tangent: frictions[i] };
         let (linear, angular) = pair.response(i, force);
         let size = base.oscillators.force(i, tau);
         let negative = (-size).positive_part();

@@ -20,16 +20,22 @@ use crate::model::ball_params::BallParams;
 
 /// Terms of y and q.
 const TERMS: usize = 9;
-/// The length of an arc as a share of that to the singularity: the least, and that of a ball
-/// without drag. Between them it falls with the strength of drag, so that position and velocity err
-/// by 3e-6 m and 7e-5 m/s at most, less than a contact does.
-const SHARES: (f64, f64) = (0.40, 1.02);
+/// The length of an arc as a share of that to the singularity: that of a ball without drag, how it
+/// falls with the strength of drag (a share per `drag_strength |v|`), and the least. All three were
+/// fitted so that position and velocity err by 3e-6 m and 7e-5 m/s at most, less than a contact
+/// does (`val_the_series_are_the_flight`).
+const SHARE_WITHOUT_DRAG: f64 = 1.02;
 const SHARE_PER_STRENGTH: f64 = 0.45;
+const MIN_SHARE: f64 = 0.40;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const MIN_HORIZONTAL_SPEED_M_S: f64 = 1e-6;
 /// Newton steps to the highest point.
 const NEWTON_STEPS: u32 = 4;
-/// Limit on those to a height: three or four, more only where the path is nearly flat.
+/// Halley's steps to a height that the ball falls through, and the last of them (in s) after which
+/// what is left is below rounding.
+const HALLEY_STEPS: u32 = 2;
+const LAST_CORRECTION: f64 = 1e-5;
+/// Limit on Newton's steps to a height: three or four, more only where the path is nearly flat.
 const MAX_STEPS_TO_HEIGHT: u32 = 30;
 /// Height within which a search for a rising crossing must end, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-10;
@@ -74,8 +80,9 @@ impl<T: Real> DragArc<T> {
         let singular_s = speed.squared() * per_both;
         let shortest = ball.splat(SHORTEST_S);
         let varies = shortest.le(singular_s * LONGEST_SHARE);
-        let share = ball.splat(SHARES.1) - ball.drag_strength * speed * SHARE_PER_STRENGTH;
-        let share = Real::max(share, ball.splat(SHARES.0));
+        let share =
+            ball.splat(SHARE_WITHOUT_DRAG) - ball.drag_strength * speed * SHARE_PER_STRENGTH;
+        let share = Real::max(share, ball.splat(MIN_SHARE));
         let length = Real::max(singular_s * share, shortest) * speed_h;
         let along = Vec2::new((v.x * y_0).select(!is_vertical, one), v.y * y_0);
 
@@ -256,24 +263,57 @@ impl<T: Real> DragArc<T> {
         if !falls.any() {
             return self.never;
         }
-        // From the end backwards with the least curvature, that of the start: an s that is not
-        // earlier. z is concave, so Newton's steps from there never pass the height.
+        // From the end backwards by a parabola with the mean curvature of the arc, and from there by
+        // Halley's steps. A step of e leaves an error of the order of e^3.
         let below = (height - end_z).positive_part();
-        let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
+        let mean_curvature = self.rate[0] - end_rate;
+        let square = end_rate.squared() - mean_curvature * below * 2.0;
         let root = square.positive_part().sqrt();
         let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
-        let mut searching = falls;
-        for _ in 0..MAX_STEPS_TO_HEIGHT {
+        let mut correction = zero;
+        for _ in 0..HALLEY_STEPS {
             let (z, rate) = self.height_and_rate(s);
-            let arrives = height.le(z + CROSSING_TOLERANCE_M);
-            searching = searching & !arrives & rate.is_negative();
-            if !searching.any() {
-                break;
-            }
-            let next = s - (z - height) / rate.select(searching, one);
-            s = next.select(searching, s);
+            let over = z - height;
+            let twice_rate = rate * 2.0;
+            let denominator = twice_rate * rate + over * self.fall_rate(s);
+            correction = over * twice_rate / denominator;
+            s = s - correction;
+        }
+        let converged = correction.abs().lt(height.splat(LAST_CORRECTION));
+        if (falls & !converged).any() {
+            s = self.falling_s_by_newton(height, falls).select(converged, s);
         }
         Real::max(s, zero).select(falls, self.never)
+    }
+
+    /// Newton's steps from a place that is not earlier: from the end backwards with the least
+    /// curvature, that of the start. z is concave, so they never pass the height, also where the
+    /// path is nearly flat.
+    #[inline(always)]
+    fn falling_s_by_newton(&self, height: T, lanes: T::Mask) -> T {
+        height.outlined(
+            #[inline(always)]
+            || {
+                let (zero, one) = (height.zero(), height.one());
+                let (end_z, end_rate) = self.end;
+                let below = (height - end_z).positive_part();
+                let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
+                let root = square.positive_part().sqrt();
+                let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
+                let mut searching = lanes;
+                for _ in 0..MAX_STEPS_TO_HEIGHT {
+                    let (z, rate) = self.height_and_rate(s);
+                    let arrives = height.le(z + CROSSING_TOLERANCE_M);
+                    searching = searching & !arrives & rate.is_negative();
+                    if !searching.any() {
+                        break;
+                    }
+                    let next = s - (z - height) / rate.select(searching, one);
+                    s = next.select(searching, s);
+                }
+                s
+            },
+        )
     }
 
     /// Newton's steps from the s at which the parabola above the path rises through the height:

@@ -55,9 +55,10 @@ pub(crate) fn drag_segment<T: Real>(
     if passes_plane.any() {
         let near = passes_plane & !passes_beside(params, &arc, board.edges, end);
         if near.any() {
-            let lost;
-            (edge, lost) = convex_touch(&params.board.core, &arc, (board.edges, end), near);
-            unresolved = unresolved | lost;
+            let search_failed;
+            (edge, search_failed) =
+                convex_touch(&params.board.core, &arc, (board.edges, end), near);
+            unresolved = unresolved | search_failed;
             end = Real::min(end, edge);
         }
     }
@@ -66,9 +67,9 @@ pub(crate) fn drag_segment<T: Real>(
         let from = falls_to_top.select(is_above, params.zero());
         let near = from.lt(end) & comes_to_bracket(params, &arc, from, end);
         if near.any() {
-            let lost;
-            (bracket, lost) = convex_touch(&params.ring.bracket, &arc, (from, end), near);
-            unresolved = unresolved | lost;
+            let search_failed;
+            (bracket, search_failed) = convex_touch(&params.ring.bracket, &arc, (from, end), near);
+            unresolved = unresolved | search_failed;
             end = Real::min(end, bracket);
         }
     }

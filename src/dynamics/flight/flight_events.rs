@@ -14,14 +14,14 @@ use crate::model::{BallState, SolidId};
 /// happens; `beside_board` is no end, but a time from which the board must be looked at again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightEvents<T: Real> {
-    /// The centre falls through `z = -R`.
+    /// The centre falls through `z = -reach`.
     pub(crate) below_ring: T,
     /// The ball touches a solid; by [`SolidId::index`].
     pub(crate) touch: [T; SolidId::COUNT],
     /// The ball overlaps the plane of the board beside the rectangle:
     /// [`FlightEvents::resolve_beside_board`] says when the shot is over.
     pub(crate) beside_board: T,
-    /// The ball is lost, or the search for the ring reached its iteration limit. (The latter was
+    /// The ball has diverged, or the search for the ring reached its iteration limit. (The latter was
     /// never seen.)
     pub(crate) unresolved: T::Mask,
 }

@@ -34,9 +34,11 @@ pub(crate) struct FlightPath<T: Real = f64> {
     has_air: bool,
     /// For how long it holds, s.
     pub(crate) longest_s: T,
-    /// Bounds on it: of the speed (inverse), of the acceleration, and of that by the air alone.
+    /// The inverse of a bound on the speed until then, s/m.
     pub(crate) inverse_speed_bound: T,
+    /// A bound on the acceleration until then, m/s^2.
     pub(crate) acceleration_bound: T,
+    /// A bound on the acceleration by the air alone, m/s^2.
     pub(crate) air_acceleration_bound: T,
 }
 
@@ -214,9 +216,10 @@ impl<T: Real> FlightPath<T> {
 
 /// Newton steps to a height.
 const NEWTON_STEPS: u32 = 5;
-/// Limit on those of a falling ball, more than five only where the path is nearly flat; and where
-/// they end, m.
+/// Limit on Newton steps of a falling ball. More than five are needed only where the path is nearly
+/// flat.
 const MAX_STEPS_TO_FALL: u32 = 40;
+/// Distance from the height at which they end, m.
 const FALL_TOLERANCE_M: f64 = 1e-11;
 
 #[cfg(test)]

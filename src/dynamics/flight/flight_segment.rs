@@ -19,7 +19,7 @@ pub(crate) struct FlightSegment<T: Real = f64> {
     /// The centre passes the plane of the board's core. (On the paper's board also: the ball
     /// touches it beside its face, where it does not act.)
     pub(crate) behind_board: T::Mask,
-    /// The ball is lost, or the search reached its iteration limit.
+    /// The ball has diverged, or the search reached its iteration limit.
     pub(crate) unresolved: T::Mask,
     /// The centre rises through the plane of the hoop, and does so inside the ring.
     pub(crate) rises: T::Mask,

@@ -46,9 +46,11 @@ const LONGEST_STEP_S: f64 = 0.05;
 const NEAR: f64 = 1.01;
 /// Farther from the reach of the bracket than this share of it, its gap does not count.
 const FAR: f64 = 0.1;
-/// Within the circle is a distance from the axis below this share of that at which the ball
-/// touches; the bounds near the rod hold down to the second share.
-const WITHIN: (f64, f64) = (0.9, 0.8);
+/// A ball counts as inside the circle below this share of the distance from the axis at which it
+/// touches.
+const MAX_DISTANCE_SHARE: f64 = 0.9;
+/// The bounds near the rod hold down to this share of that distance.
+const BOUND_DISTANCE_SHARE: f64 = 0.8;
 
 /// The segment that starts at `state`.
 #[inline(always)]
@@ -377,7 +379,7 @@ fn ring_step<T: Real>(
     let outside_step = (beyond * path.inverse_speed_bound).select(outside, zero);
 
     // Within the circle: D^2 grows at most as fast as with the greatest horizontal speed.
-    let within = distance.lt(inner * WITHIN.0);
+    let within = distance.lt(inner * MAX_DISTANCE_SHARE);
     let horizontal = horizontal_squared.sqrt();
     let fastest = horizontal + path.air_acceleration_bound * time_left;
     let growth = Real::max(
@@ -408,7 +410,7 @@ fn ring_step<T: Real>(
             horizontal + path.air_acceleration_bound * longest,
             params.splat(1e-9),
         );
-    let nearest = Real::max(inner * WITHIN.1, closest);
+    let nearest = Real::max(inner * BOUND_DISTANCE_SHARE, closest);
     let half_bound = (radius * max_angular.squared() / (nearest.squared() * nearest)
         + reach * (path.acceleration_bound + path.air_acceleration_bound) * NEAR
         - slowest.squared())
@@ -423,7 +425,7 @@ fn ring_step<T: Real>(
     );
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, one));
     let min_step = zero.select(closing, params.splat(PARTING_STEP));
-    let to_within = (distance - inner * WITHIN.1) * path.inverse_speed_bound;
+    let to_within = (distance - inner * BOUND_DISTANCE_SHARE) * path.inverse_speed_bound;
     let near_step = Real::min(
         Real::max(numerator / denominator, min_step),
         Real::max(Real::min(longest, to_within), min_step),

@@ -81,11 +81,11 @@ impl<T: Real> HorizontalMotion<T> {
 
 /// The parts of an arc in which no touch is possible, and the bound on F'' elsewhere.
 struct SearchBounds<T> {
-    /// The centre falls through z = R.
+    /// The centre falls through z = reach.
     falls_to_top: T,
-    /// The centre rises through z = -R, at this time or later.
+    /// The centre rises through z = -reach, at this time or later.
     rises_to_bottom: T,
-    /// The centre rises through z = R, at this time or before.
+    /// The centre rises through z = reach, at this time or before.
     rises_to_top: T,
     /// Times at which the centre enters and leaves the circle of radius R_H - R.
     inner_enter: T,

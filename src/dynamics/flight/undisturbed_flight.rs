@@ -50,8 +50,8 @@ pub(crate) fn state_after(params: &ModelParams, start: &BallState, t: f64) -> Ba
         if left.abs() <= path.longest_s || !params.ball.has_air {
             return path.state_after(left);
         }
-        // Half of a path: backwards in time the speed decreases, and with it the reach of the
-        // series.
+        // Half of a path: backwards in time the speed decreases, and with it the radius of
+        // convergence.
         let part = (0.5 * path.longest_s).copysign(left);
         state = path.state_after(part);
         left -= part;
@@ -59,7 +59,7 @@ pub(crate) fn state_after(params: &ModelParams, start: &BallState, t: f64) -> Ba
     state
 }
 
-/// The highest point of an undisturbed flight, m.
+/// Greatest height of the centre in the first `dt` of `path`, m.
 pub(crate) fn highest_point_m(params: &ModelParams, path: &FlightPath, dt: f64) -> f64 {
     let (start, vz) = path.height_and_rate(0.0);
     let (end, _) = path.height_and_rate(dt);

@@ -22,9 +22,9 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{CONTACT_VALUES, ContactMotion, Solid, TOUCH_GAP_M};
 use crate::model::{BallState, SolidId};
 
-/// Limit on the segments (flights and contacts) of one shot, so that every run ends. Never reached
+/// Limit on the phases (flights and contacts) of one shot, so that every run ends. Never reached
 /// so far.
-pub(crate) const MAX_SEGMENTS: u32 = 100_000;
+pub(crate) const MAX_PHASES: u32 = 100_000;
 
 /// The contacts of the ball at present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub(crate) enum ContactState {
     /// In flight, or about to be.
     Free,
     /// On the face of the board or on the ring's circle alone: in the frame of the contact.
-    Single(SolidId),
+    OnSolid(SolidId),
     /// On the bracket, on an edge of the board, or on both solids: in the world frame.
     InWorld,
 }
@@ -40,7 +40,8 @@ pub(crate) enum ContactState {
 /// A shot in progress.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotProgress {
-    /// In the world frame. If `frame` names a solid, `motion` is valid and this is stale.
+    /// In the world frame. If `frame` names a solid, `motion` is valid and this is out of date, but
+    /// after a step that was reported.
     pub(crate) state: BallState,
     /// The ball in the frame of a contact.
     pub(crate) motion: ContactMotion,
@@ -59,9 +60,9 @@ pub(crate) struct ShotProgress {
     pub(crate) time_s: f64,
     pub(crate) contacts: ContactSequence,
     pub(crate) crossing: HoopCrossing,
-    /// Segments so far. (In a batch, a contact in the lanes is not counted; the limit is far away
+    /// Phases so far. (In a batch, a contact in the lanes is not counted; the limit is far away
     /// in any case.)
-    pub(crate) segments: u32,
+    pub(crate) phases: u32,
     /// Steps in contact so far.
     pub(crate) steps: u32,
 }
@@ -84,7 +85,7 @@ impl ShotProgress {
             time_s: 0.0,
             contacts: ContactSequence::default(),
             crossing: HoopCrossing::at_release(params, &start),
-            segments: 0,
+            phases: 0,
             steps: 0,
         }
     }
@@ -92,7 +93,7 @@ impl ShotProgress {
     /// Begins a contact with one solid. `motion` and `friction` are set by the caller.
     #[inline(always)]
     pub(crate) fn begin_single_contact(&mut self, solid: SolidId) {
-        self.contact = ContactState::Single(solid);
+        self.contact = ContactState::OnSolid(solid);
         self.frame = Some(solid);
         self.step_share = 1.0;
         self.contact_time_s = 0.0;
@@ -201,8 +202,8 @@ pub(crate) fn run<O: Observer>(
         observer,
         shot,
     };
-    for _ in 0..MAX_SEGMENTS {
-        if let Some(verdict) = run.segment() {
+    for _ in 0..MAX_PHASES {
+        if let Some(verdict) = run.phase() {
             return verdict;
         }
     }
@@ -253,9 +254,9 @@ fn world_step<A: Solid<f64>, B: Solid<f64>>(
     world_contact_step::step(params, solids, state, friction, contact)
 }
 
-/// Simulates one segment of a shot: a flight or a contact, to the end of the shot or to the next
-/// segment.
-pub(crate) fn run_segment(
+/// Simulates one phase of a shot: a flight or a contact, to the end of the shot or to the next
+/// phase.
+pub(crate) fn run_phase(
     params: &ModelParams,
     limits: &ShotLimits,
     shot: &mut ShotProgress,
@@ -266,24 +267,24 @@ pub(crate) fn run_segment(
         observer: &mut (),
         shot: *shot,
     };
-    let verdict = run.segment();
+    let verdict = run.phase();
     *shot = run.shot;
     verdict
 }
 
 impl<O: Observer> Run<'_, O> {
-    fn segment(&mut self) -> Option<Verdict> {
+    fn phase(&mut self) -> Option<Verdict> {
         let params = self.params;
         match self.shot.contact {
             ContactState::Free => {
                 self.shot.update_state(params);
                 self.fly()
             }
-            ContactState::Single(solid) if self.limits.single_precision => {
-                let narrow = params.map(F32::from_f64);
-                self.single_contact(&narrow, solid)
+            ContactState::OnSolid(solid) if self.limits.single_precision => {
+                let params_f32 = params.map(F32::from_f64);
+                self.single_contact(&params_f32, solid)
             }
-            ContactState::Single(solid) => self.single_contact(params, solid),
+            ContactState::OnSolid(solid) => self.single_contact(params, solid),
             ContactState::InWorld => self.contact_in_world((&params.board, &params.ring)),
         }
     }
@@ -485,6 +486,7 @@ impl<O: Observer> Run<'_, O> {
         let before = shot.state;
         shot.frame = Some(solid);
         shot.update_state(self.params);
+        // The next step starts from `motion` again; `state` is for the report.
         shot.frame = Some(solid);
         let (start, dt) = (
             shot.time_s + shot.contact_time_s,
@@ -509,7 +511,7 @@ impl<O: Observer> Run<'_, O> {
             let (mut after, mut friction) = (before, self.shot.friction);
             let contact = WorldContact {
                 touching: self.shot.touching,
-                step_s: self.limits.longest_step_s,
+                step_s: self.limits.longest_world_step_s,
                 share: self.shot.step_share,
             };
             self.shot.steps += 1;

@@ -194,7 +194,7 @@ impl<O: Observer> Run<'_, O> {
             // It was released below the ring and has never risen.
             return Some(Ending::NeverRose);
         }
-        // Where the last step crossed z = -R, by the parabola of that step.
+        // Where the last step crossed z = -reach, by the parabola of that step.
         if !active.any() && fall <= dt {
             self.state = path.state_after(fall);
             self.time_s += fall - dt;
@@ -202,13 +202,13 @@ impl<O: Observer> Run<'_, O> {
         Some(flight_ending(self.rises_above_ring(&before)))
     }
 
-    /// Time at which a parabola from a state falls through z = -R, s.
+    /// Time at which a parabola from a state falls through z = -reach, s.
     fn falling_time(&self, state: &BallState) -> f64 {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
         falling_time(self.params, z, vz, -self.params.ring.reach)
     }
 
-    /// Whether a parabola from a state reaches z = -R.
+    /// Whether a parabola from a state reaches z = -reach.
     fn rises_above_ring(&self, state: &BallState) -> bool {
         let (z, vz) = (state.position_m.z, state.velocity_m_s.z);
         let reach = self.params.ring.reach;
