@@ -2,7 +2,7 @@
 //! optical tracking. `cargo run --release --example make_measured_shots [FOLDER]`. The default
 //! folder is `docs/data`.
 //!
-//! The player's true profile stands here and in `docs/shooters_test.md`.
+//! The player's true profile stands here and in `docs/fitting.md`.
 
 use bankshot::dynamics::{Release, Simulator};
 use bankshot::fitting::{Place, Tracker, TrackerNoise, Values, landing_of, nominal_of};

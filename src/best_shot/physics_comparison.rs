@@ -51,7 +51,7 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         Some(preset) if !has_air => preset.physics(),
         _ => own.clone(),
     };
-    let of = if has_air { "the profile's" } else { "ncaa" };
+    let with = if has_air { "with" } else { "ncaa with" };
     let changes: [(&str, fn(&mut Physics)); 8] = [
         ("no air", |physics| physics.air = Air::NONE),
         ("air of 5280 ft", |physics| physics.air.density_kg_m3 = 0.98),
@@ -60,10 +60,10 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
             physics.ring_tube_diameter_m = 0.0;
         }),
         ("no bracket", |physics| physics.bracket_width_m = 0.0),
-        ("a soft hoop, restitution 0.45", |physics| {
+        ("hoop_restitution 0.45", |physics| {
             set_restitution(physics, 0.45);
         }),
-        ("a hard hoop, restitution 0.70", |physics| {
+        ("hoop_restitution 0.70", |physics| {
             set_restitution(physics, 0.70);
         }),
         ("friction 0.8", |physics| {
@@ -75,7 +75,7 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
     variants.extend(changes.into_iter().map(|(name, change)| {
         let mut physics = base.clone();
         change(&mut physics);
-        variant(&format!("{of} with {name}"), &physics)
+        variant(&format!("{with} {name}"), &physics)
     }));
     variants
 }

@@ -45,6 +45,14 @@ pub struct InterpolationCheck {
     pub best: f64,
 }
 
+impl InterpolationCheck {
+    /// What interpolation costs in P.
+    #[must_use]
+    pub fn loss(&self) -> f64 {
+        self.best - self.interpolated
+    }
+}
+
 /// A table of best shots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotTable {
@@ -217,7 +225,7 @@ impl ShotTable {
     fn finer(&self, max_loss: f64) -> Option<(Vec<f64>, Vec<f64>)> {
         let mut distances = self.distances_m.clone();
         let mut angles = self.angles_rad.clone();
-        let costly = |check: &&InterpolationCheck| check.best - check.interpolated > max_loss;
+        let costly = |check: &&InterpolationCheck| check.loss() > max_loss;
         for check in self.checks.iter().filter(costly) {
             distances.push(check.location.distance_m);
             angles.push(check.location.angle_rad);
@@ -263,14 +271,27 @@ impl ShotTable {
         Some(nominal)
     }
 
+    /// The check where interpolation costs most; `None` without a check.
+    #[must_use]
+    pub fn costliest(&self) -> Option<&InterpolationCheck> {
+        let checks = self.checks.iter();
+        checks.max_by(|a, b| a.loss().total_cmp(&b.loss()))
+    }
+
     /// The greatest P that interpolation costs, over all checks; `None` without a check.
     #[must_use]
     pub fn greatest_loss(&self) -> Option<f64> {
-        let losses = self
-            .checks
-            .iter()
-            .map(|check| check.best - check.interpolated);
-        losses.reduce(f64::max)
+        self.costliest().map(InterpolationCheck::loss)
+    }
+
+    /// Whether a shot without an error touches nothing but, in a bank shot, the board.
+    #[must_use]
+    pub fn is_clean(&self, shot: &TableShot) -> bool {
+        let clean = match self.kind {
+            ShotKind::Direct => OutcomeKind::Swish,
+            ShotKind::Bank => OutcomeKind::BankIn,
+        };
+        shot.outcome == clean
     }
 }
 

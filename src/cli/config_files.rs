@@ -8,7 +8,7 @@ use crate::config::{
 };
 use crate::dynamics::Integrator;
 use crate::model::{PRESETS, Physics, Preset};
-use crate::shooter::{Profile, implausible_values, nominal_values_not_fixed};
+use crate::shooter::{NominalVariable, Profile, implausible_values, nominal_values_not_fixed};
 use crate::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
 use std::io::Read;
 use std::path::Path;
@@ -58,10 +58,28 @@ pub(crate) fn load_profile(
     Ok(load_profile_with_text(path, physics, quiet)?.0)
 }
 
-/// The same with its text, to which the other physics is added.
+/// The same for a command that fixes some nominal values itself.
+pub(crate) fn load_profile_with_fixed(
+    path: &Path,
+    physics: &PhysicsArg,
+    (fixed, quiet): (&[NominalVariable], bool),
+) -> Result<Profile, Failure> {
+    Ok(load(path, physics, fixed, quiet)?.0)
+}
+
+/// A profile with its text, to which the other physics is added.
 pub(crate) fn load_profile_with_text(
     path: &Path,
     physics: &PhysicsArg,
+    quiet: bool,
+) -> Result<(Profile, String), Failure> {
+    load(path, physics, &[], quiet)
+}
+
+fn load(
+    path: &Path,
+    physics: &PhysicsArg,
+    fixed: &[NominalVariable],
     quiet: bool,
 ) -> Result<(Profile, String), Failure> {
     let mut text = read_text(path)?;
@@ -75,7 +93,7 @@ pub(crate) fn load_profile_with_text(
     // The profile itself must be valid, with its own physics.
     let own = parse_profile(&text, &origin)?;
     if !quiet {
-        let not_fixed = nominal_values_not_fixed(&own);
+        let not_fixed = nominal_values_not_fixed(&own, fixed);
         for words in implausible_values(&own).into_iter().chain(not_fixed) {
             print_remark(&format!("warning: {words}"));
         }

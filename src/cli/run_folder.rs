@@ -7,6 +7,7 @@ use crate::output::best_shot_json::best_shots_json;
 use crate::output::{atomic_file, json_object};
 use crate::shooter::Profile;
 use crate::sweep::SweepConfig;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The file beside the plots of a sweep that names the sweep's folder, and that of the sweep it is
@@ -14,6 +15,8 @@ use std::path::{Path, PathBuf};
 pub(crate) const SWEEP_LINK: &str = "of_sweep.json";
 /// The folder, in that of a comparison, of the best shots of the other shooter.
 pub(crate) const AGAINST_FOLDER: &str = "against";
+/// The file that says which configuration a folder belongs to.
+const PROVENANCE: &str = "provenance.json";
 /// The files of a run.
 const FILES: [&str; 7] = [
     "best_shots.csv",
@@ -22,7 +25,7 @@ const FILES: [&str; 7] = [
     "sensitivity.csv",
     "profile.toml",
     "plan.json",
-    "provenance.json",
+    PROVENANCE,
 ];
 
 /// The link, beside the numbered folders of a name, to the one that was written last.
@@ -47,7 +50,7 @@ fn numbered(parent: &Path, name: &str, hash: &str) -> PathBuf {
 fn configuration_hash(folder: &Path) -> Option<String> {
     [
         ("configuration.json", "hash"),
-        ("provenance.json", "configuration_blake3"),
+        (PROVENANCE, "configuration_blake3"),
     ]
     .into_iter()
     .find_map(|(file, key)| {
@@ -95,10 +98,27 @@ pub(crate) fn safe_name(name: &str) -> String {
     name.to_owned()
 }
 
-/// The usual folder of a profile's run, in the profile's output folder.
-pub(crate) fn of_profile(profile: &Profile) -> PathBuf {
+/// The usual folder of a profile's run, in the profile's output folder. It belongs to this profile
+/// from now on, also beside other runs of the same name: whoever writes its provenance first has it.
+pub(crate) fn of_profile(profile: &Profile) -> Result<PathBuf, Failure> {
     let parent = Path::new(&profile.output().folder);
-    numbered(parent, &profile.shooter().name, profile.hash())
+    loop {
+        let folder = numbered(parent, &profile.shooter().name, profile.hash());
+        let refuse = |error: std::io::Error| Failure::io(folder.display(), &error);
+        std::fs::create_dir_all(&folder).map_err(refuse)?;
+        if configuration_hash(&folder).is_some() {
+            return Ok(folder);
+        }
+        let claim = json_object::object(json_object::provenance(profile.hash()));
+        let mut file = tempfile::NamedTempFile::new_in(&folder).map_err(refuse)?;
+        writeln!(file, "{claim:#}").map_err(refuse)?;
+        match file.persist_noclobber(folder.join(PROVENANCE)) {
+            Ok(_) => return Ok(folder),
+            // Another run has taken the number in the meantime.
+            Err(error) if error.error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(refuse(error.error)),
+        }
+    }
 }
 
 /// The usual folder of a sweep.

@@ -17,7 +17,7 @@ pub(crate) fn print_prose(text: &str) -> Result<u8, Failure> {
 }
 
 /// Columns of a terminal of the usual width.
-pub(crate) const COLUMNS: usize = 80;
+const COLUMNS: usize = 80;
 
 fn wrapped(text: &str) -> String {
     let mut wrapped = String::with_capacity(text.len());

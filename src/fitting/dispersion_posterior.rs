@@ -7,7 +7,7 @@
 //! density costs the same for 30 shots and for 3000.
 
 use super::measured_release::MeasuredRelease;
-use super::population::{PopulationPrior, Spread};
+use super::prior::{PopulationPrior, Spread};
 use hammer_and_sample::Model;
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 

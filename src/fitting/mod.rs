@@ -7,7 +7,7 @@
 //! draw ([`DrawProbabilities`]), so it has an interval.
 //!
 //! The values of a release are `[speed, pitch, polar angle, backspin]`, m/s, rad, rad, rad/s
-//! ([`Values`]). `docs/shooters_test.md` has the model, its prior and how it was checked.
+//! ([`Values`]). `docs/fitting.md` has the model, its prior and how it was checked.
 
 mod advice;
 mod chain_diagnostics;
@@ -20,14 +20,14 @@ mod flight_fit;
 mod interval;
 mod landing;
 mod measured_release;
-mod population;
+mod parameter_from_makes;
 mod posterior;
+mod prior;
 mod session_comparison;
 mod shooter_fit;
 mod student_posterior;
 mod test_design;
 mod tracker;
-mod unseen_parameter;
 
 pub use advice::{
     Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
@@ -48,10 +48,10 @@ pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_
 pub use measured_release::{
     Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,
 };
-pub use population::{PopulationPrior, Spread};
+pub use parameter_from_makes::{LikelihoodCurve, UnseenParameter, likelihood_curve};
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
+pub use prior::{PopulationPrior, Spread};
 pub use session_comparison::{SessionComparison, compare_probabilities, compare_sessions};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};
 pub use tracker::{Tracker, TrackerNoise};
-pub use unseen_parameter::{LikelihoodCurve, UnseenParameter, likelihood_curve};

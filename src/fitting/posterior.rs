@@ -4,7 +4,7 @@ use super::chain_diagnostics::ParameterChains;
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::interval::Interval;
 use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
-use super::population::{PopulationPrior, Spread};
+use super::prior::{PopulationPrior, Spread};
 use super::student_posterior::StudentPosterior;
 use crate::math::normal_distribution::quantile;
 use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};

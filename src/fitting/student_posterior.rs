@@ -9,7 +9,7 @@
 
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::measured_release::MeasuredRelease;
-use super::population::{PopulationPrior, Spread};
+use super::prior::{PopulationPrior, Spread};
 use crate::math::normal_distribution::cdf;
 use hammer_and_sample::Model;
 use nalgebra::{Cholesky, SMatrix, SVector};

@@ -96,7 +96,7 @@ pub fn design(
         location: profile.location(),
         release_height_m: profile.shooter().release_height_m,
     };
-    let mut prior = super::population::PopulationPrior::MEASURED;
+    let mut prior = super::prior::PopulationPrior::MEASURED;
     prior.backspin.mean = nominal.backspin_rad_s;
     progress.begin("simulating tests", sizes.len() as u64 * repetitions);
     let rows = sizes.iter().map(|&shots| {

@@ -74,12 +74,14 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
 }
 
 /// What to write where `[nominal]` gives some values, but no speed, and the search chooses them all
-/// the same: they were probably meant to be fixed. (With a speed they are a shot to look at.)
+/// the same: they were probably meant to be fixed. (With a speed they are a shot to look at.) Those
+/// that are `fixed` in another way are left out.
 #[must_use]
-pub fn nominal_values_not_fixed(profile: &Profile) -> Option<String> {
+pub fn nominal_values_not_fixed(profile: &Profile, fixed: &[NominalVariable]) -> Option<String> {
     let given = profile.nominal_overrides();
     let choice = profile.search().choice;
-    let searched = |variable: &NominalVariable| choice.includes(*variable);
+    let searched =
+        |variable: &NominalVariable| choice.includes(*variable) && !fixed.contains(variable);
     let names = |variables: &[NominalVariable], quote: &str, before: &str| {
         let names = variables.iter().map(|variable| variable.name());
         let names = names.map(|name| format!("{quote}{before}{name}{quote}"));

@@ -183,9 +183,16 @@ impl ReleaseDispersion {
         if checks.is_valid(&key("c10"))
             && !is_plausible(MAX_SPEED_M_S, 10.0, &|v| self.speed_m_s(v))
         {
+            let blamed = if self.c12_s_m != 0.0 {
+                "c12"
+            } else if self.c11 != 0.0 {
+                "c11"
+            } else {
+                "c10"
+            };
             checks.refuse(
-                &key("c10"),
-                "c10 + c11 v + c12 v^2 must be from 0 to 10 m/s for every speed up to 40 m/s",
+                &key(blamed),
+                "c10 + c11 v + c12 v^2 must be from 0 to 10 m/s for every speed up to 40 m/s (c11 alone: 0 to 25 %)",
             );
         }
         if checks.is_valid(&key("c40"))

@@ -5,6 +5,7 @@ use super::support::{
 };
 use std::fs;
 use std::path::Path;
+use std::process::Stdio;
 use tempfile::TempDir;
 
 #[test]
@@ -133,6 +134,38 @@ fn contract_names_of_shooters_never_become_paths() {
         fs::read_link(of_name.join("latest")).unwrap(),
         Path::new("2")
     );
+}
+
+#[test]
+fn contract_two_runs_of_one_name_at_once_take_two_folders() {
+    let folder = TempDir::new().unwrap();
+    let profiles = [
+        write_file(&folder, "a.toml", small_profile()),
+        write_file(
+            &folder,
+            "b.toml",
+            small_profile().replace("1.22 deg", "1.3 deg"),
+        ),
+    ];
+    let runs = profiles.map(|profile| {
+        let mut command = bankshot();
+        command.current_dir(folder.path()).arg("best").arg(profile);
+        command
+            .arg("--quiet")
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap()
+    });
+    for mut run in runs {
+        assert!(run.wait().unwrap().success());
+    }
+    let of_name = folder.path().join("results/college-guard");
+    let texts = ["1", "2"].map(|number| {
+        let run = of_name.join(number);
+        assert!(run.join("best_shots.json").exists(), "{number}");
+        fs::read_to_string(run.join("profile.toml")).unwrap()
+    });
+    assert_ne!(texts[0], texts[1]);
 }
 
 /// A shooter near the ring whose best direct shot is at the limit of its kind.

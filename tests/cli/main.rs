@@ -6,7 +6,7 @@ mod check;
 mod fit;
 mod man;
 mod new;
-mod outputs;
+mod output_file_errors;
 mod probability;
 mod schema;
 mod simulate;

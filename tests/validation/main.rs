@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod fit_coverage;
 mod integrators;
 mod nominal_tables;
 mod paper_figures;
@@ -14,4 +15,3 @@ mod published;
 mod real_hoop;
 mod search;
 mod sensitivity;
-mod shooters_test;

@@ -22,7 +22,7 @@ fn campaign_best_is_within_three_thousandths_of_a_brute_force_search() {
         ("elite", 20.0, 0.0),
         ("elite", 15.0, 75.0),
         ("novice", 10.0, 20.0),
-        ("school", 13.75, -45.0),
+        ("school_player", 13.75, -45.0),
         ("three_pointer", 22.0, 10.0),
     ];
     for (name, distance_ft, angle_deg) in places {

@@ -59,7 +59,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     TablePlan::for_search(&profile)?;
     let folder = match &options.out {
         Some(folder) => folder.clone(),
-        None => run_folder::of_profile(&profile),
+        None => run_folder::of_profile(&profile)?,
     };
     run_folder::prepare(&folder)?;
     let best = best_shot::find(&profile, &ProgressBars::new(quiet))?;

@@ -1,8 +1,8 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use crate::cli::config_files::{load_profile, load_sweep, read_text};
+use crate::cli::config_files::{load_profile, load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
-use crate::cli::terminal::{print_answer, wrapped_line};
+use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::config::parse_profile;
 use crate::model::{PRESETS, Physics, PhysicsValue};
@@ -39,7 +39,7 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
-    let profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let (profile, text) = load_profile_with_text(&options.profile, &options.physics, quiet)?;
     TablePlan::for_search(&profile)?;
     let (long, metre) = profile.output().units.length();
     let location = profile.location();
@@ -50,9 +50,12 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         location.angle_rad / DEGREE_RAD
     );
     if options.verbose {
-        answer.push_str(&physics_text(profile.physics()));
+        answer.push_str(&physics_text(
+            profile.physics(),
+            preset_named_in(&text).as_deref(),
+        ));
     }
-    print_answer(&answer)
+    print_prose(&answer)
 }
 
 /// The answer for programs. The exit code is that of the answer for people.
@@ -118,21 +121,33 @@ fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
     }
 }
 
+/// The preset that a profile's text names.
+fn preset_named_in(text: &str) -> Option<String> {
+    let table: toml::Table = text.parse().ok()?;
+    let preset = table.get("physics")?.get("preset")?.as_str()?;
+    PRESETS
+        .iter()
+        .any(|known| known.name == preset)
+        .then(|| preset.to_owned())
+}
+
 /// The column of the source of a value.
 const SOURCE_COLUMN: usize = 52;
 
 /// Every value of the physics, and whether it is measured, from a rule book or assumed.
-fn physics_text(physics: &Physics) -> String {
+/// It is compared with the preset that the profile names, else with the nearest one.
+fn physics_text(physics: &Physics, named: Option<&str>) -> String {
     let values = physics.values();
-    let named = PRESETS
+    let presets = PRESETS
         .iter()
+        .filter(|preset| named.is_none_or(|name| name == preset.name))
         .map(|preset| (preset, preset.physics().values()));
     // The preset that it is, or differs from least.
     let differing = |other: &[PhysicsValue]| {
         let pairs = values.iter().zip(other);
         pairs.filter(|(a, b)| a.value != b.value).count()
     };
-    let (preset, of_preset) = named
+    let (preset, of_preset) = presets
         .min_by_key(|(_, other)| differing(other))
         .expect("there are presets");
     let mut text = format!("physics: {} ({})\n", preset.name, preset.description);

@@ -180,7 +180,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     }
     let folder = match &options.out {
         Some(folder) => folder.clone(),
-        None => run_folder::of_profile(&profile),
+        None => run_folder::of_profile(&profile)?,
     };
     plot_files::write(&folder, &plots)?;
     run_folder::write_best_shots(&folder, profile_text, &profile, &best)?;

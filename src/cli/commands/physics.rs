@@ -5,13 +5,13 @@ use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{COLUMNS, print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::plots::physics_probabilities;
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use comfy_table::{CellAlignment, LineStyle, Table, presets};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -64,17 +64,15 @@ fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
         UnitSystem::Metric => ("cm", 0.01),
     };
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(COLUMNS as u16);
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
     table.set_header(vec![
         "physics".to_owned(),
         "direct\nP".to_owned(),
         format!("speed\n{long}/s"),
         "pitch\ndeg".to_owned(),
-        format!("past\ncentre {short}"),
+        format!("{short} past\ncentre"),
         "bank\nP".to_owned(),
-        "P of the\nfirst row's shot".to_owned(),
+        "P of first\nrow's shot".to_owned(),
     ]);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -99,7 +97,7 @@ fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
         ]);
     }
     format!(
-        "{table}\nThe first row's shot is the best direct one under the profile's physics, released the same way everywhere.\n"
+        "{table}\nThe first row is the profile's own physics; \"with\" changes one thing of it. Its best direct shot, released the same way everywhere, has the P of the last column.\n"
     )
 }
 

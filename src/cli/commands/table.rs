@@ -1,16 +1,15 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
 use crate::best_shot::{MOST_NODES, ShotKind, ShotTable, ShotTableError, ShotTableRequest};
-use crate::cli::config_files::load_profile;
+use crate::cli::config_files::load_profile_with_fixed;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use crate::dynamics::OutcomeKind;
 use crate::output::atomic_file;
 use crate::output::shot_table_files::source_code::{Language, source_code};
 use crate::output::shot_table_files::table_text::{check_text, table_csv, table_json, table_text};
-use crate::shooter::NominalVariable;
+use crate::shooter::{NominalVariable, Profile};
 use crate::units::{self, DEGREE_RAD, Dimension, UnitSystem};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
@@ -86,20 +85,34 @@ pub(crate) enum TableFormat {
 
 impl TableFormat {
     /// The form that the end of a file's name asks for.
-    fn of_extension(extension: &str) -> Self {
-        match extension {
-            "csv" => Self::Csv,
-            "json" => Self::Json,
-            "java" => Self::Java,
-            "h" | "hpp" | "hh" | "cpp" => Self::Cpp,
-            "py" => Self::Python,
-            _ => Self::Text,
+    fn of_output(output: Option<&Path>) -> Result<Self, Failure> {
+        let Some(path) = output else {
+            return Ok(Self::Text);
+        };
+        match path.extension().and_then(OsStr::to_str).unwrap_or("") {
+            "csv" => Ok(Self::Csv),
+            "json" => Ok(Self::Json),
+            "java" => Ok(Self::Java),
+            "h" | "hpp" | "hh" | "cpp" => Ok(Self::Cpp),
+            "py" => Ok(Self::Python),
+            "txt" | "md" | "" => Ok(Self::Text),
+            other => Err(Failure::usage(format!(
+                "--output: no form for \".{other}\"; use .csv, .json, .java, .hpp, .py or .txt, or give --format"
+            ))),
         }
     }
 }
 
 pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let fixed: Vec<NominalVariable> = [
+        (NominalVariable::Speed, &options.speed),
+        (NominalVariable::Pitch, &options.pitch),
+        (NominalVariable::Backspin, &options.backspin),
+    ]
+    .into_iter()
+    .filter_map(|(variable, text)| text.as_ref().map(|_| variable))
+    .collect();
+    let mut profile = load_profile_with_fixed(&options.profile, &options.physics, (&fixed, quiet))?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
@@ -121,6 +134,10 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             fixed.push((variable, value));
         }
     }
+    let format = match options.format {
+        Some(format) => format,
+        None => TableFormat::of_output(options.output.as_deref())?,
+    };
     let request = ShotTableRequest {
         kind: match options.kind {
             KindArg::Direct => ShotKind::Direct,
@@ -147,10 +164,6 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     );
     let class = class_name(options.output.as_deref())?;
     let source = |language| source_code(&table, (language, &class), units, &origin);
-    let format = options.format.unwrap_or_else(|| {
-        let end = options.output.as_deref().and_then(Path::extension);
-        TableFormat::of_extension(end.and_then(OsStr::to_str).unwrap_or(""))
-    });
     let text = match format {
         TableFormat::Text => table_text(&table, units),
         TableFormat::Csv => table_csv(&table, units),
@@ -173,7 +186,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             print_remark(&format!("written: {}", path.display()));
         }
         if format != TableFormat::Text {
-            print_remark(check_text(&table).trim_end());
+            print_remark(check_text(&table, units).trim_end());
         }
         if let Some(added) = added_nodes(&table, &request, units) {
             print_remark(&added);
@@ -182,18 +195,14 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             .greatest_loss()
             .is_some_and(|loss| loss > request.max_loss)
         {
-            print_remark(&great_loss_warning(&request));
+            print_remark(&great_loss_warning(&profile, &request));
         }
         let bouncing = table.shots.iter().flatten();
-        let clean = match table.kind {
-            ShotKind::Direct => OutcomeKind::Swish,
-            ShotKind::Bank => OutcomeKind::BankIn,
-        };
-        let bouncing = bouncing.filter(|shot| shot.outcome != clean).count();
+        let bouncing = bouncing.filter(|shot| !table.is_clean(shot)).count();
         if bouncing > 0 {
             print_remark(&format!(
                 "note: the best shot goes in off the ring or the board even without an error at {bouncing} of {} places; \
-                 compare --kind {} there, or fix another --pitch",
+                 compare --kind {} there, or another --pitch",
                 table.shots.len(),
                 match table.kind {
                     ShotKind::Direct => "bank",
@@ -268,8 +277,11 @@ fn added_nodes(table: &ShotTable, request: &ShotTableRequest, units: UnitSystem)
 
 /// What to do where interpolation costs much: neighbours are then shots of different sorts, unless
 /// what they differ in is fixed.
-fn great_loss_warning(request: &ShotTableRequest) -> String {
-    let is_fixed = |variable| request.fixed.iter().any(|(fixed, _)| *fixed == variable);
+fn great_loss_warning(profile: &Profile, request: &ShotTableRequest) -> String {
+    let is_fixed = |variable| {
+        !profile.search().choice.includes(variable)
+            || request.fixed.iter().any(|(fixed, _)| *fixed == variable)
+    };
     let free: Vec<String> = [NominalVariable::Pitch, NominalVariable::Backspin]
         .into_iter()
         .filter(|variable| !is_fixed(*variable))

@@ -6,7 +6,7 @@ use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::integrators::event_driven::ShotProgress;
 use crate::math::real::{LaneBits, LaneElement, MAX_LANES, SimdReal};
 use crate::model::SolidId;
-use crate::model::solids::{CONTACT_VALUES, ContactMotion};
+use crate::model::solids::{CONTACT_VALUES, ContactFrameState};
 use std::array::from_fn;
 
 type Row<E> = [E; MAX_LANES];
@@ -15,7 +15,7 @@ type Row<E> = [E; MAX_LANES];
 /// the last one, and steps on without harm.
 pub(super) struct ContactBlock<E> {
     solid: SolidId,
-    /// The values of [`ContactMotion`].
+    /// The values of [`ContactFrameState`].
     motion: [Row<E>; CONTACT_VALUES],
     slip_tolerances: Row<E>,
     /// [`ShotProgress::step_share`], [`ShotProgress::contact_time_s`], and the time left at the
@@ -43,7 +43,7 @@ struct ContactFlags {
 /// The shots as SIMD numbers.
 #[derive(Clone, Copy)]
 pub(super) struct ContactShots<T: SimdReal> {
-    pub(super) motion: ContactMotion<T>,
+    pub(super) motion: ContactFrameState<T>,
     pub(super) friction: FrictionState<T>,
     pub(super) step_share: T,
     pub(super) contact_time_s: T,
@@ -132,7 +132,7 @@ impl<E: LaneElement> ContactBlock<E> {
     /// Takes the shot out of a lane.
     #[inline(always)]
     pub(super) fn remove(&mut self, lane: usize, shot: &mut ShotProgress) {
-        shot.motion = ContactMotion::from_array(from_fn(
+        shot.motion = ContactFrameState::from_array(from_fn(
             #[inline(always)]
             |i| self.motion[i][lane].to_f64(),
         ));
@@ -155,7 +155,7 @@ impl<E: LaneElement> ContactBlock<E> {
     #[inline(always)]
     pub(super) fn load<T: SimdReal<Element = E>>(&self, simd: T::Simd) -> ContactShots<T> {
         ContactShots {
-            motion: ContactMotion::from_array(from_fn(
+            motion: ContactFrameState::from_array(from_fn(
                 #[inline(always)]
                 |i| T::load(simd, &self.motion[i]),
             )),

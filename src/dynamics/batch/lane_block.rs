@@ -7,7 +7,7 @@ use crate::dynamics::integrators::event_driven::ShotProgress;
 use crate::math::real::{LaneArray, LaneBits, MAX_F64_LANES, SimdReal};
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{CONTACT_VALUES, ContactMotion, Solid};
+use crate::model::solids::{CONTACT_VALUES, ContactFrameState, Solid};
 use crate::model::{BallState, SolidId};
 use std::array::from_fn;
 
@@ -18,7 +18,7 @@ const ZEROS: LaneArray = [0.0; MAX_F64_LANES];
 pub(super) struct LaneBlock {
     /// The nine state variables.
     state: [LaneArray; 9],
-    /// The values of [`ContactMotion`] of a ball that comes from the ring or has reached it.
+    /// The values of [`ContactFrameState`] of a ball that comes from the ring or has reached it.
     ring_motion: [LaneArray; CONTACT_VALUES],
     times_s: LaneArray,
     /// [`FrictionState::slip_tolerance`] of each solid.
@@ -246,7 +246,7 @@ impl LaneBlock {
     /// The same for a ball that has reached the ring: with its motion in the frame of the contact.
     #[inline(always)]
     pub(super) fn remove_on_ring(&mut self, lane: usize, shot: &mut ShotProgress) {
-        shot.motion = ContactMotion::from_array(from_fn(
+        shot.motion = ContactFrameState::from_array(from_fn(
             #[inline(always)]
             |i| self.ring_motion[i][lane],
         ));
@@ -315,7 +315,7 @@ impl LaneBlock {
         state: &mut BallState<T>,
     ) {
         if self.flags.from_ring & self.flags.occupied != 0 {
-            let motion = ContactMotion::from_array(from_fn(
+            let motion = ContactFrameState::from_array(from_fn(
                 #[inline(always)]
                 |i| T::load(simd, &self.ring_motion[i]),
             ));
@@ -331,7 +331,7 @@ impl LaneBlock {
     #[inline(always)]
     pub(super) fn store_ring_motion<T: SimdReal<Element = f64>>(
         &mut self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
     ) {
         for (row, value) in self.ring_motion.iter_mut().zip(motion.to_array()) {
             value.store(row);

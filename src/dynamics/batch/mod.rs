@@ -3,15 +3,15 @@
 mod batch_state;
 mod board_contact_phase;
 mod contact_block;
-mod flight_phase;
+mod contact_frame_phase;
 mod instruction_set;
 mod lane_block;
+mod parabola_flight_phase;
 mod ring_contact_phase;
 mod scheduler;
 mod segment_flight_phase;
-mod single_contact_phase;
 mod workspace;
-mod world_contact_phase;
+mod world_frame_phase;
 
 pub use instruction_set::InstructionSet;
 pub(crate) use scheduler::run;

@@ -11,11 +11,11 @@
 
 use super::batch_state::{Batch, NARROW, Narrow, NarrowF32, WIDE, Wide, WideF32};
 use super::board_contact_phase::board_contact;
-use super::flight_phase::{fly, fly_from_release};
+use super::parabola_flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
 use super::segment_flight_phase::fly_in_segments;
 use super::workspace::{BatchWorkspace, Phase};
-use super::world_contact_phase::in_world;
+use super::world_frame_phase::in_world;
 use crate::dynamics::end_rules::ShotLimits;
 use crate::math::real::SimdReal;
 use crate::model::constants_per_ball_mass::ModelParams;

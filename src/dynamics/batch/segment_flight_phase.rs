@@ -2,8 +2,8 @@
 //! (Flights with lift are left to the scalar code.)
 
 use super::batch_state::Batch;
-use super::flight_phase::{FlightEnd, store_ring_motions};
 use super::lane_block::{LaneBlock, LaneShots};
+use super::parabola_flight_phase::{FlightEnd, store_ring_motions};
 use super::workspace::Phase;
 use crate::dynamics::end_rules::rose_to_ring;
 use crate::dynamics::flight::{drag_segment, far_segment_of_all};

@@ -1,9 +1,9 @@
 //! The ball in contact with one or two solids.
 
+pub(crate) mod contact_frame_step;
 mod contact_pair;
-pub(crate) mod contact_step;
 mod coupled_oscillators;
 pub(crate) mod friction;
 pub(crate) mod oscillator;
 pub(crate) mod other_solid_touch;
-pub(crate) mod world_contact_step;
+pub(crate) mod world_frame_step;

@@ -6,7 +6,7 @@
 //! their cores are convex, so the gap G has `G'' >= -A`, with A a bound on `-z''`, and cannot close
 //! within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
 
-use super::drag_arc::DragArc;
+use super::drag_polynomial::DragPolynomial;
 use super::flight_segment::FlightSegment;
 use super::height_path::HeightPath;
 use super::ring_search::{HorizontalMotion, ring_time};
@@ -107,14 +107,18 @@ pub(crate) fn far_segment_of_all<T: Real>(
 }
 
 #[inline(always)]
-fn arc_of<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> DragArc<T> {
-    DragArc::new(&params.ball, state)
+fn arc_of<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> DragPolynomial<T> {
+    DragPolynomial::new(&params.ball, state)
 }
 
 /// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens
 /// on it.
 #[inline(always)]
-fn is_far<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T::Mask {
+fn is_far<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragPolynomial<T>,
+    start: &BallState<T>,
+) -> T::Mask {
     let p = start.position_m;
     let (end_x, end_y) = (p.x + arc.path.x, p.y + arc.path.y);
     let front = params.ring.radius + params.ring.reach;
@@ -132,7 +136,7 @@ fn is_far<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<
 #[inline(always)]
 fn far_segment<T: Real>(
     params: &ModelParams<T>,
-    arc: &DragArc<T>,
+    arc: &DragPolynomial<T>,
     start: &BallState<T>,
 ) -> FlightSegment<T> {
     let (one, none) = (params.one(), params.splat_mask(false));
@@ -154,7 +158,7 @@ fn far_segment<T: Real>(
 #[inline(always)]
 fn rising_crossing<T: Real>(
     params: &ModelParams<T>,
-    arc: &DragArc<T>,
+    arc: &DragPolynomial<T>,
     start: &BallState<T>,
     end: T,
 ) -> (T::Mask, T::Mask) {
@@ -175,7 +179,7 @@ fn rising_crossing<T: Real>(
 
 /// Where the centre falls through z = -reach, or is at its highest point below it.
 #[inline(always)]
-fn fall_s<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<T>) -> T {
+fn fall_s<T: Real>(params: &ModelParams<T>, arc: &DragPolynomial<T>, start: &BallState<T>) -> T {
     let (zero, never) = (params.zero(), params.ball.never_s);
     let bottom = -params.ring.reach;
     let falls_s = arc.falls_through(bottom);
@@ -192,7 +196,7 @@ fn fall_s<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, start: &BallState<
 #[inline(always)]
 fn board_events<T: Real>(
     params: &ModelParams<T>,
-    arc: &DragArc<T>,
+    arc: &DragPolynomial<T>,
     start: &BallState<T>,
 ) -> BoardEvents<T> {
     let board = &params.board;
@@ -224,7 +228,12 @@ fn board_events<T: Real>(
 /// Whether the part of an arc stays above, below or on one side of everything that the board can
 /// touch.
 #[inline(always)]
-fn passes_beside<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to: T) -> T::Mask {
+fn passes_beside<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragPolynomial<T>,
+    from: T,
+    to: T,
+) -> T::Mask {
     let core = &params.board.core;
     let (first, last) = (
         arc.position(Real::min(from, params.one())),
@@ -240,7 +249,12 @@ fn passes_beside<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to
 /// Whether a part of an arc comes where the bracket is nearer than the ring's circle: outside the
 /// circle, which is so at one of its ends if anywhere, and near the bracket.
 #[inline(always)]
-fn comes_to_bracket<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T, to: T) -> T::Mask {
+fn comes_to_bracket<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragPolynomial<T>,
+    from: T,
+    to: T,
+) -> T::Mask {
     let bracket = &params.ring.bracket;
     let (first, last) = (
         arc.position(Real::min(from, params.one())),
@@ -261,7 +275,7 @@ fn comes_to_bracket<T: Real>(params: &ModelParams<T>, arc: &DragArc<T>, from: T,
 #[inline(always)]
 fn convex_touch<T: Real>(
     core: &Rectangle<T>,
-    arc: &DragArc<T>,
+    arc: &DragPolynomial<T>,
     (from, to): (T, T),
     lanes: T::Mask,
 ) -> (T, T::Mask) {
@@ -274,7 +288,7 @@ fn convex_touch<T: Real>(
 #[inline(always)]
 fn search_convex<T: Real>(
     core: &Rectangle<T>,
-    arc: &DragArc<T>,
+    arc: &DragPolynomial<T>,
     (from, to): (T, T),
     lanes: T::Mask,
 ) -> (T, T::Mask) {

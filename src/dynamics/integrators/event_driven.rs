@@ -2,12 +2,12 @@
 //! steps that end at contact events (the slip reaches zero, rolling fails, the ball parts, the
 //! other solid is touched).
 
-use crate::dynamics::contact::contact_step::{Contact, MacroStep};
+use crate::dynamics::contact::contact_frame_step::{Contact, MacroStep};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::{
     GapAtEnd, approach_in_world, has_arrived, passed,
 };
-use crate::dynamics::contact::world_contact_step::{self, WorldContact, WorldContactStep};
+use crate::dynamics::contact::world_frame_step::{self, WorldContact, WorldContactStep};
 use crate::dynamics::end_rules::{
     ShotEndFlags, ShotLimits, flight_ending, is_lodged, rose_to_ring,
 };
@@ -19,7 +19,7 @@ use crate::math::real::{Real, ScalarReal};
 use crate::math::single_precision::F32;
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{CONTACT_VALUES, ContactMotion, Solid, TOUCH_GAP_M};
+use crate::model::solids::{CONTACT_VALUES, ContactFrameState, Solid, TOUCH_GAP_M};
 use crate::model::{BallState, SolidId};
 
 /// Limit on the phases (flights and contacts) of one shot, so that every run ends. Never reached
@@ -44,7 +44,7 @@ pub(crate) struct ShotProgress {
     /// after a step that was reported.
     pub(crate) state: BallState,
     /// The ball in the frame of a contact.
-    pub(crate) motion: ContactMotion,
+    pub(crate) motion: ContactFrameState,
     pub(crate) frame: Option<SolidId>,
     pub(crate) contact: ContactState,
     /// The solids that a ball in contact in the world frame touches, by [`SolidId::index`].
@@ -74,7 +74,7 @@ impl ShotProgress {
         let friction = FrictionState::new(params);
         Self {
             state: start,
-            motion: ContactMotion::from_array([0.0; CONTACT_VALUES]),
+            motion: ContactFrameState::from_array([0.0; CONTACT_VALUES]),
             frame: None,
             contact: ContactState::Free,
             touching: [false; SolidId::COUNT],
@@ -235,7 +235,7 @@ fn is_touched<S: Solid<f64>>(params: &ModelParams, solid: &S, state: &BallState)
 #[inline(never)]
 fn single_step<T: ScalarReal, S: Solid<T>>(
     contact: &Contact<'_, T, S>,
-    motion: &ContactMotion<T>,
+    motion: &ContactFrameState<T>,
     friction: &FrictionState<T>,
     share: T,
 ) -> MacroStep<T> {
@@ -251,7 +251,7 @@ fn world_step<A: Solid<f64>, B: Solid<f64>>(
     friction: &mut [FrictionState; SolidId::COUNT],
     contact: &WorldContact<f64>,
 ) -> WorldContactStep<f64> {
-    world_contact_step::step(params, solids, state, friction, contact)
+    world_frame_step::step(params, solids, state, friction, contact)
 }
 
 /// Simulates one phase of a shot: a flight or a contact, to the end of the shot or to the next
@@ -531,7 +531,7 @@ impl<O: Observer> Run<'_, O> {
             let ending = self.after_step(step.dt, &before, step.impulses);
             let shot = &mut self.shot;
             shot.rolling_time_s =
-                world_contact_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
+                world_frame_step::rolling_time(&shot.friction, shot.rolling_time_s, step.dt);
             if let Some(ending) = ending {
                 let made = shot.crossing.is_made(params, &shot.state);
                 return Some(shot.verdict(ending, made));

@@ -1,8 +1,8 @@
 //! The board: a rectangle in the plane `x = -a`, or a plate with rounded edges whose front face
 //! lies there.
 
+use super::contact_frame_state::{ContactDistances, ContactFrameState, FrameTurn};
 use super::contact_kinematics::{ContactKinematics, ContactVector};
-use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
 use super::rectangle::Rectangle;
 use super::solid::{Solid, SolidId};
@@ -104,10 +104,10 @@ impl<T: Real> Solid<T> for Board<T> {
     }
 
     #[inline(always)]
-    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T> {
+    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactFrameState<T> {
         let (p, v, w) = (state.position_m, state.velocity_m_s, state.spin_rad_s);
         let zero = ball.zero();
-        ContactMotion {
+        ContactFrameState {
             compression: self.touch_x - p.x,
             velocity: ContactVector::new(v.x, v.y, v.z),
             spin: ContactVector::new(w.x, w.y, w.z),
@@ -117,7 +117,7 @@ impl<T: Real> Solid<T> for Board<T> {
     }
 
     #[inline(always)]
-    fn to_world(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
+    fn to_world(&self, _ball: &BallParams<T>, motion: &ContactFrameState<T>) -> BallState<T> {
         let [v, w] = [motion.velocity, motion.spin];
         BallState {
             position_m: Vec3::new(
@@ -150,7 +150,7 @@ impl<T: Real> Solid<T> for Board<T> {
     #[inline(always)]
     fn frame_turn(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         _distances: &ContactDistances<T>,
     ) -> FrameTurn<T> {
         let zero = motion.compression.zero();
@@ -164,7 +164,7 @@ impl<T: Real> Solid<T> for Board<T> {
     fn free_acceleration(
         &self,
         ball: &BallParams<T>,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
     ) -> ContactVector<T> {
         let gravity = ContactVector::new(ball.zero(), ball.zero(), -ball.gravity);
         if ball.has_air {
@@ -177,7 +177,7 @@ impl<T: Real> Solid<T> for Board<T> {
     #[inline(always)]
     fn coordinate_rates(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         _distances: &ContactDistances<T>,
         turn: &FrameTurn<T>,
     ) -> [T; 3] {
@@ -195,7 +195,7 @@ impl<T: Real> Solid<T> for Board<T> {
     }
 
     #[inline(always)]
-    fn rebase(&self, _motion: &mut ContactMotion<T>) {}
+    fn rebase(&self, _motion: &mut ContactFrameState<T>) {}
 
     #[inline(always)]
     fn acts(&self, state: &BallState<T>) -> T::Mask {

@@ -15,19 +15,21 @@
 //! an edge and around a corner.
 //!
 //! A ball on the ring's circle or on the board's face is followed in that frame
-//! ([`ContactMotion`]); on the bracket, on an edge, and on two solids at once, in the world frame.
+//! ([`ContactFrameState`]); on the bracket, on an edge, and on two solids at once, in the world frame.
 
 mod board;
+mod contact_frame_state;
 mod contact_kinematics;
-mod contact_motion;
 mod material;
 mod rectangle;
 mod ring;
 mod solid;
 
 pub(crate) use board::Board;
+pub(crate) use contact_frame_state::{
+    CONTACT_VALUES, ContactDistances, ContactFrameState, FrameTurn,
+};
 pub(crate) use contact_kinematics::{ContactKinematics, ContactVector};
-pub(crate) use contact_motion::{CONTACT_VALUES, ContactDistances, ContactMotion, FrameTurn};
 pub(crate) use material::Material;
 pub(crate) use rectangle::Rectangle;
 pub(crate) use ring::Ring;

@@ -1,8 +1,8 @@
 //! The hoop: a rod around a circle of radius R_H about the origin, and the bracket between it and
 //! the board.
 
+use super::contact_frame_state::{ContactDistances, ContactFrameState, FrameTurn};
 use super::contact_kinematics::{ContactKinematics, ContactVector};
-use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
 use super::rectangle::Rectangle;
 use super::solid::{Solid, SolidId};
@@ -100,7 +100,7 @@ fn unit_scale<T: Real>(cosine: T, sine: T) -> T {
 
 /// Cosine and sine of theta.
 #[inline(always)]
-fn theta<T: Real>(motion: &ContactMotion<T>) -> [T; 2] {
+fn theta<T: Real>(motion: &ContactFrameState<T>) -> [T; 2] {
     let (cos_turned, sin_turned) = cos_sin(motion.coordinates[2]);
     let [cos_start, sin_start] = motion.start;
     [
@@ -224,9 +224,9 @@ impl<T: Real> Solid<T> for Ring<T> {
     }
 
     #[inline(always)]
-    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T> {
+    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactFrameState<T> {
         let (frame, core, _) = self.frame_at(ball, state.position_m);
-        ContactMotion {
+        ContactFrameState {
             compression: self.reach - core,
             velocity: frame.to_frame(state.velocity_m_s),
             spin: frame.to_frame(state.spin_rad_s),
@@ -236,7 +236,7 @@ impl<T: Real> Solid<T> for Ring<T> {
     }
 
     #[inline(always)]
-    fn to_world(&self, _ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T> {
+    fn to_world(&self, _ball: &BallParams<T>, motion: &ContactFrameState<T>) -> BallState<T> {
         let [cos_phi, sin_phi, _] = motion.coordinates;
         let scale = unit_scale(cos_phi, sin_phi);
         let (cos_phi, sin_phi) = (cos_phi * scale, sin_phi * scale);
@@ -282,7 +282,7 @@ impl<T: Real> Solid<T> for Ring<T> {
     #[inline(always)]
     fn frame_turn(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         distances: &ContactDistances<T>,
     ) -> FrameTurn<T> {
         let [cos_phi, sin_phi, _] = motion.coordinates;
@@ -298,7 +298,7 @@ impl<T: Real> Solid<T> for Ring<T> {
     fn free_acceleration(
         &self,
         ball: &BallParams<T>,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
     ) -> ContactVector<T> {
         let [cos_phi, sin_phi, _] = motion.coordinates;
         let gravity = ContactVector::new(
@@ -316,7 +316,7 @@ impl<T: Real> Solid<T> for Ring<T> {
     #[inline(always)]
     fn coordinate_rates(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         distances: &ContactDistances<T>,
         turn: &FrameTurn<T>,
     ) -> [T; 3] {
@@ -343,7 +343,7 @@ impl<T: Real> Solid<T> for Ring<T> {
     }
 
     #[inline(always)]
-    fn rebase(&self, motion: &mut ContactMotion<T>) {
+    fn rebase(&self, motion: &mut ContactFrameState<T>) {
         let [cos_phi, sin_phi, turned] = motion.coordinates;
         let far = turned.splat(LARGEST_TURN_RAD).lt(turned.abs());
         if !far.any() {

@@ -1,7 +1,7 @@
 //! What every solid provides.
 
+use super::contact_frame_state::{ContactDistances, ContactFrameState, FrameTurn};
 use super::contact_kinematics::{ContactKinematics, ContactVector};
-use super::contact_motion::{ContactDistances, ContactMotion, FrameTurn};
 use super::material::Material;
 use crate::math::real::Real;
 use crate::math::vector::Vec3;
@@ -62,10 +62,10 @@ pub(crate) trait Solid<T: Real>: Copy {
     ) -> (ContactKinematics<T>, [Vec3<T>; 3]);
 
     /// The ball in the frame of the contact.
-    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactMotion<T>;
+    fn to_contact(&self, ball: &BallParams<T>, state: &BallState<T>) -> ContactFrameState<T>;
 
     /// The state in the world frame of a ball in the frame of the contact.
-    fn to_world(&self, ball: &BallParams<T>, motion: &ContactMotion<T>) -> BallState<T>;
+    fn to_world(&self, ball: &BallParams<T>, motion: &ContactFrameState<T>) -> BallState<T>;
 
     /// Distances at a contact with the given compression and coordinates.
     fn distances(
@@ -78,7 +78,7 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// How the frame turns. Not called for a flat solid.
     fn frame_turn(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         distances: &ContactDistances<T>,
     ) -> FrameTurn<T>;
 
@@ -86,13 +86,13 @@ pub(crate) trait Solid<T: Real>: Copy {
     fn free_acceleration(
         &self,
         ball: &BallParams<T>,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
     ) -> ContactVector<T>;
 
-    /// Rates of [`ContactMotion::coordinates`].
+    /// Rates of [`ContactFrameState::coordinates`].
     fn coordinate_rates(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         distances: &ContactDistances<T>,
         turn: &FrameTurn<T>,
     ) -> [T; 3];
@@ -101,14 +101,14 @@ pub(crate) trait Solid<T: Real>: Copy {
     fn gap(&self, ball: &BallParams<T>, state: &BallState<T>) -> (T, T);
 
     /// Keeps the values of a long contact within the range of their formulas.
-    fn rebase(&self, motion: &mut ContactMotion<T>);
+    fn rebase(&self, motion: &mut ContactFrameState<T>);
 
     /// Whether the solid acts on a ball there: the paper's board does so only in front of its
     /// rectangle.
     fn acts(&self, state: &BallState<T>) -> T::Mask;
 
     /// Whether the nearest point lies on that part of the solid which the frame of
-    /// [`ContactMotion`] describes: the face of the board, or the ring's circle.
+    /// [`ContactFrameState`] describes: the face of the board, or the ring's circle.
     fn is_in_frame(&self, state: &BallState<T>) -> T::Mask;
 }
 

@@ -19,7 +19,7 @@ pub enum Language {
 }
 
 /// The values that a lookup returns: name and value in units of the results.
-fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 5] {
+fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 7] {
     let (long, metre) = units.length();
     [
         (format!("speed_{long}_s"), |s| s.nominal.speed_m_s, metre),
@@ -31,6 +31,12 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 5] {
             REV_RAD,
         ),
         ("probability".to_owned(), |s| s.probability, 1.0),
+        ("time_s".to_owned(), |s| s.time_s, 1.0),
+        (
+            "entry_deg".to_owned(),
+            |s| s.entry_rad.unwrap_or(f64::NAN),
+            DEGREE_RAD,
+        ),
     ]
 }
 
@@ -70,8 +76,8 @@ pub fn source_code(
             let cells: Vec<String> = values
                 .iter()
                 .map(|(_, value, size)| match shot {
-                    Some(shot) => format!("{:.6}", value(shot) / size),
-                    None => nan.to_owned(),
+                    Some(shot) if value(shot).is_finite() => format!("{:.6}", value(shot) / size),
+                    _ => nan.to_owned(),
                 })
                 .collect();
             format!("{indent}    {open}{}{close},\n", cells.join(", "))
@@ -85,13 +91,18 @@ pub fn source_code(
             env!("CARGO_PKG_VERSION")
         ),
         format!(
-            "look_up(distance_{long}, court_angle_deg) gives {}.",
+            "{}(distance_{long}, court_angle_deg) gives {}.",
+            if language == Language::Java {
+                "lookUp"
+            } else {
+                "look_up"
+            },
             names.join(", ")
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
         format!(
-            "NaN outside the table. Checked: {}",
-            check_text(table).trim()
+            "NaN outside the table. {}",
+            check_text(table, units).trim().replace('\n', " ")
         ),
     ];
     let comment = |prefix: &str| {

@@ -67,12 +67,17 @@ fn nodes(
     (0..table.angles_rad.len()).flat_map(move |a| {
         (0..table.distances_m.len()).map(move |d| {
             (
-                table.distances_m[d] / metre,
-                table.angles_rad[a] / DEGREE_RAD,
+                without_rounding(table.distances_m[d] / metre),
+                without_rounding(table.angles_rad[a] / DEGREE_RAD),
                 table.at(a, d),
             )
         })
     })
+}
+
+/// A value that was converted to SI units and back, without what that cost in the last digits.
+fn without_rounding(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
 }
 
 /// The table for people, at most 80 columns wide.
@@ -101,8 +106,8 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
         ],
     ];
     let mut text = format!(
-        "Best {} shots. P: the chance of each. range: how much the speed and the pitch\n\
-         of an otherwise exact shot may vary. time, entry: until it falls through.\n",
+        "Best {} shots. P: the chance of each. range: by how much the speed and the\n\
+         pitch of an otherwise exact shot may vary. time, entry: until it falls through.\n",
         table.kind.name()
     );
     for cells in header {
@@ -140,7 +145,7 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
             None => format!("{distance:>5.2} {angle:>5.1} no clean shot\n"),
         };
     }
-    text + &check_text(table)
+    text + &check_text(table, units)
 }
 
 /// A line of the table for people.
@@ -157,12 +162,16 @@ fn line(cells: &[String; 11]) -> String {
 
 /// What interpolation costs, in words.
 #[must_use]
-pub fn check_text(table: &ShotTable) -> String {
-    match table.greatest_loss() {
-        Some(loss) => format!(
-            "Between the places, interpolation costs at most {:.4} in P ({} checked).\n",
-            loss.max(0.0),
-            table.checks.len()
+pub fn check_text(table: &ShotTable, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    match table.costliest() {
+        Some(check) => format!(
+            "Between the places, interpolation costs at most {:.4} in P\n\
+             ({} checked; most at {:.2} {long}, {:.1} deg).\n",
+            check.loss().max(0.0),
+            table.checks.len(),
+            check.location.distance_m / metre,
+            check.location.angle_rad / DEGREE_RAD,
         ),
         None => "No place between could be checked.\n".to_owned(),
     }
@@ -206,7 +215,10 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
         let mut record = vec![
             named(&format!("distance_{long}"), number(distance)),
             named("court_angle_deg", number(angle)),
-            named("is_clean_shot", shot.is_some().into()),
+            named(
+                "is_clean_shot",
+                shot.is_some_and(|shot| table.is_clean(shot)).into(),
+            ),
             named("outcome", shot.map(|shot| shot.outcome.name()).into()),
         ];
         record.extend(columns.iter().map(|(name, _, value, size)| {

@@ -4,7 +4,7 @@ use super::batch_state::Batch;
 use super::contact_block::{ContactBlock, ContactShots};
 use super::lane_block::{bit, lanes_in};
 use super::workspace::Phase;
-use crate::dynamics::contact::contact_step::Contact;
+use crate::dynamics::contact::contact_frame_step::Contact;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::{GapAtEnd, has_arrived, passed};
 use crate::dynamics::end_rules::ShotEndFlags;

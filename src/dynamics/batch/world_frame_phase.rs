@@ -5,7 +5,7 @@ use super::lane_block::{LaneBlock, bit, lanes_in};
 use super::workspace::Phase;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::approach_in_world;
-use crate::dynamics::contact::world_contact_step::{self, WorldContact};
+use crate::dynamics::contact::world_frame_step::{self, WorldContact};
 use crate::dynamics::end_rules::is_lodged;
 use crate::dynamics::outcome::Ending;
 use crate::math::real::{LaneBits, SimdReal};
@@ -87,7 +87,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             share: block.load_step_shares(simd),
         };
         let mut next_friction = friction;
-        let step = world_contact_step::step(
+        let step = world_frame_step::step(
             params,
             solids,
             &mut shots.state,
@@ -105,7 +105,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             next_friction[i] = FrictionState::select(friction[i], stays, next_friction[i]);
         }
         let before_s = block.load_rolling_times(simd);
-        let rolling_times = world_contact_step::rolling_time(&next_friction, before_s, step.dt);
+        let rolling_times = world_frame_step::rolling_time(&next_friction, before_s, step.dt);
         let rolling_times = before_s.select(stays, rolling_times);
         let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & !stays;
         let end = shots.after_step(params, &before, (step.dt, !stays), self.limits.time_limit_s);

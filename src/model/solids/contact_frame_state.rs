@@ -7,7 +7,7 @@ use crate::model::ball_params::BallParams;
 
 /// Position and motion of the ball in the frame `(n, 1, 2)` of a contact.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ContactMotion<T = f64> {
+pub(crate) struct ContactFrameState<T = f64> {
     /// Compression u of the ball, m.
     pub(crate) compression: T,
     /// Velocity of the centre, m/s.
@@ -21,10 +21,10 @@ pub(crate) struct ContactMotion<T = f64> {
     pub(crate) start: [T; 2],
 }
 
-/// Number of values of a [`ContactMotion`].
+/// Number of values of a [`ContactFrameState`].
 pub(crate) const CONTACT_VALUES: usize = 12;
 
-impl<T: Real> ContactMotion<T> {
+impl<T: Real> ContactFrameState<T> {
     /// The values in order.
     #[inline(always)]
     pub(crate) fn to_array(self) -> [T; CONTACT_VALUES] {
@@ -61,7 +61,7 @@ impl<T: Real> ContactMotion<T> {
     }
 }
 
-impl<T: Real> ContactMotion<T> {
+impl<T: Real> ContactFrameState<T> {
     /// `self` where `condition` holds, `other` elsewhere.
     #[inline(always)]
     pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {
@@ -83,8 +83,8 @@ impl<T: Real> ContactMotion<T> {
 
     /// The same in another number type.
     #[inline(always)]
-    pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U) -> ContactMotion<U> {
-        ContactMotion::from_array(self.to_array().map(convert))
+    pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U) -> ContactFrameState<U> {
+        ContactFrameState::from_array(self.to_array().map(convert))
     }
 
     /// A bound of the speed of the centre.

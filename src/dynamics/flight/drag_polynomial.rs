@@ -42,7 +42,7 @@ const CROSSING_TOLERANCE_M: f64 = 1e-10;
 
 /// A part of a flight, from s = 0 to 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct DragArc<T: Real> {
+pub(super) struct DragPolynomial<T: Real> {
     start_x: T,
     start_y: T,
     /// Horizontal unit vector along the path, and the horizontal path itself, m.
@@ -58,7 +58,7 @@ pub(super) struct DragArc<T: Real> {
     never: T,
 }
 
-impl<T: Real> DragArc<T> {
+impl<T: Real> DragPolynomial<T> {
     /// The arc that starts at `start`.
     #[inline(always)]
     pub(super) fn new(ball: &BallParams<T>, start: &BallState<T>) -> Self {
@@ -202,7 +202,7 @@ impl<T: Real> DragArc<T> {
     }
 }
 
-impl<T: Real> HeightPath<T> for DragArc<T> {
+impl<T: Real> HeightPath<T> for DragPolynomial<T> {
     #[inline(always)]
     fn height_and_rate(&self, s: T) -> (T, T) {
         (polynomial(&self.z, s), polynomial(&self.rate, s))
@@ -245,7 +245,7 @@ impl<T: Real> HeightPath<T> for DragArc<T> {
     }
 }
 
-impl<T: Real> DragArc<T> {
+impl<T: Real> DragPolynomial<T> {
     /// Where it rises through `height`; for one that has risen before, or does not, a negative s.
     #[inline(always)]
     pub(super) fn rises_through(&self, height: T) -> T {
@@ -467,7 +467,7 @@ mod tests {
                     velocity_m_s: velocity.into(),
                     spin_rad_s: Vec3::zeros(),
                 };
-                let arc = DragArc::new(&ball, &start);
+                let arc = DragPolynomial::new(&ball, &start);
                 let duration = arc.time(1.0);
                 let steps = (duration / 1e-4).ceil();
                 let h = duration / steps;

@@ -23,7 +23,7 @@ use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{
-    ContactDistances, ContactMotion, ContactVector, FrameTurn, Material, Solid,
+    ContactDistances, ContactFrameState, ContactVector, FrameTurn, Material, Solid,
 };
 
 /// Shortest step, as a fraction of the longest.
@@ -42,7 +42,7 @@ pub(crate) struct Contact<'a, T, S> {
 
 /// The result of one step.
 pub(crate) struct MacroStep<T: Real> {
-    pub(crate) motion: ContactMotion<T>,
+    pub(crate) motion: ContactFrameState<T>,
     pub(crate) friction: FrictionState<T>,
     /// Length of the step, s.
     pub(crate) dt: T,
@@ -104,7 +104,7 @@ struct FrictionImpulse<T> {
 
 /// What holds throughout a step.
 struct StepStart<T: Real> {
-    motion: ContactMotion<T>,
+    motion: ContactFrameState<T>,
     at: Evaluation<T>,
     /// N, and its positive part.
     normal: T,
@@ -189,7 +189,11 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
     }
 
     #[inline(always)]
-    fn evaluate(&self, motion: &ContactMotion<T>, distances: ContactDistances<T>) -> Evaluation<T> {
+    fn evaluate(
+        &self,
+        motion: &ContactFrameState<T>,
+        distances: ContactDistances<T>,
+    ) -> Evaluation<T> {
         let (v, w) = (motion.velocity, motion.spin);
         let free = self.solid.free_acceleration(&self.params.ball, motion);
         let slip = motion.slip(distances.lever);
@@ -252,7 +256,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         h: T,
         (compression, normal_velocity): (T, T),
         impulse: &FrictionImpulse<T>,
-    ) -> (ContactMotion<T>, ContactDistances<T>) {
+    ) -> (ContactFrameState<T>, ContactDistances<T>) {
         let ball = &self.params.ball;
         let from = &start.motion;
         let before = &start.at.distances;
@@ -280,7 +284,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 (rates.v2 * h + (v.y * before.axis + impulse.linear.y)) * distances.inverse_axis,
             )
         };
-        let motion = ContactMotion {
+        let motion = ContactFrameState {
             compression,
             velocity: ContactVector {
                 normal: normal_velocity,
@@ -295,7 +299,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
 
     /// 1. The equations at the start, and whether the ball slides or rolls.
     #[inline(always)]
-    fn start(&self, motion: &ContactMotion<T>, friction: &FrictionState<T>) -> StepStart<T> {
+    fn start(&self, motion: &ContactFrameState<T>, friction: &FrictionState<T>) -> StepStart<T> {
         let (params, material) = (self.params, self.material());
         let (zero, one) = (params.zero(), params.one());
         let mut motion = *motion;
@@ -537,7 +541,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
     #[inline(always)]
     pub(crate) fn step(
         &self,
-        motion: &ContactMotion<T>,
+        motion: &ContactFrameState<T>,
         friction: &FrictionState<T>,
         longest: T,
     ) -> MacroStep<T> {
@@ -698,7 +702,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         normal: &NormalStep<T>,
         (middle, last): (&Stage<T>, &Stage<T>),
         negative_impulse: T,
-    ) -> ContactMotion<T> {
+    ) -> ContactFrameState<T> {
         let mu = self.material().friction_coefficient;
         let (at, at_m, at_e) = (&start.at, &middle.at, &last.at);
         let (g, v_n) = (at.normal_acceleration, start.motion.velocity.normal);
