@@ -1,7 +1,7 @@
-//! Where the best bank shots of a sweep are aimed, by distance and court angle: the point behind the
-//! board that their lines of aim pass, and their difference from the paper's closed form (Eq. 27).
-//! `cargo run --release --example bank_aims SWEEP.toml FOLDER`, after `bankshot sweep SWEEP.toml
-//! --out FOLDER`.
+//! Where the best bank shots of a sweep are aimed, by distance and court angle: the point behind
+//! the board that their lines of aim pass, and their difference from the paper's closed form (Eq.
+//! 27). `cargo run --release --example bank_aims SWEEP.toml FOLDER`, after `bankshot sweep
+//! SWEEP.toml --out FOLDER`.
 
 use bankshot::analysis::bank_aim::{
     closed_form_meeting_m, closed_form_polar_rad, meeting_behind_board_m,

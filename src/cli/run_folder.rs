@@ -99,7 +99,8 @@ pub(crate) fn safe_name(name: &str) -> String {
 }
 
 /// The usual folder of a profile's run, in the profile's output folder. It belongs to this profile
-/// from now on, also beside other runs of the same name: whoever writes its provenance first has it.
+/// from now on, also beside other runs of the same name: whoever writes its provenance first has
+/// it.
 pub(crate) fn of_profile(profile: &Profile) -> Result<PathBuf, Failure> {
     let parent = Path::new(&profile.output().folder);
     loop {

@@ -89,8 +89,8 @@ impl fmt::Display for ContactSequence {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// The centre fell through `z = -reach` (the radius of the ball and that of the rod), below which
-    /// the ring cannot touch the ball.
+    /// The centre fell through `z = -reach` (the radius of the ball and that of the rod), below
+    /// which the ring cannot touch the ball.
     Fell,
     /// The ball never rose to `z = -reach`.
     NeverRose,

@@ -112,8 +112,8 @@ impl OutcomeClassifier {
 impl Observer for OutcomeClassifier {
     fn flight(&mut self, params: &ModelParams, _t: f64, dt: f64, path: &FlightPath) {
         self.apex_m = self.apex_m.max(highest_point_m(params, path, dt));
-        // Once for each flight, not for each segment: `falls_through` follows the flight to the hoop,
-        // and a flight can have many short segments.
+        // Once for each flight, not for each segment: `falls_through` follows the flight to the
+        // hoop, and a flight can have many short segments.
         let is_wanted = std::mem::take(&mut self.awaits_flight);
         let (z, vz) = path.height_and_rate(dt);
         let crosses = z <= 0.0 && vz < 0.0;

@@ -22,7 +22,8 @@ use serde::Serialize;
 pub enum Integrator {
     /// Closed-form flight, and contacts in steps that end on the events of friction.
     EventDriven {
-        /// Steps in half an undamped period of the contact, 1 or more. More is finer; the default is 4.
+        /// Steps in half an undamped period of the contact, 1 or more. More is finer; the default
+        /// is 4.
         steps_per_contact: u32,
         /// The numbers in contacts with one solid. Flights are always in double precision.
         precision: Precision,
@@ -353,8 +354,8 @@ impl Simulator {
         Ok(self.finite_verdicts(starts, workspace))
     }
 
-    /// One shot with its events and its trajectory: a sample every `interval_s` (at least 1e-5 s) in
-    /// flight, and at least every millisecond in contact.
+    /// One shot with its events and its trajectory: a sample every `interval_s` (at least 1e-5 s)
+    /// in flight, and at least every millisecond in contact.
     ///
     /// # Errors
     /// The release has a NaN or infinite value.

@@ -243,8 +243,8 @@ fn check_bank_against_direct(effort: Effort) {
             bank.estimate.probability,
             meeting.map_or("-".to_owned(), |m| format!("{:.1} in", m / INCH_M))
         );
-        // Published: the lines of aim pass a point 3.33 in behind the board; here 4.0 to 4.3 in. P is flat
-        // in the aim: the quarter of a degree between them is a fifth of the scatter.
+        // Published: the lines of aim pass a point 3.33 in behind the board; here 4.0 to 4.3 in. P
+        // is flat in the aim: the quarter of a degree between them is a fifth of the scatter.
         if let Some(meeting) = meeting {
             assert!((3.3..=5.0).contains(&(meeting / INCH_M)), "{meeting} m");
             assert!(from_closed_form.abs() < 0.45, "{from_closed_form} deg");

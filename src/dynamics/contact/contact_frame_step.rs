@@ -601,8 +601,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
 
     /// 3. The middle of the step, with G as at the start.
     ///
-    /// If G then grows evenly by D until the middle, the compression there is less by `D h^2/24` and
-    /// the velocity greater by `D h/4`; N counts them.
+    /// If G then grows evenly by D until the middle, the compression there is less by `D h^2/24`
+    /// and the velocity greater by `D h/4`; N counts them.
     #[inline(always)]
     fn middle_stage(&self, start: &StepStart<T>, normal: &NormalStep<T>) -> Stage<T> {
         let (params, material) = (self.params, self.material());
@@ -693,8 +693,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
     /// 5. Simpson's rule, with the exact moments of N and v_n.
     ///
     /// A change of G in the middle acts for the other half of the step. Its response is that of the
-    /// oscillator: `1 - c t + (c^2 - k) t^2/2 + k^2 t^4/24` in velocity, and the integral of that in
-    /// compression, with `t = h/2`.
+    /// oscillator: `1 - c t + (c^2 - k) t^2/2 + k^2 t^4/24` in velocity, and the integral of that
+    /// in compression, with `t = h/2`.
     #[inline(always)]
     fn simpson_step(
         &self,

@@ -18,8 +18,8 @@ use crate::model::solids::Material;
 
 /// Degree of the polynomials, without their constant terms.
 const DEGREE: usize = 6;
-/// [`Oscillator::roll_reserve`] with [`COARSE_STEPS`]: the share above 1, and m/s^2. Both it and the
-/// next were tuned for the agreement of made and missed with steps that are 250 times finer.
+/// [`Oscillator::roll_reserve`] with [`COARSE_STEPS`]: the share above 1, and m/s^2. Both it and
+/// the next were tuned for the agreement of made and missed with steps that are 250 times finer.
 const ROLL_RESERVE: (f64, f64) = (0.1, 2.0);
 /// [`Oscillator::slip_remainder`] with [`COARSE_STEPS`].
 const SLIP_REMAINDER: (f64, f64) = (0.25, 2e-4);
@@ -49,8 +49,9 @@ pub(crate) struct Oscillator<T = f64> {
     pub(crate) inverse_stiffness: T,
     /// c/k in units of H: about the time from zero force to zero compression of an outgoing ball.
     pub(crate) relaxation: T,
-    /// A factor, and a margin in m/s^2: while N falls, a roll ends where mu N is less than the factor
-    /// times the friction that rolling needs, plus the margin. Otherwise a tiny step would follow.
+    /// A factor, and a margin in m/s^2: while N falls, a roll ends where mu N is less than the
+    /// factor times the friction that rolling needs, plus the margin. Otherwise a tiny step would
+    /// follow.
     pub(crate) roll_reserve: (T, T),
     /// A step that ends the slip may leave this fraction of it, and at least this much (m/s).
     /// Friction's own impulse removes the rest.

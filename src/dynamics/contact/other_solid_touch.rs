@@ -15,7 +15,8 @@ use crate::model::{BallState, SolidId};
 /// Gap at which an approached solid counts as touched, m. A compression of this size changes the
 /// speed of a bounce by less than 1e-6 m/s.
 pub(crate) const ARRIVED_M: f64 = 2e-6;
-/// Greatest overlap that counts as a new touch, m: a solid in which the ball is deeper does not act.
+/// Greatest overlap that counts as a new touch, m: a solid in which the ball is deeper does not
+/// act.
 const DEEPEST_M: f64 = 1e-4;
 /// An approach closer than this within a step is looked at again, m.
 const GRAZE_M: f64 = 1e-5;

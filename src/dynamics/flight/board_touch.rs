@@ -1,4 +1,4 @@
-//! The first touch of the board: the centre touch_timees the *touch plane*, the ball's radius in front
+//! The first touch of the board: the centre reaches the *touch plane*, the ball's radius in front
 //! of the *face plane*. In free flight x is linear in time.
 
 use super::height_crossing::{falling_time, rising_time};
@@ -10,7 +10,7 @@ use crate::model::solids::Solid;
 /// A ball that passed the touch plane earlier than this overlaps the board, s.
 const OVERLAP_TOLERANCE_S: f64 = 1e-9;
 
-/// Times at which the ball touches the board, and at which it touch_timees the touch plane outside the
+/// Times at which the ball touches the board, and at which it reaches the touch plane outside the
 /// rectangle.
 #[inline(always)]
 pub(super) fn board_times<T: Real>(

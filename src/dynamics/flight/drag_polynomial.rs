@@ -263,8 +263,8 @@ impl<T: Real> DragPolynomial<T> {
         if !falls.any() {
             return self.never;
         }
-        // From the end backwards by a parabola with the mean curvature of the arc, and from there by
-        // Halley's steps. A step of e leaves an error of the order of e^3.
+        // From the end backwards by a parabola with the mean curvature of the arc, and from there
+        // by Halley's steps. A step of e leaves an error of the order of e^3.
         let below = (height - end_z).positive_part();
         let mean_curvature = self.rate[0] - end_rate;
         let square = end_rate.squared() - mean_curvature * below * 2.0;

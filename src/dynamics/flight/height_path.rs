@@ -10,12 +10,12 @@ use super::height_crossing::{falling_time, rising_time};
 pub(super) trait HeightPath<T: Real> {
     /// z and its rate at `t`.
     fn height_and_rate(&self, t: T) -> (T, T);
-    /// When it falls through `height`. Where it does not, the path is below `height` from the result
-    /// on: never, or (a parabola) the time of its highest point.
+    /// When it falls through `height`. Where it does not, the path is below `height` from the
+    /// result on: never, or (a parabola) the time of its highest point.
     fn falls_through(&self, height: T) -> T;
     /// Bounds on the time at which it rises through `height`: one not later, one not earlier. From
-    /// the later one to the highest point the path is above `height`. Where it does not rise through
-    /// it: any times before the highest point.
+    /// the later one to the highest point the path is above `height`. Where it does not rise
+    /// through it: any times before the highest point.
     fn rises_between(&self, height: T) -> (T, T);
     /// A bound on -z''.
     fn acceleration_bound(&self) -> T;

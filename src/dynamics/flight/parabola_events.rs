@@ -21,8 +21,8 @@ pub(crate) struct FlightEvents<T: Real> {
     /// The ball overlaps the plane of the board beside the rectangle:
     /// [`FlightEvents::resolve_beside_board`] says when the shot is over.
     pub(crate) beside_board: T,
-    /// The ball has diverged, or the search for the ring reached its iteration limit. (The latter was
-    /// never seen.)
+    /// The ball has diverged, or the search for the ring reached its iteration limit. (The latter
+    /// was never seen.)
     pub(crate) unresolved: T::Mask,
 }
 

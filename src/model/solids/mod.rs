@@ -15,7 +15,8 @@
 //! an edge and around a corner.
 //!
 //! A ball on the ring's circle or on the board's face is followed in that frame
-//! ([`ContactFrameState`]); on the bracket, on an edge, and on two solids at once, in the world frame.
+//! ([`ContactFrameState`]); on the bracket, on an edge, and on two solids at once, in the world
+//! frame.
 
 mod board;
 mod contact_frame_state;
