@@ -192,6 +192,8 @@
     event.preventDefault();
   });
   addEventListener("resize", draw);
+  // On a narrow screen a figure fits the width; a tap enlarges it.
+  for (const figure of document.querySelectorAll("figure")) figure.addEventListener("click", () => figure.classList.toggle("enlarged"));
   addEventListener("beforeprint", draw);
 
   // Tables: a column's name sorts by it, again the other way.

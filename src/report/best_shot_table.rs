@@ -41,5 +41,6 @@ pub(super) fn shot_table(shots: &[ReportShot], units: UnitSystem) -> HtmlTable {
         caption: "Best shots".to_owned(),
         columns,
         rows,
+        is_detail: false,
     }
 }

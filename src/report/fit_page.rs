@@ -107,5 +107,6 @@ fn parameter_table(fit: &ShooterFit, units: UnitSystem) -> HtmlTable {
                 (None, cells.to_vec())
             })
             .collect(),
+        is_detail: false,
     }
 }

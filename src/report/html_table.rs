@@ -12,6 +12,8 @@ pub struct HtmlTable {
     pub columns: Vec<String>,
     /// The cells of each row, and the index of the shot that the row selects, if any.
     pub rows: Vec<(Option<usize>, Vec<String>)>,
+    /// The table is folded until it is asked for, and not printed.
+    pub is_detail: bool,
 }
 
 impl HtmlTable {
@@ -22,8 +24,14 @@ impl HtmlTable {
 
     /// The table as HTML. `number` makes the ids of a page's tables different.
     pub(super) fn html(&self, number: usize) -> String {
+        let (heading, end) = if self.is_detail {
+            ("summary", "</details>\n")
+        } else {
+            ("h2", "")
+        };
+        let start = if self.is_detail { "<details>" } else { "" };
         let mut html = format!(
-            "<h2 id=\"h-table-{number}\">{}</h2>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
+            "{start}<{heading} id=\"h-table-{number}\">{}</{heading}>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
             escaped(&self.caption)
         );
         for column in &self.columns {
@@ -39,14 +47,20 @@ impl HtmlTable {
             html.push_str(&shot.map_or("<tr>".to_owned(), |shot| {
                 format!("<tr data-shot=\"{shot}\">")
             }));
-            for cell in cells {
+            for (cell, column) in cells.iter().zip(&self.columns) {
                 let is_number = cell.parse::<f64>().is_ok();
                 let class = if is_number { "" } else { " class=\"text\"" };
-                let _ = write!(html, "<td{class}>{}</td>", escaped(cell));
+                let label = escaped(column);
+                let _ = write!(
+                    html,
+                    "<td{class} data-label=\"{label}\">{}</td>",
+                    escaped(cell)
+                );
             }
             html.push_str("</tr>\n");
         }
         html.push_str("</tbody>\n</table>\n</div>\n");
+        html.push_str(end);
         html
     }
 }
