@@ -10,6 +10,7 @@ pub mod fit_page;
 mod html_table;
 pub mod page;
 mod page_data;
+pub mod physics_section;
 pub mod poster_page;
 mod report_error;
 mod sensitivity_table;

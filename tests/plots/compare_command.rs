@@ -66,6 +66,11 @@ fn contract_a_sweep_is_not_compared_with_a_profile_and_other_folders_have_no_rep
     let profile = Path::new("configs/elite.toml");
     be_refused(&mut compare(&sweep, Some(profile), &sweep.path("plots")));
     be_refused(bankshot().arg("report").arg(sweep.folder()));
+    be_refused(
+        bankshot()
+            .args(["report", "--with-physics"])
+            .arg(sweep.results()),
+    );
 }
 
 #[test]

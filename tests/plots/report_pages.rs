@@ -96,6 +96,19 @@ fn contract_the_page_of_one_location_shows_the_sensitivity_and_works_in_a_browse
     let page = write_report(&runs);
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("Sensitivity") && html.contains("no error in speed"));
+    assert!(html.contains("Where to aim") && !html.contains("rests on the physics"));
+    succeed(
+        bankshot()
+            .args(["report", "--with-physics", "--quiet"])
+            .arg(&runs),
+    );
+    let html = fs::read_to_string(&page).unwrap();
+    assert!(html.contains("How much rests on the physics"));
+    assert!(html.contains("hoop_restitution 0.45"));
     let Some(chromium) = chromium() else { return };
-    assert_works(&visit(chromium, &page, 1280));
+    for width in [1280, 390] {
+        let seen = visit(chromium, &page, width);
+        assert_works(&seen);
+        assert_eq!(seen["wide"], 0, "{seen:#}");
+    }
 }

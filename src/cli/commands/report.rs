@@ -1,20 +1,23 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
 use super::sweep_summary;
-use crate::cli::config_files::read_text;
+use crate::best_shot::{compare_physics, physics_variants};
+use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
-use crate::plots::sweep_difference_map;
 use crate::plots::sweep_results::SweepResults;
+use crate::plots::{physics_probabilities, sweep_difference_map};
 use crate::report::ReportError;
 use crate::report::best_shot_page::best_shot_page;
 use crate::report::best_shot_run::{
     BEST_SHOTS_FILE, BestShotRun, CURVES_FILE, PROFILE_FILE, RunTexts, SENSITIVITY_FILE,
 };
 use crate::report::page::Page;
+use crate::report::physics_section::physics_table;
 use crate::report::sweep_page::sweep_page;
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Jobs;
@@ -28,6 +31,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct ReportOptions {
     /// The folder of a `best`, `compare`, `sweep` or `fit` run.
     pub(crate) folder: PathBuf,
+    /// Of a `best` run: add what the answer rests on, as `bankshot physics` does (a minute or two).
+    #[arg(long)]
+    pub(crate) with_physics: bool,
 }
 
 /// The file of a sweep's folder that `sweep` writes first.
@@ -37,12 +43,19 @@ const FIT_FILE: &str = "fit.json";
 
 pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = &options.folder;
+    let is_best_run = !folder.join(FIT_FILE).exists() && sweep_of(folder).is_none();
+    if options.with_physics && !is_best_run {
+        return Err(Failure::usage(format!(
+            "--with-physics: {} is not the folder of a `best` run; leave the option out",
+            folder.display()
+        )));
+    }
     if folder.join(FIT_FILE).exists() {
         return page_of_fit(folder);
     }
     match sweep_of(folder) {
         Some(sweep) => report_sweep(folder, &sweep, quiet),
-        None => report_best_shots(folder, quiet),
+        None => report_best_shots(folder, options.with_physics, quiet),
     }
 }
 
@@ -113,8 +126,18 @@ fn open_sweep(
     Ok((sweep, config, rows))
 }
 
-fn report_best_shots(folder: &Path, quiet: bool) -> Result<u8, Failure> {
+fn report_best_shots(folder: &Path, with_physics: bool, quiet: bool) -> Result<u8, Failure> {
     let mut page = best_shots_page_of(folder, quiet)?;
+    if with_physics {
+        let path = folder.join(PROFILE_FILE);
+        let profile = load_profile(&path, &PhysicsArg::default(), true)?;
+        let variants = physics_variants(profile.physics());
+        let rows = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+        page.tables
+            .push(physics_table(&rows, profile.output().units));
+        let name = &profile.shooter().name;
+        page.plots.push(physics_probabilities::draw(name, &rows));
+    }
     let against = folder.join(AGAINST_FOLDER);
     if against.join(BEST_SHOTS_FILE).exists() {
         page.add_comparison(best_shots_page_of(&against, quiet)?, None);

@@ -1,0 +1,43 @@
+//! The table of a page that says how much of the answer rests on the physics.
+
+use super::html_table::{HtmlTable, format_cell};
+use crate::best_shot::PhysicsRow;
+use crate::units::{DEGREE_RAD, UnitSystem};
+
+/// The best shots under each physics.
+#[must_use]
+pub fn physics_table(rows: &[PhysicsRow], units: UnitSystem) -> HtmlTable {
+    let (long, metre) = units.length();
+    let (short, short_m) = units.short_length();
+    let columns = [
+        "physics".to_owned(),
+        "direct P".to_owned(),
+        format!("speed {long}/s"),
+        "pitch deg".to_owned(),
+        format!("{short} past centre"),
+        "bank P".to_owned(),
+        "P of first row's shot".to_owned(),
+    ];
+    let cells = |row: &PhysicsRow| {
+        let number = |value: Option<f64>, decimals: usize| {
+            value.map_or(String::new(), |value| format_cell(value, decimals))
+        };
+        let direct = row.direct.as_ref().ok();
+        let bank = row.bank.as_ref().ok();
+        vec![
+            row.name.clone(),
+            number(direct.map(|shot| shot.estimate.probability), 3),
+            number(direct.map(|shot| shot.nominal.speed_m_s / metre), 2),
+            number(direct.map(|shot| shot.nominal.pitch_rad / DEGREE_RAD), 1),
+            number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
+            number(bank.map(|shot| shot.estimate.probability), 3),
+            number(row.first_shot.as_ref().map(|p| p.probability), 3),
+        ]
+    };
+    HtmlTable {
+        caption: "How much rests on the physics".to_owned(),
+        columns: columns.to_vec(),
+        rows: rows.iter().map(|row| (None, cells(row))).collect(),
+        is_detail: false,
+    }
+}
