@@ -27,8 +27,14 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let refuse = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
     let metadata = std::fs::metadata(path).map_err(refuse)?;
     if !metadata.is_file() {
+        let profile = path.join("profile.toml");
+        let give = if profile.is_file() {
+            profile.display().to_string()
+        } else {
+            "a TOML file".to_owned()
+        };
         return Err(Failure::usage(format!(
-            "{shown}: is not a file; give a TOML file"
+            "{shown}: is not a file; give {give}"
         )));
     }
     if metadata.len() > most {
@@ -82,6 +88,13 @@ fn load(
     fixed: &[NominalVariable],
     quiet: bool,
 ) -> Result<(Profile, String), Failure> {
+    let is_table = |end: &std::ffi::OsStr| end == "csv" || end == "parquet";
+    if path.extension().is_some_and(is_table) {
+        return Err(Failure::usage(format!(
+            "{0}: this is a table, not a profile: `bankshot fit {0}` makes a profile of measured shots",
+            path.display()
+        )));
+    }
     let mut text = read_text(path)?;
     if is_sweep(&text) {
         return Err(Failure::usage(format!(

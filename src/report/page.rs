@@ -40,11 +40,11 @@ impl Page {
     /// there is one.
     pub fn add_comparison(&mut self, other: Self, difference: Option<Plot>) {
         self.answer = format!(
-            "{}: {} {}: {}",
+            "{0}: {1}\n{2}: {3}\nThe shots that move are those of {0}.",
             self.title, self.answer, other.title, other.answer
         );
         if let Some(plot) = difference {
-            self.answer = format!("{} {}", self.answer, plot.caption);
+            self.answer = format!("{}\n{}", self.answer, plot.caption);
             self.plots.insert(0, plot);
         }
         for table in &mut self.tables {
@@ -82,10 +82,11 @@ impl Page {
         let data = self.scene.page_data(&self.shots, self.first_place)?;
         // Inside a script element, only a tag can end the element.
         let data = data.to_string().replace('<', "\\u003c");
+        let answer: Vec<String> = self.answer.lines().map(escaped).collect();
         let parts = [
             ("title", escaped(&shortened(&self.title, LONGEST_NAME))),
             ("css", CSS.to_owned()),
-            ("answer", escaped(&self.answer)),
+            ("answer", answer.join("\n")),
             ("body", body),
             ("footer", escaped(&self.footer)),
             ("data", data),

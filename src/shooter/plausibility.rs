@@ -64,9 +64,9 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
         format!("shooter.max_backspin: {most_spin:.1} rev/s; players reach 2 to 3 rev/s"),
     );
     say(
-        feet(distance_m) > 60.0,
+        feet(distance_m) > 35.0,
         format!(
-            "location: {:.0} ft from the hoop; half a court is 42 ft",
+            "location: {:.0} ft from the hoop; three-point shots are from 20 to 30 ft, half a court is 42 ft",
             feet(distance_m)
         ),
     );

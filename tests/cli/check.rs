@@ -371,3 +371,12 @@ fn contract_check_names_errors_with_their_lines_as_json() {
     assert_eq!(refused["errors"][0]["key"], "shooter.errors.c20");
     assert_eq!(refused["errors"][0]["line"], line);
 }
+
+#[test]
+fn contract_a_table_or_a_folder_in_place_of_a_profile_is_told_apart() {
+    let folder = TempDir::new().unwrap();
+    let table = write_file(&folder, "shots.csv", "depth_in,made\n11,1\n");
+    check(&table).exits(2).says("`bankshot fit ");
+    write_file(&folder, "profile.toml", FREE_THROW);
+    check(folder.path()).exits(2).says("profile.toml");
+}

@@ -20,6 +20,7 @@ use crate::output::fit_files::shots_table::shots_csv;
 use crate::plots::measured_shots;
 use crate::probability::Progress;
 use crate::report::fit_page::fit_page;
+use crate::shooter::implausible_values;
 use crate::units::REV_RAD;
 use clap::Args;
 use rayon::prelude::*;
@@ -326,6 +327,10 @@ fn answer(
         }
     }
     if !quiet {
+        let warnings = fit.profiles.iter().flat_map(implausible_values);
+        for words in warnings.filter(|words| words.starts_with("location")) {
+            print_remark(&format!("warning: {words}"));
+        }
         if !file.unused.is_empty() {
             print_remark(&format!(
                 "columns that were not used: {}",

@@ -182,9 +182,14 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         sweeps.push((name, config, texts));
     }
     let mut players = Vec::new();
-    for ((name, config, texts), folder) in sweeps.into_iter().zip(&folders) {
+    let count = sweeps.len();
+    for (number, ((name, config, texts), folder)) in sweeps.into_iter().zip(&folders).enumerate() {
         if !quiet {
-            print_remark(&format!("{name}: {}", folder.display()));
+            print_remark(&format!(
+                "player {} of {count}, {name}: {}",
+                number + 1,
+                folder.display()
+            ));
         }
         let (swept, _) = compute(folder, &config, &texts, run_options(Shard::WHOLE), quiet)?;
         let (rows, _) = swept.union()?;
