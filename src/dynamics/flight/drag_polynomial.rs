@@ -31,11 +31,7 @@ const MIN_SHARE: f64 = 0.40;
 const MIN_HORIZONTAL_SPEED_M_S: f64 = 1e-6;
 /// Newton steps to the highest point.
 const NEWTON_STEPS: u32 = 4;
-/// Halley's steps to a height that the ball falls through, and the last of them (in s) after which
-/// what is left is below rounding.
-const HALLEY_STEPS: u32 = 2;
-const LAST_CORRECTION: f64 = 1e-5;
-/// Limit on Newton's steps to a height: three or four, more only where the path is nearly flat.
+/// Limit on those to a height: three or four, more only where the path is nearly flat.
 const MAX_STEPS_TO_HEIGHT: u32 = 30;
 /// Height within which a search for a rising crossing must end, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-10;
@@ -263,57 +259,24 @@ impl<T: Real> DragPolynomial<T> {
         if !falls.any() {
             return self.never;
         }
-        // From the end backwards by a parabola with the mean curvature of the arc, and from there
-        // by Halley's steps. A step of e leaves an error of the order of e^3.
+        // From the end backwards with the least curvature, that of the start: an s that is not
+        // earlier. z is concave, so Newton's steps from there never pass the height.
         let below = (height - end_z).positive_part();
-        let mean_curvature = self.rate[0] - end_rate;
-        let square = end_rate.squared() - mean_curvature * below * 2.0;
+        let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
         let root = square.positive_part().sqrt();
         let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
-        let mut correction = zero;
-        for _ in 0..HALLEY_STEPS {
+        let mut searching = falls;
+        for _ in 0..MAX_STEPS_TO_HEIGHT {
             let (z, rate) = self.height_and_rate(s);
-            let over = z - height;
-            let twice_rate = rate * 2.0;
-            let denominator = twice_rate * rate + over * self.fall_rate(s);
-            correction = over * twice_rate / denominator;
-            s = s - correction;
-        }
-        let converged = correction.abs().lt(height.splat(LAST_CORRECTION));
-        if (falls & !converged).any() {
-            s = self.falling_s_by_newton(height, falls).select(converged, s);
+            let arrives = height.le(z + CROSSING_TOLERANCE_M);
+            searching = searching & !arrives & rate.is_negative();
+            if !searching.any() {
+                break;
+            }
+            let next = s - (z - height) / rate.select(searching, one);
+            s = next.select(searching, s);
         }
         Real::max(s, zero).select(falls, self.never)
-    }
-
-    /// Newton's steps from a place that is not earlier: from the end backwards with the least
-    /// curvature, that of the start. z is concave, so they never pass the height, also where the
-    /// path is nearly flat.
-    #[inline(always)]
-    fn falling_s_by_newton(&self, height: T, lanes: T::Mask) -> T {
-        height.outlined(
-            #[inline(always)]
-            || {
-                let (zero, one) = (height.zero(), height.one());
-                let (end_z, end_rate) = self.end;
-                let below = (height - end_z).positive_part();
-                let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
-                let root = square.positive_part().sqrt();
-                let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
-                let mut searching = lanes;
-                for _ in 0..MAX_STEPS_TO_HEIGHT {
-                    let (z, rate) = self.height_and_rate(s);
-                    let arrives = height.le(z + CROSSING_TOLERANCE_M);
-                    searching = searching & !arrives & rate.is_negative();
-                    if !searching.any() {
-                        break;
-                    }
-                    let next = s - (z - height) / rate.select(searching, one);
-                    s = next.select(searching, s);
-                }
-                s
-            },
-        )
     }
 
     /// Newton's steps from the s at which the parabola above the path rises through the height:
@@ -435,6 +398,35 @@ mod tests {
     use super::*;
     use crate::model::Preset;
     use crate::model::constants_per_ball_mass::ModelParams;
+
+    /// Also from a start at the top of the path, where the rate is zero.
+    #[test]
+    fn contract_the_height_that_is_fallen_through_is_met() {
+        let ball = ModelParams::new(&Preset::named("ncaa").unwrap().physics()).ball;
+        for vx in [-5.729, -1.0, -0.1] {
+            for vz in [0.0, 1e-3, 0.5, 3.0, -2.0] {
+                let start = BallState {
+                    position_m: Vec3::new(0.6, -1.1, 0.0),
+                    velocity_m_s: Vec3::new(vx, 0.0, vz),
+                    spin_rad_s: Vec3::zeros(),
+                };
+                let path = DragPolynomial::new(&ball, &start);
+                let (end_z, end_rate) = path.end_height_and_rate();
+                if !(end_z < 0.0 && end_rate < 0.0) {
+                    continue;
+                }
+                for share in [1e-6, 1e-3, 0.007, 0.05, 0.3, 0.6, 0.95] {
+                    let height = end_z * share;
+                    let s = path.falls_through(height);
+                    let (z, rate) = path.height_and_rate(s);
+                    assert!(
+                        (z - height).abs() < 1e-9 && rate < 0.0,
+                        "{vx} {vz} {share}: {z}"
+                    );
+                }
+            }
+        }
+    }
 
     /// Authority: the same equation by RK4 in steps of 0.1 ms.
     #[test]
