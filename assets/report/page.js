@@ -223,6 +223,11 @@
     });
   }
 
+  // Nothing to choose, nothing to tell apart.
+  if (new Set(shots.map((shot) => shot.kind)).size < 2) {
+    kindBox.closest("label").hidden = true;
+    document.getElementById("colours").hidden = true;
+  }
   state.place = Math.max(0, places.indexOf(data.first_place));
   placeSlider.value = String(state.place);
   const first = current()[0];

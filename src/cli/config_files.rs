@@ -1,6 +1,6 @@
 //! Reads configuration files.
 
-use super::failure::Failure;
+use super::failure::{Failure, io_in_words};
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::config::{
@@ -24,7 +24,8 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
         MAX_FILE_BYTES
     };
     let shown = path.display();
-    let refuse = |error: std::io::Error| Failure::usage(format!("{shown}: {error}"));
+    let refuse =
+        |error: std::io::Error| Failure::usage(format!("{shown}: {}", io_in_words(&error)));
     let metadata = std::fs::metadata(path).map_err(refuse)?;
     if !metadata.is_file() {
         let profile = path.join("profile.toml");

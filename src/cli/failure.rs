@@ -57,8 +57,16 @@ impl Failure {
     pub(crate) fn io(what: impl Display, error: &std::io::Error) -> Self {
         Self {
             code: code::IO,
-            message: format!("{what}: {error}"),
+            message: format!("{what}: {}", io_in_words(error)),
         }
+    }
+}
+
+/// What the system says of a file, without its number where words are enough.
+pub(crate) fn io_in_words(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "there is no such file or folder".to_owned(),
+        _ => error.to_string(),
     }
 }
 

@@ -4,7 +4,7 @@ use super::diagnostics::{ConfigError, Diagnostic};
 use super::toml_reader::{TableReader, parse_toml};
 use crate::dynamics::{Integrator, Precision};
 use crate::model::{BoardEdge, PRESETS, Physics, Preset, SolidId};
-use crate::units::Dimension;
+use crate::units::{Dimension, suggestion};
 
 /// Steps of the paper's integrator that a file can give, s.
 const PAPER_STEPS_S: std::ops::RangeInclusive<f64> = 1e-7..=0.1;
@@ -53,7 +53,8 @@ pub(super) fn read_physics(
     let preset = Preset::named(name.as_deref().unwrap_or("paper"));
     if preset.is_none() {
         let names: Vec<_> = PRESETS.iter().map(|preset| preset.name).collect();
-        let message = format!("must be one of {}", names.join(", "));
+        let meant = suggestion(name.as_deref().unwrap_or_default(), names.iter().copied());
+        let message = format!("must be one of {}{meant}", names.join(", "));
         diagnostics.push(table.diagnostic("preset", message));
     }
     let mut physics = preset.map_or_else(Physics::paper, Preset::physics);

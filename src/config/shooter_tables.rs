@@ -38,6 +38,7 @@ fn read_dispersion(
     table: &mut TableReader<'_, '_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> ReleaseDispersion {
+    let before = diagnostics.len();
     let mut required = |keys, dimension| {
         let value = table.required_as(keys, dimension, diagnostics);
         value.unwrap_or(0.0)
@@ -46,6 +47,16 @@ fn read_dispersion(
     let c20_rad = required(["c20", "pitch"], Dimension::Angle);
     let c30_rad = required(["c30", "polar"], Dimension::Angle);
     let c40_rad_s = required(["c40", "backspin"], Dimension::Spin);
+    for diagnostic in &mut diagnostics[before..] {
+        let (part, of) = match diagnostic.key.rsplit('.').next() {
+            Some("c10" | "speed") => ("c11", "speed"),
+            Some("c40" | "backspin") => ("c41", "backspin"),
+            _ => continue,
+        };
+        if diagnostic.message.contains('%') {
+            diagnostic.message += &format!("; an error in percent of the {of} is {part}");
+        }
+    }
     let mut optional = |key, dimension| table.quantity(key, dimension, diagnostics).unwrap_or(0.0);
     ReleaseDispersion {
         c10_m_s,

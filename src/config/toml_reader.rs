@@ -331,7 +331,11 @@ impl<'t, 'i> TableReader<'t, 'i> {
             if known.binary_search(&name).is_ok() {
                 continue;
             }
-            let meant = suggestion(name, known.iter().copied());
+            let radius = name.replace("diameter", "radius");
+            let meant = match known.binary_search(&radius.as_str()) {
+                Ok(_) => format!("; did you mean \"{radius}\", half of it?"),
+                Err(_) => suggestion(name, known.iter().copied()),
+            };
             let message = format!("is not a key here; known are {known_names}{meant}");
             let shown: String = name.chars().take(60).collect();
             diagnostics.push(Diagnostic {

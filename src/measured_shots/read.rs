@@ -163,6 +163,7 @@ pub fn read(
         simulator,
         source,
     };
+    reader.check_options()?;
     reader.check_place()?;
     let mut by_shooter: BTreeMap<String, Vec<(u64, &[String])>> = BTreeMap::new();
     let mut rejected = table.unreadable.clone();
@@ -197,6 +198,17 @@ pub fn read(
     Ok(shooters)
 }
 
+/// Refuses what is no height of a player's release.
+fn check_release_height(height_m: f64) -> Result<(), String> {
+    if (0.5..3.5).contains(&height_m) {
+        return Ok(());
+    }
+    Err(format!(
+        "release height: {height_m:.2} m ({:.2} ft) is not that of a player; 0.5 to 3.5 m are",
+        height_m / FOOT_M
+    ))
+}
+
 struct Reader<'a> {
     columns: &'a Columns,
     options: &'a ReadOptions,
@@ -208,6 +220,29 @@ impl Reader<'_> {
     fn label<'c>(&self, cells: &'c [String], label: Label) -> Option<&'c str> {
         let index = self.columns.label(label)?;
         cells.get(index).map(String::as_str)
+    }
+
+    /// What is given as an option must not be in the file too.
+    fn check_options(&self) -> Result<(), String> {
+        let options = self.options;
+        for (given, quantity, flag) in [
+            (options.distance_m, Quantity::Distance, "--distance"),
+            (options.court_angle_rad, Quantity::CourtAngle, "--angle"),
+            (
+                options.release_height_m,
+                Quantity::ReleaseHeight,
+                "--release-height",
+            ),
+            (options.backspin_rad_s, Quantity::Backspin, "--backspin"),
+        ] {
+            if let (Some(_), Some(column)) = (given, self.columns.quantity(quantity)) {
+                return Err(format!(
+                    "has a column {}; leave {flag} out",
+                    self.columns.name(column.index)
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn check_place(&self) -> Result<(), String> {
@@ -222,14 +257,20 @@ impl Reader<'_> {
         if !has(Quantity::ReleaseHeight) && self.options.release_height_m.is_none() {
             missing.push("column release_height_ft, or --release-height '7 ft'");
         }
-        if missing.is_empty() {
-            Ok(())
-        } else {
-            Err(format!(
+        if !missing.is_empty() {
+            return Err(format!(
                 "does not say where the shots are from: give {}",
                 missing.join("; and ")
-            ))
+            ));
         }
+        // What is given once for all rows is refused once.
+        if !has(Quantity::Distance) && !has(Quantity::CourtAngle) {
+            self.location(&[])?;
+        }
+        if !has(Quantity::ReleaseHeight) {
+            check_release_height(self.options.release_height_m.unwrap_or(0.0))?;
+        }
+        Ok(())
     }
 
     /// A quantity of a row in SI units; `None` where there is no column.
@@ -250,26 +291,26 @@ impl Reader<'_> {
         }
     }
 
-    fn place(&self, cells: &[String]) -> Result<Place, String> {
+    fn location(&self, cells: &[String]) -> Result<Location, String> {
         let or =
             |quantity, given: Option<f64>| Ok::<_, String>(self.value(cells, quantity)?.or(given));
-        let distance_m = or(Quantity::Distance, self.options.distance_m)?.unwrap_or(0.0);
-        let angle_rad = or(Quantity::CourtAngle, self.options.court_angle_rad)?.unwrap_or(0.0);
-        let release_height_m =
-            or(Quantity::ReleaseHeight, self.options.release_height_m)?.unwrap_or(0.0);
         let location = Location {
-            distance_m,
-            angle_rad,
+            distance_m: or(Quantity::Distance, self.options.distance_m)?.unwrap_or(0.0),
+            angle_rad: or(Quantity::CourtAngle, self.options.court_angle_rad)?.unwrap_or(0.0),
         };
         location
             .check(self.simulator.physics())
             .map_err(|error| format!("place: {error}"))?;
-        if !(0.5..3.5).contains(&release_height_m) {
-            return Err(format!(
-                "release height: {release_height_m:.2} m ({:.2} ft) is not that of a player; 0.5 to 3.5 m are",
-                release_height_m / FOOT_M
-            ));
-        }
+        Ok(location)
+    }
+
+    fn place(&self, cells: &[String]) -> Result<Place, String> {
+        let location = self.location(cells)?;
+        let release_height_m = self
+            .value(cells, Quantity::ReleaseHeight)?
+            .or(self.options.release_height_m)
+            .unwrap_or(0.0);
+        check_release_height(release_height_m)?;
         Ok(Place {
             location,
             release_height_m,

@@ -35,8 +35,9 @@ pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot>
     let mean = gains.iter().map(|by| by.value).sum::<f64>() / gains.len() as f64;
     let (first_name, second_name) = (first.name(), second.name());
     let caption = format!(
-        "{second_name} minus {first_name}: {:+.1} points of P on average over {} places.",
-        100.0 * mean,
+        "{second_name} makes {:.1} {} of 100 shots than {first_name}, on average over {} places.",
+        100.0 * mean.abs(),
+        if mean < 0.0 { "fewer" } else { "more" },
         gains.len()
     );
     let (width, height) = first.court_map().size();
@@ -44,7 +45,12 @@ pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot>
     let title = format!("{first_name} and {second_name}");
     svg.heading((20.0, 24.0), 16.0, Anchor::Start, &title);
     draw_probabilities(&mut svg, first, second);
-    draw_difference(&mut svg, first, &gain, largest);
+    let minus = format!(
+        "{} \u{2212} {}",
+        shortened(&second_name, 18),
+        shortened(&first_name, 18)
+    );
+    draw_difference(&mut svg, first, &minus, &gain, largest);
     let note = format!(
         "{caption} P of the best shot of either kind; white: the difference is below {SIGNIFICANT_SIGMAS} standard errors."
     );
@@ -75,18 +81,19 @@ fn draw_probabilities(svg: &mut Svg, first: &SweepResults<'_>, second: &SweepRes
 fn draw_difference(
     svg: &mut Svg,
     first: &SweepResults<'_>,
+    title: &str,
     gain: &dyn Fn(&PlaceResults) -> Option<Difference>,
     largest: f64,
 ) {
     let map = first.court_map();
     let (width, _) = map.size();
     let scale = ColourKey::Scale(ColourScale {
-        name: "second \u{2212} first",
+        name: "difference",
         range: (-largest, largest),
         colour: &|by| diverging(by / largest),
     });
     let corner = (2.0 * width, MAPS_TOP);
-    first.draw_on(&map, svg, corner, "second minus first", &scale, &|place| {
+    first.draw_on(&map, svg, corner, title, &scale, &|place| {
         Some(difference_colour(gain(place)?, largest))
     });
 }

@@ -246,7 +246,7 @@ fn contract_unreadable_profiles_are_refused() {
     check(&latin).exits(2).says("UTF-8");
     check(folder.path()).exits(2).says("not a file");
     let missing = folder.path().join("none.toml");
-    check(&missing).exits(2).says("No such file");
+    check(&missing).exits(2).says("there is no such file");
     let huge = folder.path().join("huge.toml");
     fs::File::create(&huge).unwrap().set_len(20 << 20).unwrap();
     check(&huge).exits(2).says("at most");

@@ -32,12 +32,11 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
     let jobs = Jobs::new(&config);
     let threads = rayon::current_num_threads();
     let spots = jobs.spots.len();
-    let chosen = spread_out(spots, MAX_CALIBRATION_SPOTS.max(threads).min(spots));
+    let chosen = calibration_spots(&jobs);
     let table_bytes = table_bytes(&config, &jobs, &chosen)?;
-    let bars = ProgressBars::new(quiet);
-    let calibration = mean_spot_time_s(&config, &jobs, &chosen, threads, BUDGET, &bars);
-    let seconds = calibration.map(|(mean_s, _)| mean_s * spots as f64);
-    let calibrated = calibration.map_or(0, |(_, computed)| computed);
+    let forecast = forecast(&config, &jobs, &chosen, quiet);
+    let seconds = forecast.map(|(seconds, _)| seconds);
+    let calibrated = forecast.map_or(0, |(_, computed)| computed);
     let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
     let disk = STORE_BYTES_PER_JOB * jobs.count() as f64 + TABLE_BYTES_PER_ROW * rows;
     // Each thread has a table of the search or a window, and a batch of shots.
@@ -71,6 +70,33 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
         mib(memory),
         mib(disk)
     ))
+}
+
+/// The time of a sweep on all threads, s; `None` if nothing of it could be computed.
+pub(super) fn forecast_s(config: &SweepConfig, quiet: bool) -> Option<f64> {
+    let jobs = Jobs::new(config);
+    let chosen = calibration_spots(&jobs);
+    forecast(config, &jobs, &chosen, quiet).map(|(seconds, _)| seconds)
+}
+
+/// The time of a sweep, s, and how many of the `chosen` spots it was measured at.
+fn forecast(
+    config: &SweepConfig,
+    jobs: &Jobs,
+    chosen: &[usize],
+    quiet: bool,
+) -> Option<(f64, usize)> {
+    let threads = rayon::current_num_threads();
+    let bars = ProgressBars::new(quiet);
+    let (mean_s, computed) = mean_spot_time_s(config, jobs, chosen, threads, BUDGET, &bars)?;
+    Some((mean_s * jobs.spots.len() as f64, computed))
+}
+
+/// The spots that a forecast is based on.
+fn calibration_spots(jobs: &Jobs) -> Vec<usize> {
+    let spots = jobs.spots.len();
+    let most = MAX_CALIBRATION_SPOTS.max(rayon::current_num_threads());
+    spread_out(spots, most.min(spots))
 }
 
 /// `count` of `total` spots, far apart, in an order in which the first few are far apart too.

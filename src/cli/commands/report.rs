@@ -149,7 +149,7 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
     let profile = folder.join(PROFILE_FILE);
     if !profile.exists() {
         return Err(Failure::usage(format!(
-            "{}: is not the folder of a `best`, `compare` or `sweep` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST})",
+            "{}: is not the folder of a `best`, `compare`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST})",
             folder.display()
         )));
     }

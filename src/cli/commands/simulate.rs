@@ -1,7 +1,7 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
 use crate::cli::config_files::load_physics;
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, io_in_words};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::cli::value_parsers::PhysicsArg;
@@ -155,7 +155,9 @@ enum Source {
 
 impl Source {
     fn open(path: &Path) -> Result<Self, Failure> {
-        let refuse = |error: io::Error| Failure::usage(format!("{}: {error}", path.display()));
+        let refuse = |error: io::Error| {
+            Failure::usage(format!("{}: {}", path.display(), io_in_words(&error)))
+        };
         if path == Path::new("-") {
             let records = CsvRecords::new(Box::new(io::stdin()) as Box<dyn Read>);
             return records.map(Self::Csv).map_err(refuse);

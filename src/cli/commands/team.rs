@@ -1,5 +1,6 @@
 //! `bankshot team`: who should bank from where, and who is best from where.
 
+use super::plan_sweep_time_and_memory::forecast_s;
 use super::sweep::{compute, run_options};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
 use crate::best_shot::{ShotKind, find_kinds};
@@ -29,10 +30,11 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Without --sweep each player shoots from the location of their profile. With it, from every place of the sweep: its shooter is
-replaced by each player in turn. Stop it whenever you like; the same command continues.
+Without --sweep each player shoots from the location of their profile, and one table is printed.
 
-Writes OUT/team.csv, and for each player a folder with the sweep, its map, and a poster to print.
+With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.csv has every place and
+player. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like;
+the same command continues.
 
 Examples:
   bankshot team ann.toml bo.toml cy.toml
@@ -109,6 +111,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     let header = ["player", "place", "direct", "bank", "shoot it"];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     let bars = ProgressBars::new(quiet);
+    let mut any_either = false;
     for profile in &profiles {
         let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
         let p: Vec<Option<Difference>> = shots
@@ -121,8 +124,18 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
                 })
             })
             .collect();
-        let text = |p: Option<Difference>| p.map_or("-".to_owned(), |p| in_hundred(p.value));
-        let advice = Preference::of(p[0], p[1]).map_or("no clean shot", Preference::name);
+        let text = |p: Option<Difference>| {
+            p.map_or("-".to_owned(), |p| {
+                format!(
+                    "{} \u{b1} {}",
+                    in_hundred(p.value),
+                    in_hundred(p.standard_error)
+                )
+            })
+        };
+        let preference = Preference::of(p[0], p[1]);
+        any_either |= preference == Some(Preference::Either);
+        let advice = preference.map_or("no clean shot", Preference::name);
         let (long, metre) = profile.output().units.length();
         let location = profile.location();
         table.add_row(vec![
@@ -137,7 +150,11 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
             advice.to_owned(),
         ]);
     }
-    print_answer(&format!("makes in 100 shots\n{}\n", table.trim_fmt()))
+    let mut text = format!("makes in 100 shots\n{}\n", table.trim_fmt());
+    if any_either {
+        text += "either: the two differ by less than twice the error of their difference\n";
+    }
+    print_answer(&text)
 }
 
 /// Longest name of a player in the tables, in characters.
@@ -183,6 +200,9 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     }
     let mut players = Vec::new();
     let count = sweeps.len();
+    if !quiet && !folders.iter().any(|folder| folder.exists()) {
+        print_forecast(count, &sweeps[0].1);
+    }
     for (number, ((name, config, texts), folder)) in sweeps.into_iter().zip(&folders).enumerate() {
         if !quiet {
             print_remark(&format!(
@@ -211,6 +231,20 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         ));
     }
     Ok(code::DONE)
+}
+
+/// What all players take, from the first one's sweep.
+fn print_forecast(players: usize, first: &SweepConfig) {
+    let Some(seconds) = forecast_s(first, true) else {
+        return;
+    };
+    let seconds = seconds * players as f64;
+    let time = if seconds < 90.0 {
+        format!("{seconds:.0} s")
+    } else {
+        format!("{:.0} min", seconds / 60.0)
+    };
+    print_remark(&format!("{players} players: about {time} in all"));
 }
 
 /// A player's map and poster.

@@ -138,7 +138,7 @@ pub fn advice_text(
         };
         text += &row("usual shot", advice.usual);
         text += &row("best shot", values_of(&best.nominal));
-        text += "\nthe gap by cause\n";
+        text += "\nthe gap by cause (all changes together make the gain)\n";
         for cause in &advice.causes {
             text += &format!(
                 "  {:<38} {}\n",
