@@ -6,7 +6,7 @@ use super::lane_block::{LaneBlock, LaneShots};
 use super::parabola_flight_phase::{FlightEnd, store_ring_motions};
 use super::workspace::Phase;
 use crate::dynamics::end_rules::rose_to_ring;
-use crate::dynamics::flight::{drag_segment, far_segment_of_all};
+use crate::dynamics::flight::{drag_segment, far_segment, is_far};
 use crate::math::real::{Mask, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::Solid;
@@ -88,7 +88,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         self.workspace.return_queue(queue);
     }
 
-    /// Flies shots side by side from their releases until one of them comes near the hoop.
+    /// Flies shots side by side from their releases until each of them is near ring and board, or
+    /// falls before it is.
     #[inline(always)]
     fn fly_far_segments<T: SimdReal<Simd = S, Element = f64>>(
         &self,
@@ -96,17 +97,18 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         shots: &mut LaneShots<T>,
     ) {
         let time_limit = params.splat(self.limits.time_limit_s);
-        while !params.ball.has_lift
-            && let Some(segment) = far_segment_of_all(params, &shots.state)
-        {
-            let time_s = shots.time_s + segment.dt;
-            if time_limit.lt(time_s).any() {
+        let mut far = params.splat_mask(!params.ball.has_lift);
+        loop {
+            far = far & is_far(params, &shots.state);
+            if !far.any() {
                 return;
             }
-            shots
-                .crossing
-                .after_segment(&segment, params.splat_mask(true));
-            (shots.state, shots.time_s) = (segment.end, time_s);
+            let (segment, stays_far) = far_segment(params, &shots.state);
+            let time_s = shots.time_s + segment.dt;
+            far = far & stays_far & time_s.le(time_limit);
+            shots.crossing.after_segment(&segment, far);
+            shots.state = segment.end.select(far, shots.state);
+            shots.time_s = time_s.select(far, shots.time_s);
         }
     }
 

@@ -20,12 +20,11 @@ use crate::model::ball_params::BallParams;
 
 /// Terms of y and q.
 const TERMS: usize = 9;
-/// The length of an arc as a share of that to the singularity: that of a ball without drag, how it
-/// falls with the strength of drag (a share per `drag_strength |v|`), and the least. All three were
-/// fitted so that position and velocity err by 3e-6 m and 7e-5 m/s at most, less than a contact
-/// does (`val_the_series_are_the_flight`).
-const SHARE_WITHOUT_DRAG: f64 = 1.02;
-const SHARE_PER_STRENGTH: f64 = 0.45;
+/// The length of an arc as a share of that to the singularity: the greatest of these lines in
+/// `w = drag_strength |v|` (value at w = 0, slope), which lie below the share at which position and
+/// velocity err by 3e-6 m and 7e-5 m/s, less than a contact does (`val_the_series_are_the_flight`).
+const SHARES: [(f64, f64); 3] = [(1.36, -1.66), (1.02, -0.45), (0.76, -0.14)];
+/// The least share, for the strongest drag.
 const MIN_SHARE: f64 = 0.40;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const MIN_HORIZONTAL_SPEED_M_S: f64 = 1e-6;
@@ -76,9 +75,11 @@ impl<T: Real> DragPolynomial<T> {
         let singular_s = speed.squared() * per_both;
         let shortest = ball.splat(SHORTEST_S);
         let varies = shortest.le(singular_s * LONGEST_SHARE);
-        let share =
-            ball.splat(SHARE_WITHOUT_DRAG) - ball.drag_strength * speed * SHARE_PER_STRENGTH;
-        let share = Real::max(share, ball.splat(MIN_SHARE));
+        let strength = ball.drag_strength * speed;
+        let mut share = ball.splat(MIN_SHARE);
+        for (value, slope) in SHARES {
+            share = Real::max(share, strength * slope + value);
+        }
         let length = Real::max(singular_s * share, shortest) * speed_h;
         let along = Vec2::new((v.x * y_0).select(!is_vertical, one), v.y * y_0);
 
@@ -114,12 +115,6 @@ impl<T: Real> DragPolynomial<T> {
         };
         arc.end = arc.height_and_rate(one);
         arc
-    }
-
-    /// Height and its rate at the end.
-    #[inline(always)]
-    pub(super) fn end_height_and_rate(&self) -> (T, T) {
-        self.end
     }
 
     /// The position at `s`.
@@ -187,6 +182,12 @@ impl<T: Real> DragPolynomial<T> {
         (self.height_and_rate(s).0, s)
     }
 
+    /// -z'' at the start.
+    #[inline(always)]
+    fn first_fall_rate(&self) -> T {
+        -self.rate[1]
+    }
+
     /// -z'' at `s`.
     #[inline(always)]
     fn fall_rate(&self, s: T) -> T {
@@ -202,6 +203,11 @@ impl<T: Real> HeightPath<T> for DragPolynomial<T> {
     #[inline(always)]
     fn height_and_rate(&self, s: T) -> (T, T) {
         (polynomial(&self.z, s), polynomial(&self.rate, s))
+    }
+
+    #[inline(always)]
+    fn first_height(&self) -> T {
+        self.z[0]
     }
 
     /// Never, if not on this arc.
@@ -221,7 +227,7 @@ impl<T: Real> HeightPath<T> for DragPolynomial<T> {
             return (-one, -one);
         }
         let twice = rise * 2.0;
-        let high = rate.squared() - self.fall_rate(zero) * twice;
+        let high = rate.squared() - self.first_fall_rate() * twice;
         let low = rate.squared() - self.acceleration_bound() * twice;
         let rises = may_rise & zero.le(high);
         let earliest = (twice / (rate + high.positive_part().sqrt())).select(rises, -one);
@@ -237,7 +243,7 @@ impl<T: Real> HeightPath<T> for DragPolynomial<T> {
     #[inline(always)]
     fn acceleration_bound(&self) -> T {
         let one = self.never.one();
-        Real::max(self.fall_rate(one), self.fall_rate(one.zero()))
+        Real::max(self.fall_rate(one), self.first_fall_rate())
     }
 }
 
@@ -262,19 +268,22 @@ impl<T: Real> DragPolynomial<T> {
         // From the end backwards with the least curvature, that of the start: an s that is not
         // earlier. z is concave, so Newton's steps from there never pass the height.
         let below = (height - end_z).positive_part();
-        let square = end_rate.squared() - self.fall_rate(zero) * below * 2.0;
+        let square = end_rate.squared() - self.first_fall_rate() * below * 2.0;
         let root = square.positive_part().sqrt();
         let mut s = one - below * 2.0 / Real::max(root - end_rate, height.splat(1e-30));
         let mut searching = falls;
+        let half_bound = self.acceleration_bound() * (0.5 / CROSSING_TOLERANCE_M);
         for _ in 0..MAX_STEPS_TO_HEIGHT {
             let (z, rate) = self.height_and_rate(s);
-            let arrives = height.le(z + CROSSING_TOLERANCE_M);
-            searching = searching & !arrives & rate.is_negative();
+            let above = z - height;
+            searching = searching & rate.is_negative();
+            let next = s - above / rate.select(searching, one);
+            s = next.select(searching, s);
+            // After a step d the path is below the height by A d^2/2 at most.
+            searching = searching & rate.squared().lt(half_bound * above.squared());
             if !searching.any() {
                 break;
             }
-            let next = s - (z - height) / rate.select(searching, one);
-            s = next.select(searching, s);
         }
         Real::max(s, zero).select(falls, self.never)
     }
@@ -285,7 +294,7 @@ impl<T: Real> DragPolynomial<T> {
     fn rising_s(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
         let (rise, rate_0) = (height - self.z[0], self.rate[0]);
-        let above = rate_0.squared() - self.fall_rate(zero) * rise * 2.0;
+        let above = rate_0.squared() - self.first_fall_rate() * rise * 2.0;
         let mut searching = rise.is_positive() & rate_0.is_positive() & zero.le(above);
         let mut found = -one;
         let root = above.positive_part().sqrt();
@@ -411,7 +420,7 @@ mod tests {
                     spin_rad_s: Vec3::zeros(),
                 };
                 let path = DragPolynomial::new(&ball, &start);
-                let (end_z, end_rate) = path.end_height_and_rate();
+                let (end_z, end_rate) = path.end;
                 if !(end_z < 0.0 && end_rate < 0.0) {
                     continue;
                 }

@@ -22,6 +22,9 @@ const MAX_ITERATIONS: u32 = 10_000;
 /// A ball that is farther than this behind the plane in which it touches the face may touch an
 /// edge, m.
 const BEHIND_PLANE_M: f64 = 1e-6;
+/// A ball that is nearer than this to the region about ring and board counts as being in it, m. (It
+/// is more than the rounding errors of a segment that ends at the region's border.)
+const FAR_MARGIN_M: f64 = 1e-9;
 
 /// Where the plane of the board is reached, in s (never elsewhere).
 struct BoardEvents<T: Real> {
@@ -41,11 +44,15 @@ pub(crate) fn drag_segment<T: Real>(
 ) -> FlightSegment<T> {
     let (one, never) = (params.one(), params.ball.never_s);
     let arc = arc_of(params, state);
-    let fell = fall_s(params, &arc, state);
-    let board = board_events(params, &arc, state);
-    let last = Real::min(one, Real::min(fell, board.behind));
+    let reach = params.ring.reach;
+    let falls_s = arc.falls_through(-reach);
+    let fell = fall_s(params, &arc, state, falls_s);
+    let inverse_x = inverse_x_of(&arc);
+    let board = board_events(params, &arc, state, inverse_x);
+    let near = comes_near_s(params, &arc, state, inverse_x);
+    let last = Real::min(Real::min(one, near), Real::min(fell, board.behind));
     let motion = HorizontalMotion::new(params, state.position_m, arc.path);
-    let falls_to_top = arc.falls_through(params.ring.reach);
+    let falls_to_top = arc.falls_through(reach);
     let until = Real::min(last, board.face);
     let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_to_top, until));
     let mut end = Real::min(until, ring);
@@ -80,7 +87,8 @@ pub(crate) fn drag_segment<T: Real>(
     let acts = params.board.has_edges_mask();
     let untouched = !(on_ring | on_edge | on_face | unresolved);
     let behind = untouched & board.behind.le(end);
-    let (rises, rises_inside) = rising_crossing(params, &arc, state, end);
+    let (rises, rises_inside) =
+        rising_crossing(params, &arc, state, (end, state_at_end.position_m.z));
     FlightSegment {
         dt: arc.time(end),
         end: state_at_end,
@@ -93,17 +101,94 @@ pub(crate) fn drag_segment<T: Real>(
     }
 }
 
-/// The segment that starts at `state` if on it no ball, in any lane, can touch anything.
+/// The segments that start at `state`, and the lanes in which nothing can be touched on them. In
+/// the others they mean nothing.
 #[inline(always)]
-pub(crate) fn far_segment_of_all<T: Real>(
+pub(crate) fn far_segment<T: Real>(
     params: &ModelParams<T>,
     state: &BallState<T>,
-) -> Option<FlightSegment<T>> {
+) -> (FlightSegment<T>, T::Mask) {
+    let (one, none) = (params.one(), params.splat_mask(false));
     let arc = arc_of(params, state);
-    is_far(params, &arc, state).all().then(
-        #[inline(always)]
-        || far_segment(params, &arc, state),
-    )
+    let near = comes_near_s(params, &arc, state, inverse_x_of(&arc));
+    let end = Real::min(one, near);
+    let state_at_end = arc.state(end, state.spin_rad_s);
+    let bottom = -params.ring.reach;
+    let (start_z, end_z) = (state.position_m.z, state_at_end.position_m.z);
+    let rises = state_at_end.velocity_m_s.z.is_positive();
+    let falls = end_z.lt(bottom) & !(start_z.lt(bottom) & rises);
+    let passes_behind = state_at_end.position_m.x.lt(params.board.core.low.x);
+    let is_far = is_far(params, state) & !passes_behind & !falls & !has_diverged(params, state);
+    let (rises, rises_inside) =
+        rising_crossing(params, &arc, state, (end, state_at_end.position_m.z));
+    let segment = FlightSegment {
+        dt: arc.time(end),
+        end: state_at_end,
+        touches: [none; SolidId::COUNT],
+        fell: none,
+        behind_board: none,
+        unresolved: none,
+        rises,
+        rises_inside,
+    };
+    (segment, is_far)
+}
+
+/// Half the width of what lies near the hoop, and how far in front of the hoop's centre it ends, m.
+#[inline(always)]
+fn near_side_and_front<T: Real>(params: &ModelParams<T>) -> (T, T) {
+    let front = params.ring.radius + params.ring.reach;
+    let core = &params.board.core;
+    (Real::max(core.high.y + core.reach, front), front)
+}
+
+/// Whether a ball is in front of ring and board, or to one side of them, so that it can touch
+/// nothing.
+#[inline(always)]
+pub(crate) fn is_far<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
+    let (side, front) = near_side_and_front(params);
+    let p = state.position_m;
+    let margin = params.splat(FAR_MARGIN_M);
+    let behind = p.x.lt(params.board.core.low.x + margin);
+    (front + margin).lt(p.x) | ((side + margin).lt(p.y.abs()) & !behind)
+}
+
+/// Where a ball that is far comes near; never for one that is near at the start, or stays far. Each
+/// segment of a flight ends there: the next one, on which ring and board are searched, then begins
+/// fast and is long. `inverse_x` is 1/x of the path of a ball that goes `forward`.
+#[inline(always)]
+fn comes_near_s<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragPolynomial<T>,
+    start: &BallState<T>,
+    inverse_x: T,
+) -> T {
+    let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
+    let (side, front) = near_side_and_front(params);
+    let p = start.position_m;
+    let (before, beside) = (p.x - front, p.y.abs() - side);
+    let is_before = before.is_positive();
+    let is_beside = beside.is_positive();
+    let comes_back = is_before & arc.path.x.is_negative();
+    let comes_in = is_beside & (p.y * arc.path.y).is_negative();
+    let approaches = (comes_back | comes_in) & is_far(params, start);
+    if !approaches.any() {
+        return never;
+    }
+    let to_front = (-before * inverse_x).select(comes_back, never.select(is_before, zero));
+    let mut to_side = never.select(is_beside, zero);
+    if comes_in.any() {
+        let rate = arc.path.y.abs().select(comes_in, one);
+        to_side = (beside / rate).select(comes_in, to_side);
+    }
+    Real::max(to_front, to_side).select(approaches, never)
+}
+
+/// 1/x of the path of a ball that flies towards the board; any number for others.
+#[inline(always)]
+fn inverse_x_of<T: Real>(arc: &DragPolynomial<T>) -> T {
+    let x = arc.path.x;
+    x.one() / x.select(x.is_negative(), -x.one())
 }
 
 #[inline(always)]
@@ -111,78 +196,46 @@ fn arc_of<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> DragPolynom
     DragPolynomial::new(&params.ball, state)
 }
 
-/// Whether an arc ends in front of ring and board, or to one side of them, so that nothing happens
-/// on it.
-#[inline(always)]
-fn is_far<T: Real>(
-    params: &ModelParams<T>,
-    arc: &DragPolynomial<T>,
-    start: &BallState<T>,
-) -> T::Mask {
-    let p = start.position_m;
-    let (end_x, end_y) = (p.x + arc.path.x, p.y + arc.path.y);
-    let front = params.ring.radius + params.ring.reach;
-    let side = Real::max(params.board.core.high.y + params.board.core.reach, front);
-    let bottom = -params.ring.reach;
-    let (end_z, end_rate) = arc.end_height_and_rate();
-    let falls = end_z.lt(bottom) & !(p.z.lt(bottom) & end_rate.is_positive());
-    let beside = side.lt(Real::min(p.y, end_y)) | Real::max(p.y, end_y).lt(-side);
-    let in_front = front.lt(Real::min(p.x, end_x));
-    let behind = Real::min(p.x, end_x).lt(params.board.core.low.x);
-    (in_front | (beside & !behind)) & !falls & !has_diverged(params, start)
-}
-
-/// A whole arc on which nothing is touched.
-#[inline(always)]
-fn far_segment<T: Real>(
-    params: &ModelParams<T>,
-    arc: &DragPolynomial<T>,
-    start: &BallState<T>,
-) -> FlightSegment<T> {
-    let (one, none) = (params.one(), params.splat_mask(false));
-    let (rises, rises_inside) = rising_crossing(params, arc, start, one);
-    FlightSegment {
-        dt: arc.time(one),
-        end: arc.state(one, start.spin_rad_s),
-        touches: [none; SolidId::COUNT],
-        fell: none,
-        behind_board: none,
-        unresolved: none,
-        rises,
-        rises_inside,
-    }
-}
-
-/// Whether the centre rises through the plane of the hoop before `end`, and does so inside the
-/// ring.
+/// Whether the centre rises through the plane of the hoop before `end`, where its height is
+/// `end_z`, and does so inside the ring.
 #[inline(always)]
 fn rising_crossing<T: Real>(
     params: &ModelParams<T>,
     arc: &DragPolynomial<T>,
     start: &BallState<T>,
-    end: T,
+    (end, end_z): (T, T),
 ) -> (T::Mask, T::Mask) {
     let zero = params.zero();
     let may_rise = start.position_m.z.is_negative() & start.velocity_m_s.z.is_positive();
     if !may_rise.any() {
         return (may_rise, may_rise);
     }
+    // A ball that stays far from the ring rises outside it, wherever that is.
+    let outside = may_rise & is_far(params, start) & end_z.is_positive();
+    let may_rise = may_rise & !outside;
+    if !may_rise.any() {
+        return (outside, may_rise);
+    }
     let rise_s = arc.rises_through(zero);
     let rises = may_rise & zero.lt(rise_s) & rise_s.lt(end);
     let p = arc.position(rise_s);
     let distance_squared = p.x.squared() + p.y.squared();
     (
-        rises,
+        rises | outside,
         rises & distance_squared.lt(params.ring.radius.squared()),
     )
 }
 
-/// Where the centre falls through z = -reach, or is at its highest point below it.
+/// Where the centre falls through z = -reach (`falls_s`), or is at its highest point below it.
 #[inline(always)]
-fn fall_s<T: Real>(params: &ModelParams<T>, arc: &DragPolynomial<T>, start: &BallState<T>) -> T {
+fn fall_s<T: Real>(
+    params: &ModelParams<T>,
+    arc: &DragPolynomial<T>,
+    start: &BallState<T>,
+    falls_s: T,
+) -> T {
     let (zero, never) = (params.zero(), params.ball.never_s);
     let bottom = -params.ring.reach;
-    let falls_s = arc.falls_through(bottom);
     let starts_below = start.position_m.z.lt(bottom) & falls_s.lt(never);
     if !starts_below.any() {
         return falls_s;
@@ -198,14 +251,14 @@ fn board_events<T: Real>(
     params: &ModelParams<T>,
     arc: &DragPolynomial<T>,
     start: &BallState<T>,
+    inverse_x: T,
 ) -> BoardEvents<T> {
     let board = &params.board;
     let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
-    let (x, u) = (start.position_m.x, arc.path.x);
-    let approaching = u.is_negative();
-    let inverse = one / u.select(approaching, -one);
-    let plane = Real::max((board.touch_x - x) * inverse, zero);
-    let behind = Real::max((board.core.low.x - x) * inverse, zero);
+    let x = start.position_m.x;
+    let approaching = arc.path.x.is_negative();
+    let plane = Real::max((board.touch_x - x) * inverse_x, zero);
+    let behind = Real::max((board.core.low.x - x) * inverse_x, zero);
     let is_past = x.lt(board.touch_x - params.splat(BEHIND_PLANE_M));
     let reaches = approaching & plane.le(one) & !is_past;
     let mut on_face = params.splat_mask(false);

@@ -8,6 +8,8 @@ use super::height_crossing::{falling_time, rising_time};
 
 /// A height z(t) that is concave in t.
 pub(super) trait HeightPath<T: Real> {
+    /// z at t = 0.
+    fn first_height(&self) -> T;
     /// z and its rate at `t`.
     fn height_and_rate(&self, t: T) -> (T, T);
     /// When it falls through `height`. Where it does not, the path is below `height` from the
@@ -36,6 +38,11 @@ impl<T: Real> HeightPath<T> for Parabola<'_, T> {
             self.z + self.vz * t - ball.half_gravity * t * t,
             self.vz - ball.gravity * t,
         )
+    }
+
+    #[inline(always)]
+    fn first_height(&self) -> T {
+        self.z
     }
 
     /// For a ball that never rises to it, the time of its highest point.

@@ -17,7 +17,7 @@ mod ring_search;
 mod safe_step;
 mod undisturbed_flight;
 
-pub(crate) use drag_segment::{drag_segment, far_segment_of_all};
+pub(crate) use drag_segment::{drag_segment, far_segment, is_far};
 pub(crate) use flight_path::FlightPath;
 pub(crate) use flight_segment::FlightSegment;
 pub(crate) use next_segment::next_segment;

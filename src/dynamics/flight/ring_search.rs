@@ -108,7 +108,7 @@ impl<T: Real> SearchBounds<T> {
         heights: &impl HeightPath<T>,
         falls_to_top: T,
     ) -> Self {
-        let (z, _) = heights.height_and_rate(params.zero());
+        let z = heights.first_height();
         let (ring_radius, reach) = (params.ring.radius, params.ring.reach);
         let inner = ring_radius - reach;
         let half_time = motion
