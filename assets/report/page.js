@@ -133,7 +133,8 @@
 
   const tell = () => {
     const here = current();
-    shown.textContent = here.map((shot) => shot.words).join(" ");
+    const from = places.length > 1 && here.length > 0 ? `From ${here[0].where}. ` : "";
+    shown.textContent = from + here.map((shot) => shot.words).join(" ");
     canvas.setAttribute("aria-label", `The flight of the ball, to be turned with the arrow keys. ${shown.textContent}`);
     for (const row of document.querySelectorAll("tr[data-shot]")) {
       row.classList.toggle("chosen", here.includes(shots[Number(row.dataset.shot)]));

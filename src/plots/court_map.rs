@@ -10,12 +10,40 @@ use crate::model::league_courts::Court;
 use crate::units::UnitSystem;
 use std::collections::BTreeSet;
 
-/// Width of the axes, px.
-const AXES_WIDTH: f64 = 400.0;
-/// Space left of the axes for the numbers, and right of them for the key, px.
-const SPACE_LEFT_RIGHT: (f64, f64) = (70.0, 120.0);
-/// Space above and below the axes, px.
-const SPACE_ABOVE_BELOW: (f64, f64) = (34.0, 52.0);
+/// What surrounds the court of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapStyle {
+    /// Axes with numbers, and a key.
+    Plot,
+    /// Nothing: the court fills the drawing.
+    Poster,
+}
+
+impl MapStyle {
+    /// Width of the court, px.
+    fn court_width(self) -> f64 {
+        match self {
+            Self::Plot => 400.0,
+            Self::Poster => 660.0,
+        }
+    }
+
+    /// Space left and right of the court, px: for numbers and for the key.
+    fn space_left_right(self) -> (f64, f64) {
+        match self {
+            Self::Plot => (70.0, 120.0),
+            Self::Poster => (10.0, 10.0),
+        }
+    }
+
+    /// Space above and below the court, px.
+    fn space_above_below(self) -> (f64, f64) {
+        match self {
+            Self::Plot => (34.0, 52.0),
+            Self::Poster => (4.0, 10.0),
+        }
+    }
+}
 
 /// A coloured place on the court.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,34 +69,34 @@ pub struct CourtMap<'a> {
     pub step_m: Option<f64>,
     /// Greatest x of a place, m.
     pub far_x_m: f64,
+    /// What surrounds the court.
+    pub style: MapStyle,
 }
 
 impl CourtMap<'_> {
     /// The axes of a map, in its units, whose upper left corner is `corner`.
     fn axes(&self, corner: (f64, f64)) -> Axes {
-        let corner = (
-            corner.0 + SPACE_LEFT_RIGHT.0,
-            corner.1 + SPACE_ABOVE_BELOW.0,
-        );
+        let (left, _) = self.style.space_left_right();
+        let (above, _) = self.style.space_above_below();
+        let corner = (corner.0 + left, corner.1 + above);
         let (_, unit_m) = self.units.length();
         let court = self.court;
         let far = (self.far_x_m + 1.0).min(court.half_line_x_m);
         let across = (-court.half_width_m / unit_m, court.half_width_m / unit_m);
         let along = (far / unit_m, court.baseline_x_m / unit_m);
-        Axes::to_scale(corner, AXES_WIDTH, across, along)
+        Axes::to_scale(corner, self.style.court_width(), across, along)
     }
 
     /// Size of a map with its axes and its key, px.
     #[must_use]
     pub fn size(&self) -> (f64, f64) {
-        let axes = self.axes((0.0, 0.0));
-        (
-            SPACE_LEFT_RIGHT.0 + axes.size.0 + SPACE_LEFT_RIGHT.1,
-            SPACE_ABOVE_BELOW.0 + axes.size.1 + SPACE_ABOVE_BELOW.1,
-        )
+        let (width, height) = self.axes((0.0, 0.0)).size;
+        let (left, right) = self.style.space_left_right();
+        let (above, below) = self.style.space_above_below();
+        (left + width + right, above + height + below)
     }
 
-    /// Draws a map whose upper left corner is `corner`.
+    /// Draws a map whose upper left corner is `corner`. A poster has no title and no key.
     pub fn draw(
         &self,
         svg: &mut Svg,
@@ -85,6 +113,9 @@ impl CourtMap<'_> {
             }
             draw_court_lines(svg, &axes, unit_m, self.court, self.physics);
         });
+        if self.style == MapStyle::Poster {
+            return;
+        }
         axes.draw(
             svg,
             title,
@@ -127,7 +158,7 @@ impl CourtMap<'_> {
         numbers: &[((f64, f64), String, bool)],
     ) {
         /// Narrowest square that two digits fit in, px.
-        const NARROWEST: f64 = 14.0;
+        const NARROWEST: f64 = 12.0;
         let axes = self.axes(corner);
         let (_, unit_m) = self.units.length();
         let side = self
@@ -136,13 +167,14 @@ impl CourtMap<'_> {
         if side < NARROWEST {
             return;
         }
+        let size = (0.62 * side).min(20.0);
         for ((x_m, y_m), text, is_bold) in numbers {
             let (left, top) = axes.pixel((y_m / unit_m, x_m / unit_m));
-            let at = (left, top + 4.0);
+            let at = (left, top + 0.36 * size);
             if *is_bold {
-                svg.heading(at, 11.0, Anchor::Middle, text);
+                svg.heading(at, size, Anchor::Middle, text);
             } else {
-                svg.text(at, 11.0, Anchor::Middle, text);
+                svg.text(at, size, Anchor::Middle, text);
             }
         }
     }

@@ -27,12 +27,11 @@ pub fn all(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Ve
     let mut plots = vec![
         release_scatter(fit, shots, units),
         make_zone(fit, shots, units),
-        drift(fit, shots, units),
-        intervals(fit, units),
     ];
     if !fit.makes.bins.is_empty() {
         plots.push(reliability(fit));
     }
+    plots.extend([drift(fit, shots, units), intervals(fit, units)]);
     plots
 }
 

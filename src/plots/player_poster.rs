@@ -2,7 +2,8 @@
 //! as well in black and white.
 
 use super::colormaps::{Rgb, sequential};
-use super::colour_key::{ColourKey, ColourScale};
+use super::colour_key::ColourKey;
+use super::court_map::{CourtMap, MapStyle};
 use super::svg::{Anchor, Plot, Svg};
 use super::sweep_results::SweepResults;
 use crate::analysis::sensitivity::Difference;
@@ -11,12 +12,29 @@ use crate::sweep::place_chances::{PlaceChances, Preference};
 use crate::units::UnitSystem;
 
 /// y of the map, px.
-const MAP_TOP: f64 = 30.0;
+const MAP_TOP: f64 = 40.0;
+/// Font size of the sentences, px; their lines are [`LINE_HEIGHT`] apart and at most
+/// [`LINE_LETTERS`] long.
+const WORDS_FONT: f64 = 18.0;
+/// See [`WORDS_FONT`].
+const LINE_HEIGHT: f64 = 25.0;
+/// See [`WORDS_FONT`].
+const LINE_LETTERS: usize = 66;
 
-/// The map, and what it says in three sentences, two numbers each; `None` if nothing can be made
-/// from any place.
+/// A poster.
+#[derive(Clone, Debug)]
+pub struct PlayerPoster {
+    /// The map with the sentences below it.
+    pub plot: Plot,
+    /// The map alone, for a page with the sentences as text.
+    pub map_svg: String,
+    /// What the map says: three sentences, two numbers each.
+    pub sentences: [String; 3],
+}
+
+/// Draws the poster of a player; `None` if nothing can be made from any place.
 #[must_use]
-pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
+pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let found: Vec<(f64, &PlaceChances)> = results
         .chances()
         .iter()
@@ -32,32 +50,12 @@ pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
     let bank = results.chances().iter().filter(|place| is_bank(place));
     let bank: Vec<&PlaceChances> = bank.collect();
     let outlined: Vec<(f64, f64)> = bank.iter().map(|place| at(place)).collect();
-    let map = results.court_map();
-    let (width, height) = map.size();
-    let mut svg = Svg::new(width, height + MAP_TOP);
-    svg.heading((20.0, 22.0), 18.0, Anchor::Start, &results.shooter_name());
-    let corner = (0.0, MAP_TOP);
-    let key = ColourKey::Scale(ColourScale {
-        name: "P",
-        range: (0.0, 1.0),
-        colour: &pale,
-    });
-    results.draw_on(
-        &map,
-        &mut svg,
-        corner,
-        "makes in 100 shots",
-        &key,
-        &|place| Some(pale(place.best()?.real(columns::PROBABILITY)?)),
-    );
-    map.draw_outline(&mut svg, corner, &outlined);
     let numbers: Vec<((f64, f64), String, bool)> = found
         .iter()
         .map(|(p, place)| (at(place), format!("{:.0}", 100.0 * p), is_bank(place)))
         .collect();
-    map.draw_numbers(&mut svg, corner, &numbers);
     let units = results.units();
-    let words = [
+    let sentences = [
         format!(
             "Your surest place is {}: {:.0} of 100 go in.",
             best.1.in_words(units),
@@ -70,12 +68,42 @@ pub fn draw(results: &SweepResults<'_>) -> Option<(Plot, [String; 3])> {
             100.0 * worst.0
         ),
     ];
-    let plot = Plot {
-        name: "poster".to_owned(),
-        svg: svg.finish(&words.join(" ")),
-        caption: words.join(" "),
+    let drawing = |words: &[String]| {
+        let map = CourtMap {
+            style: MapStyle::Poster,
+            ..results.court_map()
+        };
+        let (width, height) = map.size();
+        let lines: Vec<_> = words
+            .iter()
+            .flat_map(|sentence| textwrap::wrap(sentence, LINE_LETTERS))
+            .collect();
+        let words_top = MAP_TOP + height;
+        let mut svg = Svg::new(width, words_top + LINE_HEIGHT * lines.len() as f64);
+        let title = format!("{}: makes in 100 shots", results.shooter_name());
+        svg.heading((10.0, 26.0), 22.0, Anchor::Start, &title);
+        let corner = (0.0, MAP_TOP);
+        let no_key = ColourKey::Legend(&[]);
+        results.draw_on(&map, &mut svg, corner, "", &no_key, &|place| {
+            Some(pale(place.best()?.real(columns::PROBABILITY)?))
+        });
+        map.draw_outline(&mut svg, corner, &outlined);
+        map.draw_numbers(&mut svg, corner, &numbers);
+        for (i, line) in lines.iter().enumerate() {
+            let at = (10.0, words_top + LINE_HEIGHT * (i as f64 + 0.6));
+            svg.text(at, WORDS_FONT, Anchor::Start, line);
+        }
+        svg.finish(&sentences.join(" "))
     };
-    Some((plot, words))
+    Some(PlayerPoster {
+        plot: Plot {
+            name: "poster".to_owned(),
+            svg: drawing(&sentences),
+            caption: sentences.join(" "),
+        },
+        map_svg: drawing(&[]),
+        sentences: sentences.clone(),
+    })
 }
 
 /// The colour of a probability, so pale that black numbers stand out on it.

@@ -2,7 +2,7 @@
 
 use super::colormaps::{NOT_SIGNIFICANT, Rgb, diverging};
 use super::colour_key::ColourKey;
-use super::court_map::{ColouredPlace, CourtMap};
+use super::court_map::{ColouredPlace, CourtMap, MapStyle};
 use super::svg::{Svg, shortened};
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
@@ -139,6 +139,7 @@ impl<'a> SweepResults<'a> {
                 _ => None,
             },
             far_x_m: places.fold(0.0, |far: f64, results| far.max(results.place.x_m)),
+            style: MapStyle::Plot,
         }
     }
 

@@ -6,7 +6,7 @@ use super::page::Page;
 use super::page_data::Scene;
 use super::report_error::ReportError;
 use super::sensitivity_table::sensitivity_table;
-use super::shot_in_words::{ReportShot, describe_location, most_probable};
+use super::shot_in_words::{ReportShot, most_probable};
 use crate::dynamics::Trace;
 use crate::model::league_courts::League;
 use crate::plots::shot_views::{self, ShotPath};
@@ -118,7 +118,7 @@ fn answer(run: &BestShotRun, better: &ReportShot) -> String {
     });
     format!(
         "From {}, take the {} shot: P {:.3} \u{b1} {:.3}{compared}. Release at {:.2} {long}/s, {:.1} deg up, with {:.1} rev/s of backspin{}.",
-        describe_location(&run.profile.location(), units),
+        run.profile.location().in_words(units),
         best.kind.name(),
         best.probability,
         best.standard_error,

@@ -3,7 +3,7 @@
 use super::html_table::{HtmlTable, format_cell};
 use super::page::Page;
 use super::page_data::Scene;
-use super::shot_in_words::{ReportShot, describe_location};
+use super::shot_in_words::ReportShot;
 use crate::fitting::{ShooterFit, nominal_of};
 use crate::model::league_courts::League;
 use crate::output::fit_files::fit_json::FitSource;
@@ -75,7 +75,7 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         .collect();
     format!(
         "From {}, {:.1} % of the usual shots go in (95 %: {:.1} to {:.1} %), by {} {}.{seen}{}",
-        describe_location(&fit.places[0].location, units),
+        fit.places[0].location.in_words(units),
         100.0 * p.mean,
         100.0 * p.low,
         100.0 * p.high,

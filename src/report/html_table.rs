@@ -3,6 +3,9 @@
 use crate::plots::svg::escaped;
 use std::fmt::Write;
 
+/// Longer tables are not printed.
+const MOST_PRINTED_ROWS: usize = 30;
+
 /// A table of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HtmlTable {
@@ -24,21 +27,26 @@ impl HtmlTable {
 
     /// The table as HTML. `number` makes the ids of a page's tables different.
     pub(super) fn html(&self, number: usize) -> String {
-        let (heading, end) = if self.is_detail {
-            ("summary", "</details>\n")
+        let (start, heading, end) = if self.is_detail {
+            ("<details>", "summary", "</details>\n")
+        } else if self.rows.len() > MOST_PRINTED_ROWS {
+            ("<section class=\"unprinted\">", "h2", "</section>\n")
         } else {
-            ("h2", "")
+            ("", "h2", "")
         };
-        let start = if self.is_detail { "<details>" } else { "" };
         let mut html = format!(
             "{start}<{heading} id=\"h-table-{number}\">{}</{heading}>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
             escaped(&self.caption)
         );
-        for column in &self.columns {
+        let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+        for (i, column) in self.columns.iter().enumerate() {
+            let mut cells = self.rows.iter().map(|(_, cells)| &cells[i]);
+            let is_text = cells.all(|cell| !is_number(cell));
             // Writing to a String never fails, here and below.
             let _ = write!(
                 html,
-                "<th scope=\"col\"><button type=\"button\">{}</button></th>",
+                "<th scope=\"col\"{}><button type=\"button\">{}</button></th>",
+                if is_text { " class=\"text\"" } else { "" },
                 escaped(column)
             );
         }
@@ -48,8 +56,11 @@ impl HtmlTable {
                 format!("<tr data-shot=\"{shot}\">")
             }));
             for (cell, column) in cells.iter().zip(&self.columns) {
-                let is_number = cell.parse::<f64>().is_ok();
-                let class = if is_number { "" } else { " class=\"text\"" };
+                let class = if is_number(cell) {
+                    ""
+                } else {
+                    " class=\"text\""
+                };
                 let label = escaped(column);
                 let _ = write!(
                     html,

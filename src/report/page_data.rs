@@ -1,6 +1,6 @@
 //! The data of a page's script: the shots with their paths, and the court.
 
-use super::shot_in_words::{ReportShot, describe_location};
+use super::shot_in_words::ReportShot;
 use crate::dynamics::{Release, Simulator, StateError};
 use crate::math::vector::Vec3;
 use crate::model::league_courts::Court;
@@ -59,7 +59,7 @@ impl Scene {
             "kind": shot.shot.kind.name(),
             "x_m": to_centimetre(x_m),
             "y_m": to_centimetre(y_m),
-            "where": describe_location(&shot.location, self.units),
+            "where": shot.location.in_words(self.units),
             "words": shot.description(self.units),
         });
         // The script mirrors the path of the other shot, which keeps the page small.

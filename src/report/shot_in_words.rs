@@ -2,7 +2,7 @@
 
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::shooter::Location;
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, at_most_two_decimals};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// A best shot on a page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,16 +38,6 @@ impl ReportShot {
             nominal.backspin_rad_s / REV_RAD
         )
     }
-}
-
-/// A location in words.
-pub(super) fn describe_location(location: &Location, units: UnitSystem) -> String {
-    let (long, unit_m) = units.length();
-    format!(
-        "{} {long} from the hoop at {:.0} deg",
-        at_most_two_decimals(location.distance_m / unit_m),
-        location.angle_rad / DEGREE_RAD + 0.0
-    )
 }
 
 /// The shot with the largest P.

@@ -4,7 +4,7 @@ use super::best_shot_table::shot_table;
 use super::page::Page;
 use super::page_data::Scene;
 use super::report_error::ReportError;
-use super::shot_in_words::{ReportShot, describe_location, most_probable};
+use super::shot_in_words::{ReportShot, most_probable};
 use crate::dynamics::Simulator;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
@@ -126,12 +126,12 @@ fn answer(config: &SweepConfig, shots: &[ReportShot], comparison: Option<&Plot>)
         .min_by(|a, b| a.shot.probability.total_cmp(&b.shot.probability))?;
     let compared = comparison.map_or(String::new(), |plot| format!(" {}", plot.caption));
     Some(format!(
-        "The best chance is P {:.3}, {}, with the {} shot; the worst place is {}, P {:.3} with the {} shot there.{compared}",
-        best.shot.probability,
-        describe_location(&best.location, units),
+        "The surest place is {}: {:.1} of 100 go in with the {} shot. The hardest is {}: {:.1} with the {} shot.{compared}",
+        best.location.in_words(units),
+        100.0 * best.shot.probability,
         best.shot.kind.name(),
-        describe_location(&worst.location, units),
-        worst.shot.probability,
+        worst.location.in_words(units),
+        100.0 * worst.shot.probability,
         worst.shot.kind.name()
     ))
 }

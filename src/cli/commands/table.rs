@@ -23,7 +23,7 @@ interpolated. Where that costs more than --max-loss in P, nodes are added halfwa
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --pitch '60 deg' --backspin '2 rev/s'
   bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' --angles '0 deg to 60 deg by 15 deg' --kind bank
-  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --output ShotTable.java")]
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' -o ShotTable.java -o shots.csv")]
 pub(crate) struct TableOptions {
     /// The launcher's profile.
     pub(crate) profile: PathBuf,
@@ -53,9 +53,10 @@ pub(crate) struct TableOptions {
     /// The form of the table [default: by the end of the output's name, else text].
     #[arg(long, value_enum)]
     pub(crate) format: Option<TableFormat>,
-    /// Write the table into a file. (A Java class has the name of its file.)
+    /// Write the table into a file; may be repeated, for several forms of one table. (A Java class
+    /// has the name of its file.)
     #[arg(long, short, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
+    pub(crate) output: Vec<PathBuf>,
     /// Units of the table [default: the profile's, else imperial].
     #[arg(long)]
     pub(crate) units: Option<UnitsArg>,
@@ -85,10 +86,7 @@ pub(crate) enum TableFormat {
 
 impl TableFormat {
     /// The form that the end of a file's name asks for.
-    fn of_output(output: Option<&Path>) -> Result<Self, Failure> {
-        let Some(path) = output else {
-            return Ok(Self::Text);
-        };
+    fn of_output(path: &Path) -> Result<Self, Failure> {
         match path.extension().and_then(OsStr::to_str).unwrap_or("") {
             "csv" => Ok(Self::Csv),
             "json" => Ok(Self::Json),
@@ -134,10 +132,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             fixed.push((variable, value));
         }
     }
-    let format = match options.format {
-        Some(format) => format,
-        None => TableFormat::of_output(options.output.as_deref())?,
-    };
+    let outputs = outputs(options)?;
     let request = ShotTableRequest {
         kind: match options.kind {
             KindArg::Direct => ShotKind::Direct,
@@ -162,30 +157,36 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             .name
             .replace(|c: char| c.is_control() || c == '\\', " ")
     );
-    let class = class_name(options.output.as_deref())?;
-    let source = |language| source_code(&table, (language, &class), units, &origin);
-    let text = match format {
-        TableFormat::Text => table_text(&table, units),
-        TableFormat::Csv => table_csv(&table, units),
-        TableFormat::Json => format!("{:#}\n", table_json(&table, &profile, units)),
-        TableFormat::Java => source(Language::Java),
-        TableFormat::Cpp => source(Language::Cpp),
-        TableFormat::Python => source(Language::Python),
-    };
-    match &options.output {
-        None => {
-            print_answer(&text)?;
+    let text_of = |output: &Output| {
+        let source = |language| source_code(&table, (language, &output.class), units, &origin);
+        match output.format {
+            TableFormat::Text => table_text(&table, units),
+            TableFormat::Csv => table_csv(&table, units),
+            TableFormat::Json => format!("{:#}\n", table_json(&table, &profile, units)),
+            TableFormat::Java => source(Language::Java),
+            TableFormat::Cpp => source(Language::Cpp),
+            TableFormat::Python => source(Language::Python),
         }
-        Some(path) => {
-            atomic_file::write(path, text.as_bytes())
-                .map_err(|error| Failure::io(path.display(), &error))?;
+    };
+    for output in &outputs {
+        match output.file {
+            None => {
+                print_answer(&text_of(output))?;
+            }
+            Some(file) => {
+                atomic_file::write(file, text_of(output).as_bytes())
+                    .map_err(|error| Failure::io(file.display(), &error))?;
+            }
         }
     }
     if !quiet {
-        if let Some(path) = &options.output {
-            print_remark(&format!("written: {}", path.display()));
+        for file in &options.output {
+            print_remark(&format!("written: {}", file.display()));
         }
-        if format != TableFormat::Text {
+        if outputs
+            .iter()
+            .all(|output| output.format != TableFormat::Text)
+        {
             print_remark(check_text(&table, units).trim_end());
         }
         if let Some(added) = added_nodes(&table, &request, units) {
@@ -219,12 +220,49 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     })
 }
 
+/// Where a table goes, and in which form.
+struct Output<'a> {
+    /// None for standard output.
+    file: Option<&'a Path>,
+    format: TableFormat,
+    /// The name of the class in a source.
+    class: String,
+}
+
+fn outputs(options: &TableOptions) -> Result<Vec<Output<'_>>, Failure> {
+    if options.output.is_empty() {
+        return Ok(vec![Output {
+            file: None,
+            format: options.format.unwrap_or(TableFormat::Text),
+            class: "ShotTable".to_owned(),
+        }]);
+    }
+    if options.format.is_some() && options.output.len() > 1 {
+        return Err(Failure::usage(
+            "--format: with several outputs the end of each name tells its form; leave --format out",
+        ));
+    }
+    options
+        .output
+        .iter()
+        .map(|file| {
+            Ok(Output {
+                file: Some(file.as_path()),
+                format: match options.format {
+                    Some(format) => format,
+                    None => TableFormat::of_output(file)?,
+                },
+                class: class_name(file)?,
+            })
+        })
+        .collect()
+}
+
 /// The name of a Java class: that of its file, or `ShotTable`.
-fn class_name(output: Option<&Path>) -> Result<String, Failure> {
-    let is_java = |path: &&Path| path.extension().is_some_and(|end| end == "java");
-    let Some(path) = output.filter(is_java) else {
+fn class_name(path: &Path) -> Result<String, Failure> {
+    if path.extension().is_none_or(|end| end != "java") {
         return Ok("ShotTable".to_owned());
-    };
+    }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut letters = name.chars();
     let is_name = letters

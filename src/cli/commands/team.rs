@@ -257,11 +257,11 @@ fn write_pictures(
     let results = SweepResults::new(config, rows);
     let mut plots = Vec::new();
     plots.extend(sweep_bank_direct_map::draw(&results));
-    if let Some((poster, sentences)) = player_poster::draw(&results) {
+    if let Some(poster) = player_poster::draw(&results) {
         let file = folder.join("poster.html");
-        atomic_file::write(&file, poster_page(name, &poster, &sentences).as_bytes())
+        atomic_file::write(&file, poster_page(name, &poster).as_bytes())
             .map_err(|error| Failure::io(file.display(), &error))?;
-        plots.push(poster);
+        plots.push(poster.plot);
     }
     plot_files::write(folder, &plots)
 }
