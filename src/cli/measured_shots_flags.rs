@@ -32,6 +32,9 @@ pub(crate) struct MeasuredShotsOptions {
     /// 'made=Result'; may be repeated.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
+    /// Only the shots of this shooter, of a file with several.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) shooter: Option<String>,
     /// Coordinates of trajectories: hoop (x along the court from the hoop's centre) or court_94x50
     /// (from a corner).
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
@@ -106,6 +109,38 @@ fn quantity(
     .transpose()
 }
 
+/// The names of shooters, for a message.
+fn names_of(shooters: &[ShooterShots]) -> String {
+    /// More names than this are not listed.
+    const MOST_LISTED: usize = 12;
+    let names: Vec<&str> = shooters
+        .iter()
+        .take(MOST_LISTED)
+        .map(|shooter| shooter.name.as_str())
+        .collect();
+    let more = if shooters.len() > MOST_LISTED {
+        ", ..."
+    } else {
+        ""
+    };
+    format!("{}{more}", names.join(", "))
+}
+
+impl MeasuredFile {
+    /// The shots of the only shooter in the file.
+    pub(crate) fn only_shooter(&self) -> Result<&ShooterShots, Failure> {
+        match &self.shooters[..] {
+            [shots] => Ok(shots),
+            several => Err(Failure::usage(format!(
+                "{}: has {} shooters ({}); choose one with --shooter NAME",
+                self.file.display(),
+                several.len(),
+                names_of(several)
+            ))),
+        }
+    }
+}
+
 impl MeasuredShotsOptions {
     pub(crate) fn unit_system(&self) -> UnitSystem {
         self.units.into()
@@ -139,7 +174,14 @@ impl MeasuredShotsOptions {
             backspin_rad_s,
             noise,
         };
-        let shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
+        let mut shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
+        if let Some(name) = &self.shooter {
+            let all = names_of(&shooters);
+            shooters.retain(|shooter| shooter.name == *name);
+            if shooters.is_empty() {
+                return Err(refuse(format!("has no shooter \"{name}\"; it has {all}")));
+            }
+        }
         let bytes = std::fs::read(path).map_err(|error| Failure::io(path.display(), &error))?;
         Ok(MeasuredFile {
             shooters,

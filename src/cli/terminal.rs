@@ -39,7 +39,31 @@ pub(crate) fn wrapped_line(line: &str, indentation: usize) -> String {
         .subsequent_indent(&hanging)
         .break_words(false)
         .word_splitter(textwrap::WordSplitter::NoHyphenation);
-    textwrap::fill(line, options)
+    textwrap::fill(&with_bound_units(line), options).replace(NO_BREAK_SPACE, " ")
+}
+
+const NO_BREAK_SPACE: &str = "\u{a0}";
+
+/// The line with each unit bound to its number.
+fn with_bound_units(line: &str) -> String {
+    const UNITS: [&str; 12] = [
+        "%", "ft", "in", "m", "cm", "deg", "ft/s", "m/s", "rev/s", "s", "min", "MB",
+    ];
+    let mut bound = String::with_capacity(line.len());
+    let mut follows_number = false;
+    for (i, word) in line.split(' ').enumerate() {
+        if i > 0 {
+            let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', '.', ':', ')']));
+            bound += if follows_number && is_unit {
+                NO_BREAK_SPACE
+            } else {
+                " "
+            };
+        }
+        follows_number = word.trim_start_matches('(').parse::<f64>().is_ok();
+        bound += word;
+    }
+    bound
 }
 
 /// The column of what follows the label of a line (two or more spaces stand between), or the
@@ -167,6 +191,13 @@ mod tests {
         assert!(lines.len() == 4 && lines[2].starts_with("        speed") || lines.len() == 3);
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         assert_eq!(words(&lines[1..].join(" ")), words(&line));
+        // A unit stays with its number.
+        let line = "missed  ".to_owned() + &"short 10.32 %, ".repeat(12);
+        assert!(
+            !wrapped(&line)
+                .lines()
+                .any(|line| line.trim().starts_with('%'))
+        );
         // No space is lost from a table.
         let table = format!("a{}b\n", " ".repeat(60));
         assert_eq!(wrapped(&table), table);

@@ -3,7 +3,7 @@
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
 use super::measured_release::{VALUE_NAMES, Values, nominal_of, values_of};
-use super::posterior::{Draw, Posterior};
+use super::posterior::{Draw, Posterior, SpinSource};
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::{BestShot, BestShotError, find_kinds};
 use crate::probability::Progress;
@@ -72,6 +72,8 @@ pub struct Advice {
     pub kind: ShotKind,
     /// The usual release: means over the draws.
     pub usual: Values,
+    /// The backspin was not measured; that of the population is assumed.
+    pub backspin_is_assumed: bool,
     /// P of the usual shot.
     pub usual_probability: Interval,
     /// Its numerical standard error.
@@ -184,6 +186,7 @@ pub fn advise(
     Ok(Advice {
         kind,
         usual,
+        backspin_is_assumed: posterior.spin == SpinSource::Assumed,
         usual_probability: usual_p.interval(),
         numerical_standard_error: usual_p.numerical_standard_error(),
         best_probability: by_kind[kind as usize]

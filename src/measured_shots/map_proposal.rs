@@ -112,19 +112,25 @@ fn target_of(name: &str, taken: &[&str]) -> Option<&'static str> {
     (!taken.contains(&found.0)).then_some(found.0)
 }
 
-/// The unit that the name of a column ends with or has in brackets.
+/// The unit that the name of a column ends with or has in brackets; degrees for an angle without
+/// one (an angle in radians is then refused as absurd, row by row).
 fn unit_of(name: &str, quantity: Quantity) -> Option<&'static str> {
+    /// A unit of so many letters needs nothing that sets it apart, as in `DepthInches`.
+    const LONG_UNIT: usize = 4;
     let name = name.to_lowercase();
     let name = name.trim_end_matches([')', ']', ' ', '.']);
     let known = quantity.unit_names();
-    OTHER_UNITS
+    let ends_with = |unit: &str| {
+        name.strip_suffix(unit).is_some_and(|rest| {
+            unit.len() >= LONG_UNIT || !rest.ends_with(|c: char| c.is_alphabetic())
+        })
+    };
+    let found = OTHER_UNITS
         .into_iter()
         .filter(|(_, unit)| known.contains(unit))
-        .find(|(other, _)| {
-            name.strip_suffix(other)
-                .is_some_and(|rest| !rest.ends_with(|c: char| c.is_alphabetic()))
-        })
-        .map(|(_, unit)| unit)
+        .find(|(other, _)| ends_with(other))
+        .map(|(_, unit)| unit);
+    found.or_else(|| known.contains(&"deg").then_some("deg"))
 }
 
 #[cfg(test)]
@@ -139,6 +145,7 @@ mod tests {
             "LaunchAngle",
             "Aim [deg]",
             "Result",
+            "Depth",
             "note",
         ];
         let header: Vec<String> = header.map(str::to_owned).to_vec();
@@ -147,10 +154,11 @@ mod tests {
         for map in [
             "--map 'shooter=Player'",
             "--map 'speed=Release Speed (mph):mph'",
-            "--map 'pitch=LaunchAngle:UNIT'",
+            "--map 'pitch=LaunchAngle:deg'",
             "--map 'aim=Aim [deg]:deg'",
             "--map 'made=Result'",
-            "UNIT of pitch: deg, rad",
+            "--map 'depth=Depth:UNIT'",
+            "UNIT of depth: ft, in, m, cm, mm",
         ] {
             assert!(text.contains(map), "{text}");
         }
@@ -164,6 +172,8 @@ mod tests {
     fn contract_units_are_read_off_names() {
         assert_eq!(unit_of("speed_fps", Quantity::Speed), Some("ft_s"));
         assert_eq!(unit_of("Depth (in)", Quantity::Depth), Some("in"));
+        assert_eq!(unit_of("DepthInches", Quantity::Depth), Some("in"));
+        assert_eq!(unit_of("EntryAngle", Quantity::EntryAngle), Some("deg"));
         assert_eq!(unit_of("margin", Quantity::Depth), None);
         assert_eq!(unit_of("Spin", Quantity::Backspin), None);
     }

@@ -218,16 +218,28 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     fs::write(&path, both).unwrap();
     let out = folder.path().join("out");
     let answer = fit(path.to_str().unwrap(), &out, &[]).exits(0);
-    assert!(
-        answer
-            .stdout()
-            .starts_with("shooter,shots,made,probability")
-    );
+    assert!(answer.stdout().contains("P of the usual shot"));
     for name in ["ann", "bob"] {
         assert!(out.join(name).join("profile.toml").exists());
     }
     let table = fs::read_to_string(out.join("shooters.csv")).unwrap();
+    assert!(table.starts_with("shooter,shots,made,probability"));
     assert_eq!(table.lines().count(), 3);
+    // One of them, by name.
+    let one = folder.path().join("one");
+    let answer = fit(path.to_str().unwrap(), &one, &["--shooter", "Ann"]).exits(0);
+    assert!(
+        answer.stdout().starts_with("Ann: 30 releases"),
+        "{}",
+        answer.stdout()
+    );
+    let sessions = Answer::of(bankshot().arg("compare-sessions").arg(&path));
+    sessions
+        .exits(2)
+        .says("2 shooters (Ann, Bob); choose one with --shooter NAME");
+    fit(path.to_str().unwrap(), &one, &["--shooter", "Cy"])
+        .exits(2)
+        .says("has no shooter \"Cy\"; it has Ann, Bob");
     // The same shots as two sessions: nothing is decided.
     let sessions = fs::read_to_string(&path)
         .unwrap()

@@ -55,7 +55,10 @@ fn contract_compare_draws_the_difference_of_two_sweeps() {
     let steadier = SweepRun::new(&SMALL_SWEEP.replace("0.25 ft/s", "0.15 ft/s"));
     let output = succeed(&mut compare(&sweep, Some(&steadier.results()), &plots));
     let text = printed(&output);
-    assert!(text.contains("more of 100 shots than shooter (small)"), "{text}");
+    assert!(
+        text.contains("more of 100 shots than shooter (small)"),
+        "{text}"
+    );
     assert!(plots.join("against.png").exists());
     assert!(write_report(&plots).exists());
 }

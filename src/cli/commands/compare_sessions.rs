@@ -5,7 +5,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::terminal::print_prose;
 use crate::fitting::{
-    SessionComparison, ShooterFit, VALUE_NAMES, compare_probabilities, compare_sessions,
+    SessionComparison, ShooterFit, SpinSource, VALUE_NAMES, compare_probabilities, compare_sessions,
 };
 use crate::measured_shots::read::ShooterShots;
 use crate::output::fit_files::parameters::value_units;
@@ -43,12 +43,7 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
 
 fn fit_whole(file: &MeasuredFile) -> Result<ShooterFit, Failure> {
     let place = file.file.display().to_string();
-    let [shots] = &file.shooters[..] else {
-        return Err(Failure::usage(format!(
-            "{place}: has {} shooters; give the sessions of one",
-            file.shooters.len()
-        )));
-    };
+    let shots = file.only_shooter()?;
     report_rejected(file, shots, true);
     file.fit(shots, &file.physics)
         .map_err(|error| failure(&place, &error))
@@ -56,12 +51,7 @@ fn fit_whole(file: &MeasuredFile) -> Result<ShooterFit, Failure> {
 
 fn fit_by_session(file: &MeasuredFile) -> Result<([String; 2], [ShooterFit; 2]), Failure> {
     let place = file.file.display().to_string();
-    let [shots] = &file.shooters[..] else {
-        return Err(Failure::usage(format!(
-            "{place}: has {} shooters; give the sessions of one",
-            file.shooters.len()
-        )));
-    };
+    let shots = file.only_shooter()?;
     report_rejected(file, shots, true);
     let mut names: Vec<&String> = Vec::new();
     for session in &shots.sessions {
@@ -93,12 +83,26 @@ fn fit_by_session(file: &MeasuredFile) -> Result<([String; 2], [ShooterFit; 2]),
     Ok(([first.clone(), second.clone()], [fit(first)?, fit(second)?]))
 }
 
+/// More shots than this are not advised.
+const MOST_SHOTS: f64 = 100_000.0;
+
 fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOptions) -> String {
     let posteriors = [&fits[0].posterior, &fits[1].posterior];
     let shots = posteriors.map(|posterior| posterior.shots);
     let mut text = format!(
-        "before  {} ({} shots)\nafter   {} ({} shots)\n\n{:<16} {:>8} {:>8} {:>9} {:>18}  {:<6} certainty\n",
-        names[0], shots[0], names[1], shots[1], "", "before", "after", "change", "95 %", "unit"
+        "before  {} ({} shots)\nafter   {} ({} shots)\n\n{:<13} {:>7} {:>7} {:>7} {:>17} {:<5} {:<10} {:>7}\n",
+        names[0],
+        shots[0],
+        names[1],
+        shots[1],
+        "",
+        "before",
+        "after",
+        "change",
+        "95 %",
+        "unit",
+        "certainty",
+        "decide"
     );
     let mut row = |name: &str, unit: &str, size: f64, comparison: &SessionComparison| {
         let change = comparison.change.scaled(1.0 / size);
@@ -108,23 +112,20 @@ fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOp
             "fell"
         };
         let certainty = 100.0 * comparison.grew.max(1.0 - comparison.grew);
-        let more = comparison
-            .shots_to_decide
-            .map_or_else(String::new, |needed| {
-                if needed > 100_000.0 {
-                    "; no number of shots would decide a change so small".to_owned()
-                } else {
-                    format!("; {:.0} shots in each would decide", needed.ceil())
-                }
-            });
-        text += &format!(
-            "{name:<16} {:>8.3} {:>8.3} {:>+9.3} {:>8.3} to {:>6.3}  {unit:<6} {direction}: {certainty:.0} %{more}\n",
+        let needed = match comparison.shots_to_decide {
+            None => String::new(),
+            Some(needed) if needed > MOST_SHOTS => "-".to_owned(),
+            Some(needed) => format!("{:.0}", needed.ceil()),
+        };
+        let line = format!(
+            "{name:<13} {:>7.3} {:>7.3} {:>+7.3} {:>7.3} to {:>6.3} {unit:<5} {direction} {certainty:>3.0} % {needed:>7}",
             comparison.before.mean / size,
             comparison.after.mean / size,
             change.mean,
             change.low,
             change.high
         );
+        text += &format!("{}\n", line.trim_end());
     };
     let probabilities = [&fits[0].probabilities[0], &fits[1].probabilities[0]];
     row("P", "%", 0.01, &compare_probabilities(probabilities, shots));
@@ -133,6 +134,10 @@ fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOp
         .enumerate()
     {
         let name = VALUE_NAMES[i];
+        let is_spin = i == VALUE_NAMES.len() - 1;
+        if is_spin && posteriors.iter().all(|p| p.spin == SpinSource::Assumed) {
+            continue;
+        }
         row(
             &format!("{name}_mean"),
             unit,
@@ -146,5 +151,8 @@ fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOp
             &compare_sessions(posteriors, |draw| draw.sds[i]),
         );
     }
+    text += &format!(
+        "\ndecide: so many shots in each session would decide whether a change of this size is\nreal (-: more than {MOST_SHOTS})\n"
+    );
     text
 }

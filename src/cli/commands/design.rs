@@ -2,13 +2,14 @@
 
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_prose;
 use crate::cli::value_parsers::PhysicsArg;
 use crate::fitting::{
-    Covariance, FitError, Landing, Place, Tracker, design, landing_of, release_of_landing,
-    values_of,
+    Covariance, FitError, Landing, Place, Tracker, design, landing_of, nominal_of,
+    release_of_landing, values_of,
 };
 use clap::Args;
 use std::path::PathBuf;
@@ -16,12 +17,13 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual
-shot comes from the flags, then from the profile's [nominal] table.
+shot comes from the flags, then from the profile's [nominal] table; of a fit's folder it is the measured one.
 
-Example:
+Examples:
+  bankshot design results/gym-sensor-fit --tracker noah
   bankshot design configs/free_throw.toml --speed '24.2 ft/s' --pitch '51 deg' --shots 25,50,100,200 --tracker noah")]
 pub(crate) struct DesignOptions {
-    /// A profile like that of the shooter.
+    /// A profile like that of the shooter, or the folder of a fit.
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
@@ -39,8 +41,15 @@ pub(crate) struct DesignOptions {
 }
 
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
-    let profile = load_profile(&options.profile, &options.physics, quiet)?;
-    let nominal = options.nominal.resolve(&profile)?;
+    let (profile, nominal) = if options.profile.is_dir() {
+        let fit = fit_folder::read(&options.profile)?;
+        let usual = nominal_of(&fit.posterior.typical().means[0]);
+        (fit.profiles[0].clone(), usual)
+    } else {
+        let profile = load_profile(&options.profile, &options.physics, quiet)?;
+        let nominal = options.nominal.resolve(&profile)?;
+        (profile, nominal)
+    };
     let tracker = Tracker::named(&options.tracker).ok_or_else(|| {
         let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
         Failure::usage(format!(

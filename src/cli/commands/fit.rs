@@ -18,11 +18,13 @@ use crate::output::fit_files::fit_text::fit_text;
 use crate::output::fit_files::fitted_profile_toml::fitted_profile_toml;
 use crate::output::fit_files::shots_table::shots_csv;
 use crate::plots::measured_shots;
+use crate::plots::svg::shortened;
 use crate::probability::Progress;
 use crate::report::fit_page::fit_page;
 use crate::shooter::implausible_values;
 use crate::units::REV_RAD;
 use clap::Args;
+use comfy_table::{Table, presets};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -87,9 +89,10 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
         return Ok(code);
     }
     if !options.free.is_empty() {
-        return Err(Failure::usage("--free: give the shots of one shooter"));
+        file.only_shooter()?;
     }
-    fit_all(&file, &out, options, &ProgressBars::new(quiet)).map(|worst| worst.max(code))
+    let worst = fit_all(&file, &out, options, quiet)?;
+    Ok(worst.max(code))
 }
 
 /// Fits several shooters side by side: one folder for each, and one table.
@@ -97,8 +100,9 @@ fn fit_all(
     file: &MeasuredFile,
     out: &Path,
     options: &FitOptions,
-    bars: &ProgressBars,
+    quiet: bool,
 ) -> Result<u8, Failure> {
+    let bars = ProgressBars::new(quiet);
     let mut folders: Vec<PathBuf> = Vec::new();
     for shots in &file.shooters {
         let name = run_folder::safe_name(&file.name_of(shots));
@@ -123,52 +127,86 @@ fn fit_all(
         })
         .collect::<Result<Vec<_>, Failure>>()?;
     bars.end();
-    if rows.iter().all(|(_, error)| error.is_some()) {
+    if rows.iter().all(|row| row.result.is_err()) {
         return Err(Failure::usage(format!(
             "{}: no shooter could be fitted",
             options.shots.display()
         )));
     }
-    let mut table = String::from("shooter,shots,made,probability,low,high,folder,error\n");
+    let mut csv = String::from("shooter,shots,made,probability,low,high,folder,error\n");
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header([
+        "shooter",
+        "shots",
+        "made",
+        "expected",
+        "P of the usual shot",
+    ]);
     let mut worst = code::DONE;
-    for (row, error) in rows {
-        table += &row;
-        if let Some(error) = error {
-            print_remark(&error);
-            worst = code::INCOMPLETE;
+    for row in &rows {
+        csv += &row.csv;
+        match &row.result {
+            Ok(cells) => {
+                table.add_row(cells);
+            }
+            Err(error) => {
+                print_remark(error);
+                worst = code::INCOMPLETE;
+            }
         }
     }
     let path = out.join("shooters.csv");
-    atomic_file::write(&path, table.as_bytes())
+    atomic_file::write(&path, csv.as_bytes())
         .map_err(|error| Failure::io(path.display(), &error))?;
-    print_answer(&table)?;
+    print_answer(&format!("{}\n", table.trim_fmt()))?;
+    if !quiet {
+        print_unused(file);
+        print_remark(&format!(
+            "written: {}, and a folder for each shooter; next: bankshot advise {}",
+            path.display(),
+            folders[0].display()
+        ));
+    }
     Ok(worst)
 }
 
-/// A shooter's row of the table, and why there is no fit.
+/// A shooter's row of the tables.
+struct ShooterRow {
+    csv: String,
+    /// The cells of the printed table, or why there is no fit.
+    result: Result<[String; 5], String>,
+}
+
 fn fit_one(
     file: &MeasuredFile,
     shots: &ShooterShots,
     folder: &Path,
     options: &FitOptions,
-) -> Result<(String, Option<String>), Failure> {
+) -> Result<ShooterRow, Failure> {
     let name = file.name_of(shots);
     let fit = match file.fit(shots, &file.physics) {
         Ok(fit) => fit,
         Err(error) => {
             let (shooter, count) = (cell(&name), shots.shots.len());
-            let row = format!("{shooter},{count},,,,,,{}\n", cell(&error.to_string()));
-            return Ok((row, Some(format!("{name}: {error}"))));
+            return Ok(ShooterRow {
+                csv: format!("{shooter},{count},,,,,,{}\n", cell(&error.to_string())),
+                result: Err(format!("{name}: {error}")),
+            });
         }
     };
     write(folder, file, shots, &fit, options)?;
     let p = fit.probabilities[0].interval();
-    let made = if fit.makes.labelled > 0 {
-        fit.makes.made.to_string()
+    let makes = &fit.makes;
+    let (made, expected) = if makes.labelled > 0 {
+        (
+            makes.made.to_string(),
+            format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
+        )
     } else {
-        String::new()
+        (String::new(), String::new())
     };
-    let row = format!(
+    let csv = format!(
         "{},{},{made},{:.4},{:.4},{:.4},{},\n",
         cell(&name),
         fit.posterior.shots,
@@ -177,7 +215,28 @@ fn fit_one(
         p.high,
         cell(&folder.display().to_string())
     );
-    Ok((row, None))
+    let percent = |p: f64| format!("{:.1}", 100.0 * p);
+    let usual = format!(
+        "{} % (95 %: {} to {})",
+        percent(p.mean),
+        percent(p.low),
+        percent(p.high)
+    );
+    let shots = fit.posterior.shots.to_string();
+    Ok(ShooterRow {
+        csv,
+        result: Ok([shortened(&name, 24), shots, made, expected, usual]),
+    })
+}
+
+/// Names the columns that nothing was taken from.
+fn print_unused(file: &MeasuredFile) {
+    if !file.unused.is_empty() {
+        print_remark(&format!(
+            "columns that were not used: {}",
+            file.unused.join(", ")
+        ));
+    }
 }
 
 /// A cell of a CSV table.
@@ -331,12 +390,7 @@ fn answer(
         for words in warnings.filter(|words| words.starts_with("location")) {
             print_remark(&format!("warning: {words}"));
         }
-        if !file.unused.is_empty() {
-            print_remark(&format!(
-                "columns that were not used: {}",
-                file.unused.join(", ")
-            ));
-        }
+        print_unused(file);
         print_remark(&format!(
             "written to {}; next: bankshot advise {}",
             folder.display(),

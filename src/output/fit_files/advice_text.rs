@@ -147,6 +147,12 @@ pub fn advice_text(
             );
         }
     }
+    if advice.backspin_is_assumed {
+        text += &format!(
+            "  The backspin was not measured: {:.1} rev/s is assumed.\n",
+            advice.usual[3] / value_units(units)[3].1
+        );
+    }
     text += "\na tenth less scatter\n";
     for training in &advice.training {
         text += &format!(
