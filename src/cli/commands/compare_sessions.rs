@@ -152,7 +152,7 @@ fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOp
         );
     }
     text += &format!(
-        "\ndecide: so many shots in each session would decide whether a change of this size is\nreal (-: more than {MOST_SHOTS})\n"
+        "\ndecide: shots a session that would decide such a change (-: over {MOST_SHOTS})\n"
     );
     text
 }

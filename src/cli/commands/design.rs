@@ -77,22 +77,25 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         message: error.to_string(),
     })?;
     let mut text = format!(
-        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation\n\n{:>6} {:>14} {:>14} {:>14} {:>16} {:>16}\n",
+        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation\n\n{:>6}  {:^29}  {:^26}\n{:>6} {:>9} {:>9} {:>9}  {:>12} {:>12}\n",
         profile.shooter().name,
         tracker.name,
         tracker.source,
         options.repetitions,
+        "",
+        "scatter is known to",
+        "P is known to (points)",
         "shots",
-        "speed's sd to",
-        "pitch's sd to",
-        "polar's sd to",
-        "P by the fit to",
-        "by counting to"
+        "speed",
+        "pitch",
+        "polar",
+        "by the fit",
+        "by counting"
     );
     for row in rows {
         let [speed, pitch, polar] = row.sd_errors.map(|error| 100.0 * error);
         text += &format!(
-            "{:>6} {:>12.1} % {:>12.1} % {:>12.1} % {:>9.1} points {:>9.1} points\n",
+            "{:>6} {:>7.1} % {:>7.1} % {:>7.1} %  {:>12.1} {:>12.1}\n",
             row.shots,
             speed,
             pitch,
