@@ -20,6 +20,8 @@ pub(crate) struct FitFolder {
     pub(crate) posterior: Posterior,
     /// Made and all shots with a result.
     pub(crate) observed: (usize, usize),
+    /// What the fit warned of.
+    pub(crate) warnings: Vec<String>,
 }
 
 fn damaged(path: &Path, message: impl std::fmt::Display) -> Failure {
@@ -73,6 +75,12 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
         profiles,
         posterior,
         observed: (count("made"), count("shots")),
+        warnings: json["warnings"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(|warning| warning.as_str().map(str::to_owned))
+            .collect(),
     })
 }
 

@@ -5,7 +5,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{Posterior, advise};
 use crate::output::fit_files::advice_text::{advice_json, advice_text};
 use crate::shooter::Profile;
@@ -32,8 +32,15 @@ pub(crate) struct AdviseOptions {
 
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
+        if options.measured.physics.physics.is_some() {
+            return Err(Failure::usage(format!(
+                "--physics: {} was fitted with its own physics; fit the shots again with the other one",
+                options.shots.display()
+            )));
+        }
         let fit = fit_folder::read(&options.shots)?;
         answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;
+        print_warnings(&fit.warnings);
         return Ok(code::DONE);
     }
     let file = options.measured.read(&options.shots)?;
@@ -48,8 +55,16 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         let observed = (fit.makes.made, fit.makes.labelled);
         answer(options, &fit.profiles, &fit.posterior, observed, quiet)?;
+        print_warnings(&fit.warnings);
     }
     Ok(worst)
+}
+
+/// Advice is no better than the fit that it rests on.
+fn print_warnings<W: std::fmt::Display>(warnings: &[W]) {
+    for warning in warnings {
+        print_remark(&format!("warning: {warning}"));
+    }
 }
 
 /// Advice for each place; `profiles` are those of the places.

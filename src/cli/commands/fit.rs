@@ -160,6 +160,9 @@ fn fit_all(
     atomic_file::write(&path, csv.as_bytes())
         .map_err(|error| Failure::io(path.display(), &error))?;
     print_answer(&format!("{}\n", table.trim_fmt()))?;
+    for warning in rows.iter().flat_map(|row| &row.warnings) {
+        print_remark(warning);
+    }
     if !quiet {
         print_unused(file);
         print_remark(&format!(
@@ -176,6 +179,7 @@ struct ShooterRow {
     csv: String,
     /// The cells of the printed table, or why there is no fit.
     result: Result<[String; 5], String>,
+    warnings: Vec<String>,
 }
 
 fn fit_one(
@@ -192,6 +196,7 @@ fn fit_one(
             return Ok(ShooterRow {
                 csv: format!("{shooter},{count},,,,,,{}\n", cell(&error.to_string())),
                 result: Err(format!("{name}: {error}")),
+                warnings: Vec::new(),
             });
         }
     };
@@ -200,16 +205,21 @@ fn fit_one(
     let makes = &fit.makes;
     let (made, expected) = if makes.labelled > 0 {
         (
-            makes.made.to_string(),
+            format!("{} of {}", makes.made, makes.labelled),
             format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
         )
     } else {
         (String::new(), String::new())
     };
     let csv = format!(
-        "{},{},{made},{:.4},{:.4},{:.4},{},\n",
+        "{},{},{},{:.4},{:.4},{:.4},{},\n",
         cell(&name),
         fit.posterior.shots,
+        if makes.labelled > 0 {
+            makes.made.to_string()
+        } else {
+            String::new()
+        },
         p.mean,
         p.low,
         p.high,
@@ -226,6 +236,11 @@ fn fit_one(
     Ok(ShooterRow {
         csv,
         result: Ok([shortened(&name, 24), shots, made, expected, usual]),
+        warnings: fit
+            .warnings
+            .iter()
+            .map(|warning| format!("{name}: warning: {warning}"))
+            .collect(),
     })
 }
 

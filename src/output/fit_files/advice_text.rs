@@ -3,7 +3,7 @@
 use super::fit_json::interval_json;
 use super::fit_text::percent;
 use super::parameters::value_units;
-use crate::fitting::{Advice, Cause, Interval, values_of};
+use crate::fitting::{Advice, Cause, CauseOfGap, Interval, values_of};
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -78,22 +78,33 @@ pub fn advice_text(
         100.0 * p.low,
         100.0 * p.high
     );
-    match (&advice.gain, advice.causes.first()) {
-        (Some(gain), Some(first)) if gain.low > 0.0 && gain.mean > 0.005 => {
+    match &advice.gain {
+        Some(gain) if gain.low > 0.0 && gain.mean > 0.005 => {
+            // A change of what was not measured is no advice.
+            let is_advice = |cause: &&CauseOfGap| {
+                cause.gain.low > 0.0
+                    && !(cause.cause.name() == "backspin" && advice.backspin_is_assumed)
+            };
             text += &format!(
-                "The same hand can make {} if you change the shot: most of it if you {}.\n",
-                percent(p.mean + gain.mean),
-                change_in_words(first.cause, first.values, units, court_angle_rad)
+                "The same hand can make {} if you change the shot: ",
+                percent(p.mean + gain.mean)
             );
+            text += &match advice.causes.iter().find(is_advice) {
+                Some(first) => format!(
+                    "most of it if you {}.\n",
+                    change_in_words(first.cause, first.values, units, court_angle_rad)
+                ),
+                None => "no single change is sure to help.\n".to_owned(),
+            };
         }
-        (Some(gain), _) if gain.mean > 0.005 => {
+        Some(gain) if gain.mean > 0.005 => {
             text += &format!(
                 "Another release may gain {:.1} points, but these shots cannot tell it from luck: measure more before you change anything.\n",
                 100.0 * gain.mean
             );
         }
-        (Some(_), _) => text += "Keep your release: no other one is worth a change.\n",
-        (None, _) => text += "No clean shot of this kind was found from here.\n",
+        Some(_) => text += "Keep your release: no other one is worth a change.\n",
+        None => text += "No clean shot of this kind was found from here.\n",
     }
     if let Some(first) = advice.training.first() {
         text += &format!(
