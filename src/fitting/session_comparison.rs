@@ -29,8 +29,9 @@ const PAIRINGS: usize = 16;
 /// Compares the values of the draws of two fits.
 fn compare(before: &[f64], after: &[f64], shots: [usize; 2]) -> SessionComparison {
     let count = before.len().min(after.len());
-    // Two fits with one seed have the same random numbers at the same place, and so values that go
-    // together: pairs of equal places would make every change look sure. Other pairs are independent.
+    // Two fits with one seed have the same random numbers at the same place, and so values that
+    // go together: pairs of equal places would make every change look sure. Other pairs are
+    // independent.
     let changes: Vec<f64> = (1..=PAIRINGS)
         .map(|pairing| pairing * count / (PAIRINGS + 1))
         .flat_map(|shift| (0..count).map(move |k| after[(k + shift) % count] - before[k]))
@@ -76,9 +77,9 @@ mod tests {
     use rand::rngs::ChaCha12Rng;
     use rand_distr::{Distribution, StandardNormal};
 
-    /// Authority: the difference of two independent normal numbers has twice the variance. The draws
-    /// are the same, as those of two fits of one file with one seed are. The seed is fixed: no false
-    /// alarm.
+    /// Authority: the difference of two independent normal numbers has twice the variance. The
+    /// draws are the same, as those of two fits of one file with one seed are. The seed is fixed:
+    /// no false alarm.
     #[test]
     fn val_the_change_between_equal_draws_is_as_wide_as_that_of_independent_ones() {
         let mut random = ChaCha12Rng::seed_from_u64(1);
