@@ -111,8 +111,8 @@ fn contract_the_report_of_a_comparison_has_both() {
     let page = fs::read_to_string(write_report(&out)).unwrap();
     for words in [
         "Ann against Bartholomew",
-        "Ann: From 12.0 ft",
-        "Bartholomew: From 12.0 ft",
+        "Ann: From 12 ft",
+        "Bartholomew: From 12 ft",
         "Bartholomew: Best shots",
     ] {
         assert!(page.contains(words), "{words}");
