@@ -41,6 +41,14 @@ pub(crate) fn standard_error(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A standard error of a probability in percentage points.
+pub(crate) fn points(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.1..=50.0).contains(&value) => Ok(value),
+        _ => Err("must be a number of points from 0.1 to 50".to_owned()),
+    }
+}
+
 /// A seed and an index, such as `1:2049`.
 pub(crate) fn sample(text: &str) -> Result<(u64, u64), String> {
     text.split_once(':')

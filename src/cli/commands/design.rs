@@ -5,13 +5,15 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_prose;
-use crate::cli::value_parsers::PhysicsArg;
+use crate::cli::terminal::{print_answer, print_prose};
+use crate::cli::value_parsers::{self, PhysicsArg};
 use crate::fitting::{
-    Covariance, FitError, Landing, Place, Tracker, design, landing_of, nominal_of,
+    Covariance, DesignRow, FitError, Landing, Place, Tracker, design, landing_of, nominal_of,
     release_of_landing, values_of,
 };
+use crate::output::json_object::number;
 use clap::Args;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 #[derive(Args, Debug)]
@@ -20,7 +22,7 @@ Simulates tests of each size with the tracker's errors, fits them, and says how 
 shot comes from the flags, then from the profile's [nominal] table; of a fit's folder it is the measured one.
 
 Examples:
-  bankshot design results/gym-sensor-fit --tracker noah
+  bankshot design results/gym-sensor-fit --tracker noah --target 3
   bankshot design configs/free_throw.toml --speed '24.2 ft/s' --pitch '51 deg' --shots 25,50,100,200 --tracker noah")]
 pub(crate) struct DesignOptions {
     /// A profile like that of the shooter, or the folder of a fit.
@@ -35,6 +37,12 @@ pub(crate) struct DesignOptions {
     /// The tracker: lab, noah, optical_25hz or optical_60hz.
     #[arg(long, value_name = "NAME", default_value = "lab")]
     pub(crate) tracker: String,
+    /// Also ask how many shots make P known to this many points (one standard deviation), such as 3.
+    #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
+    pub(crate) target: Option<f64>,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
     /// Simulated tests of each size.
     #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u64).range(4..=10_000))]
     pub(crate) repetitions: u64,
@@ -59,23 +67,39 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         ))
     })?;
     let noise = noise(&tracker, &profile, &nominal)?;
-    let sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
     let bars = ProgressBars::new(quiet);
-    let rows = design(
-        &profile,
-        &nominal,
-        &noise,
-        &sizes,
-        options.repetitions,
-        &bars,
-    )
-    .map_err(|error| Failure {
-        code: match error {
-            FitError::NotConverged { .. } => code::IMPRECISE,
-            FitError::NoScatter => code::USAGE,
-        },
-        message: error.to_string(),
-    })?;
+    let simulate = |sizes: &[usize]| {
+        design(
+            &profile,
+            &nominal,
+            &noise,
+            sizes,
+            options.repetitions,
+            &bars,
+        )
+        .map_err(|error| Failure {
+            code: match error {
+                FitError::NotConverged { .. } => code::IMPRECISE,
+                FitError::NoScatter => code::USAGE,
+            },
+            message: error.to_string(),
+        })
+    };
+    let sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
+    let mut rows = simulate(&sizes)?;
+    let mut needed = None;
+    if let Some(points) = options.target {
+        let shots = shots_for(&rows, points / 100.0);
+        if (10..=MOST_SHOTS).contains(&shots) && !sizes.contains(&shots) {
+            rows.extend(simulate(&[shots])?);
+            rows.sort_by_key(|row| row.shots);
+        }
+        needed = Some((points, shots));
+    }
+    if options.json {
+        let name = &profile.shooter().name;
+        return print_answer(&format!("{:#}\n", json(name, &tracker, &rows, needed)));
+    }
     let mut text = format!(
         "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation\n\n{:>6}  {:^29}  {:^26}\n{:>6} {:>9} {:>9} {:>9}  {:>12} {:>12}\n",
         profile.shooter().name,
@@ -92,7 +116,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         "by the fit",
         "by counting"
     );
-    for row in rows {
+    for row in &rows {
         let [speed, pitch, polar] = row.sd_errors.map(|error| 100.0 * error);
         text += &format!(
             "{:>6} {:>7.1} % {:>7.1} % {:>7.1} %  {:>12.1} {:>12.1}\n",
@@ -104,7 +128,56 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             100.0 * row.counting_error
         );
     }
+    if let Some((points, shots)) = needed {
+        text += &match shots {
+            MOST_SHOTS.. => {
+                format!("\nMore than {MOST_SHOTS} shots make P known to {points} points.\n")
+            }
+            _ => format!("\nAbout {shots} shots make P known to {points} points.\n"),
+        };
+    }
     print_prose(&text)
+}
+
+/// The largest test.
+const MOST_SHOTS: usize = 5000;
+
+/// Shots that make P known to a standard deviation, which falls with the square root of the shots:
+/// from the row that is nearest to it.
+fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
+    let distance =
+        |row: &&DesignRow| libm::fabs(libm::log(row.probability_error / probability_error));
+    let nearest = rows
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.map_or(0, |row| {
+        let ratio = row.probability_error / probability_error;
+        (row.shots as f64 * ratio * ratio).ceil() as usize
+    })
+}
+
+fn json(name: &str, tracker: &Tracker, rows: &[DesignRow], needed: Option<(f64, usize)>) -> Value {
+    let listed = rows.iter().map(|row| {
+        let [speed, pitch, polar] = row.sd_errors.map(number);
+        json!({
+            "shots": row.shots,
+            "speed_sd_relative_error": speed,
+            "pitch_sd_relative_error": pitch,
+            "polar_sd_relative_error": polar,
+            "probability_error": number(row.probability_error),
+            "counting_error": number(row.counting_error),
+        })
+    });
+    json!({
+        "shooter": name,
+        "tracker": tracker.name,
+        "tracker_noise": tracker.source,
+        "tests": listed.collect::<Value>(),
+        "target": needed.map(|(points, shots)| json!({
+            "probability_error": number(points / 100.0),
+            "shots": shots,
+        })),
+    })
 }
 
 /// The tracker's errors as errors of the usual release.
