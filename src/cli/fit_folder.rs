@@ -4,7 +4,8 @@ use super::config_files::{load_profile, read_text};
 use super::failure::{Failure, code};
 use super::value_parsers::PhysicsArg;
 use crate::fitting::{
-    Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile, values_of,
+    Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile,
+    usual_probabilities, values_of,
 };
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
@@ -29,6 +30,21 @@ fn damaged(path: &Path, message: impl std::fmt::Display) -> Failure {
         code: code::DAMAGED,
         message: format!("{}: {message}", path.display()),
     }
+}
+
+impl FitFolder {
+    /// P of the usual shot at the first place.
+    pub(crate) fn usual_probabilities(&self) -> DrawProbabilities {
+        usual_probabilities(&self.profiles[0], &self.posterior, 0, SHOTS)
+    }
+}
+
+/// Why `--physics` is refused beside the folder of a fit.
+pub(crate) fn other_physics(folder: &Path) -> Failure {
+    Failure::usage(format!(
+        "--physics: {} was fitted with its own physics; fit the shots again with the other one",
+        folder.display()
+    ))
 }
 
 /// Reads the folder of a fit.

@@ -33,10 +33,7 @@ pub(crate) struct AdviseOptions {
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
         if options.measured.physics.physics.is_some() {
-            return Err(Failure::usage(format!(
-                "--physics: {} was fitted with its own physics; fit the shots again with the other one",
-                options.shots.display()
-            )));
+            return Err(fit_folder::other_physics(&options.shots));
         }
         let fit = fit_folder::read(&options.shots)?;
         answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;

@@ -2,20 +2,29 @@
 
 use super::fit::{failure, report_rejected};
 use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
-use crate::cli::terminal::print_prose;
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
-    SessionComparison, ShooterFit, SpinSource, VALUE_NAMES, compare_probabilities, compare_sessions,
+    DrawProbabilities, Posterior, SessionComparison, ShooterFit, SpinSource, VALUE_NAMES,
+    compare_probabilities, compare_sessions,
 };
 use crate::measured_shots::read::ShooterShots;
+use crate::output::fit_files::fit_json::interval_json;
 use crate::output::fit_files::parameters::value_units;
+use crate::output::json_object::{number, object};
+use crate::shooter::Profile;
 use clap::Args;
-use std::path::PathBuf;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
+Each session is a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit.
+
 Examples:
   bankshot compare-sessions september.csv march.csv --distance '13.75 ft' --release-height '7 ft'
+  bankshot compare-sessions results/september-fit results/march-fit
   bankshot compare-sessions season.csv            (two values in its column session)")]
 pub(crate) struct CompareSessionsOptions {
     /// The first session, or a file with a column session that has two values.
@@ -24,32 +33,105 @@ pub(crate) struct CompareSessionsOptions {
     pub(crate) after: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// A fitted session.
+struct Session {
+    name: String,
+    posterior: Posterior,
+    /// P of the usual shot at the first place.
+    probabilities: DrawProbabilities,
+    /// The profile at the first place.
+    profile: Profile,
+}
+
+impl Session {
+    fn of(name: String, mut fit: ShooterFit) -> Self {
+        Self {
+            name,
+            posterior: fit.posterior,
+            probabilities: fit.probabilities.swap_remove(0),
+            profile: fit.profiles.swap_remove(0),
+        }
+    }
 }
 
 pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
-    let before = options.measured.read(&options.before)?;
-    let (names, fits) = match &options.after {
-        Some(after) => {
-            let after = options.measured.read(after)?;
-            let names = [&before, &after].map(|file| file.file.display().to_string());
-            let fits = [fit_whole(&before)?, fit_whole(&after)?];
-            (names, fits)
+    let sessions = match &options.after {
+        Some(after) => [read(&options.before, options)?, read(after, options)?],
+        None if options.before.is_dir() => {
+            return Err(Failure::usage(
+                "the folder of a fit is one session; name the second one too",
+            ));
         }
-        None => fit_by_session(&before)?,
+        None => fit_by_session(&options.measured.read(&options.before)?)?,
     };
-    print_prose(&text(&names, &fits, options))?;
+    check_conditions(&sessions)?;
+    let changes = changes(&sessions, options);
+    if options.json {
+        print_answer(&format!("{:#}\n", json(&sessions, &changes)))?;
+    } else {
+        print_prose(&text(&sessions, &changes))?;
+    }
     Ok(code::DONE)
 }
 
-fn fit_whole(file: &MeasuredFile) -> Result<ShooterFit, Failure> {
-    let place = file.file.display().to_string();
+/// A session from a file or from the folder of a fit.
+fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failure> {
+    let name = path.display().to_string();
+    if path.is_dir() {
+        if options.measured.physics.physics.is_some() {
+            return Err(fit_folder::other_physics(path));
+        }
+        let fit = fit_folder::read(path)?;
+        return Ok(Session {
+            name,
+            probabilities: fit.usual_probabilities(),
+            posterior: fit.posterior,
+            profile: fit.profiles[0].clone(),
+        });
+    }
+    let file = options.measured.read(path)?;
     let shots = file.only_shooter()?;
-    report_rejected(file, shots, true);
-    file.fit(shots, &file.physics)
-        .map_err(|error| failure(&place, &error))
+    report_rejected(&file, shots, true);
+    let fit = file
+        .fit(shots, &file.physics)
+        .map_err(|error| failure(&name, &error))?;
+    Ok(Session::of(name, fit))
 }
 
-fn fit_by_session(file: &MeasuredFile) -> Result<([String; 2], [ShooterFit; 2]), Failure> {
+/// Fits of one physics can be compared, and P of one place.
+fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
+    if before.profile.physics() != after.profile.physics() {
+        return Err(Failure::usage(format!(
+            "{} and {} were fitted with different physics; fit both with the same --physics",
+            before.name, after.name
+        )));
+    }
+    let place = |session: &Session| {
+        let location = session.profile.location();
+        let height_m = session.profile.shooter().release_height_m;
+        (location.distance_m, location.angle_rad, height_m)
+    };
+    let (a, b) = (place(before), place(after));
+    let moved_m = libm::fabs(a.0 - b.0)
+        .max(a.0 * libm::fabs(a.1 - b.1))
+        .max(libm::fabs(a.2 - b.2));
+    if moved_m > SAME_PLACE_M {
+        print_remark(
+            "warning: the sessions are from different places; speed, pitch and P are those of each place",
+        );
+    }
+    Ok(())
+}
+
+/// Places nearer than this are the same, m.
+const SAME_PLACE_M: f64 = 0.15;
+
+fn fit_by_session(file: &MeasuredFile) -> Result<[Session; 2], Failure> {
     let place = file.file.display().to_string();
     let shots = file.only_shooter()?;
     report_rejected(file, shots, true);
@@ -65,7 +147,7 @@ fn fit_by_session(file: &MeasuredFile) -> Result<([String; 2], [ShooterFit; 2]),
             names.len()
         )));
     };
-    let fit = |session: &String| -> Result<ShooterFit, Failure> {
+    let fit = |session: &String| -> Result<Session, Failure> {
         let keep: Vec<bool> = shots.sessions.iter().map(|name| name == session).collect();
         let mut kept = ShooterShots {
             tracks: Vec::new(),
@@ -77,24 +159,69 @@ fn fit_by_session(file: &MeasuredFile) -> Result<([String; 2], [ShooterFit; 2]),
             index += 1;
             keep[index - 1]
         });
-        file.fit(&kept, &file.physics)
-            .map_err(|error| failure(&place, &error))
+        let fit = file
+            .fit(&kept, &file.physics)
+            .map_err(|error| failure(&place, &error))?;
+        Ok(Session::of(session.clone(), fit))
     };
-    Ok(([first.clone(), second.clone()], [fit(first)?, fit(second)?]))
+    Ok([fit(first)?, fit(second)?])
+}
+
+/// What changed in one quantity.
+struct Change {
+    name: String,
+    unit: &'static str,
+    /// Its size in SI units.
+    size: f64,
+    comparison: SessionComparison,
+}
+
+/// P, and mean and standard deviation of each value.
+fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Change> {
+    let [before, after] = sessions;
+    let posteriors = [&before.posterior, &after.posterior];
+    let shots = posteriors.map(|posterior| posterior.shots);
+    let mut changes = vec![Change {
+        name: "P".to_owned(),
+        unit: "%",
+        size: 0.01,
+        comparison: compare_probabilities([&before.probabilities, &after.probabilities], shots),
+    }];
+    for (i, (unit, size)) in value_units(options.measured.unit_system())
+        .into_iter()
+        .enumerate()
+    {
+        let is_spin = i == VALUE_NAMES.len() - 1;
+        if is_spin && posteriors.iter().all(|p| p.spin == SpinSource::Assumed) {
+            continue;
+        }
+        let mut add = |what: &str, comparison: SessionComparison| {
+            changes.push(Change {
+                name: format!("{}_{what}", VALUE_NAMES[i]),
+                unit,
+                size,
+                comparison,
+            });
+        };
+        add(
+            "mean",
+            compare_sessions(posteriors, |draw| draw.means[0][i]),
+        );
+        add("sd", compare_sessions(posteriors, |draw| draw.sds[i]));
+    }
+    changes
 }
 
 /// More shots than this are not advised.
 const MOST_SHOTS: f64 = 100_000.0;
 
-fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOptions) -> String {
-    let posteriors = [&fits[0].posterior, &fits[1].posterior];
-    let shots = posteriors.map(|posterior| posterior.shots);
+fn text([before, after]: &[Session; 2], changes: &[Change]) -> String {
     let mut text = format!(
         "before  {} ({} shots)\nafter   {} ({} shots)\n\n{:<13} {:>7} {:>7} {:>7} {:>17} {:<5} {:<10} {:>7}\n",
-        names[0],
-        shots[0],
-        names[1],
-        shots[1],
+        before.name,
+        before.posterior.shots,
+        after.name,
+        after.posterior.shots,
         "",
         "before",
         "after",
@@ -104,7 +231,13 @@ fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOp
         "certainty",
         "decide"
     );
-    let mut row = |name: &str, unit: &str, size: f64, comparison: &SessionComparison| {
+    for Change {
+        name,
+        unit,
+        size,
+        comparison,
+    } in changes
+    {
         let change = comparison.change.scaled(1.0 / size);
         let direction = if comparison.grew >= 0.5 {
             "grew"
@@ -126,33 +259,34 @@ fn text(names: &[String; 2], fits: &[ShooterFit; 2], options: &CompareSessionsOp
             change.high
         );
         text += &format!("{}\n", line.trim_end());
-    };
-    let probabilities = [&fits[0].probabilities[0], &fits[1].probabilities[0]];
-    row("P", "%", 0.01, &compare_probabilities(probabilities, shots));
-    for (i, (unit, size)) in value_units(options.measured.unit_system())
-        .into_iter()
-        .enumerate()
-    {
-        let name = VALUE_NAMES[i];
-        let is_spin = i == VALUE_NAMES.len() - 1;
-        if is_spin && posteriors.iter().all(|p| p.spin == SpinSource::Assumed) {
-            continue;
-        }
-        row(
-            &format!("{name}_mean"),
-            unit,
-            size,
-            &compare_sessions(posteriors, |draw| draw.means[0][i]),
-        );
-        row(
-            &format!("{name}_sd"),
-            unit,
-            size,
-            &compare_sessions(posteriors, |draw| draw.sds[i]),
-        );
     }
     text += &format!(
         "\ndecide: shots a session that would decide such a change (-: over {MOST_SHOTS})\n"
     );
     text
+}
+
+fn json([before, after]: &[Session; 2], changes: &[Change]) -> Value {
+    let session =
+        |session: &Session| json!({ "name": session.name, "shots": session.posterior.shots });
+    let listed = changes.iter().map(|change| {
+        let comparison = &change.comparison;
+        let interval = |interval: &crate::fitting::Interval| {
+            object(interval_json(&interval.scaled(1.0 / change.size)))
+        };
+        json!({
+            "name": change.name,
+            "unit": change.unit,
+            "before": interval(&comparison.before),
+            "after": interval(&comparison.after),
+            "change": interval(&comparison.change),
+            "probability_of_growth": number(comparison.grew),
+            "shots_to_decide": comparison.shots_to_decide.map(f64::ceil),
+        })
+    });
+    json!({
+        "before": session(before),
+        "after": session(after),
+        "changes": listed.collect::<Value>(),
+    })
 }
