@@ -84,7 +84,7 @@ def test_fit_and_advise(command, root, tmp_path):
     assert fit.raw["probability"] == said["probability"]
     advice = json.loads(command("advise", tmp_path / "a", "--json"))
     assert fit.advise().raw == advice
-    assert fit.parameters["speed_sd"].source == "measured"
+    assert fit.parameters["speed_sd"].source == "from landings"
     assert fit.profile.distance_m == pytest.approx(13.75 * 0.3048, abs=1e-9)
 
 

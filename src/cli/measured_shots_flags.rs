@@ -12,7 +12,7 @@ use crate::measured_shots::columns::Columns;
 use crate::measured_shots::court_frame::CourtFrame;
 use crate::measured_shots::read::{ReadOptions, ShooterShots, Source, read};
 use crate::measured_shots::table::Table;
-use crate::model::{Air, Physics};
+use crate::model::Physics;
 use crate::output::fit_files::fit_json::FitSource;
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
@@ -341,6 +341,7 @@ impl MeasuredFile {
             physics: self.physics_name.clone(),
             seed: self.seed,
             rejected: &shots.rejected,
+            differences: &shots.differences,
         }
     }
 
@@ -360,17 +361,6 @@ impl MeasuredFile {
             },
             seed: self.seed,
             ..FitOptions::default()
-        }
-    }
-
-    /// The physics with another drag coefficient.
-    pub(crate) fn with_drag(&self, drag_coefficient: f64) -> Physics {
-        Physics {
-            air: Air {
-                drag_coefficient,
-                ..self.physics.air
-            },
-            ..self.physics.clone()
         }
     }
 

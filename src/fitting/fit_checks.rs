@@ -45,6 +45,21 @@ pub enum TestError {
     },
 }
 
+/// How far a release that the file holds beside the landings differs from the one that they give.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReleaseDifference {
+    /// The column of the file.
+    pub column: String,
+    /// Index of the value: 0 is the speed, 1 the pitch.
+    pub value: usize,
+    /// Shots with both.
+    pub shots: usize,
+    /// Mean of the column less what the landings give, m/s or rad.
+    pub mean: f64,
+    /// Its standard error, without errors that all shots share.
+    pub standard_error: f64,
+}
+
 /// What a fit should be told to a user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FitWarning {

@@ -38,8 +38,8 @@ pub use expected_makes::{
     ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,
 };
 pub use fit_checks::{
-    FitWarning, SessionTrend, ShapeTest, TestError, check_releases, check_speed_unit, far_shots,
-    noise_warning, shape_test, tails_of, trends, warnings,
+    FitWarning, ReleaseDifference, SessionTrend, ShapeTest, TestError, check_releases,
+    check_speed_unit, far_shots, noise_warning, shape_test, tails_of, trends, warnings,
 };
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};

@@ -100,7 +100,11 @@ pub fn fit_shooter(
     // Half a shot for the simulated chances themselves.
     let sd = libm::hypot(makes.expected_sd, 0.5);
     if (makes.made as f64 - makes.expected).abs() > FAR_MAKES * sd && makes.labelled > 0 {
-        warnings.push(FitWarning::OtherMakes(makes.made, makes.expected, sd));
+        warnings.push(FitWarning::OtherMakes(
+            makes.made,
+            makes.expected,
+            makes.expected_sd,
+        ));
     }
     Ok(ShooterFit {
         name: test.name.to_owned(),

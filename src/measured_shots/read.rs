@@ -6,9 +6,9 @@ use super::map_proposal::map_proposal;
 use super::table::Table;
 use crate::dynamics::Simulator;
 use crate::fitting::{
-    CENTRE_DEPTH_M, Covariance, FlightFit, Landing, MeasuredRelease, Place, SpinSource,
-    TrackedPoint, TrackerNoise, Values, check_speed_unit, far_shots, fit_flight, landing_of,
-    release_of_landing,
+    CENTRE_DEPTH_M, Covariance, FlightFit, Interval, Landing, MeasuredRelease, Place,
+    ReleaseDifference, SpinSource, TrackedPoint, TrackerNoise, Values, check_speed_unit, far_shots,
+    fit_flight, landing_of, release_of_landing,
 };
 use crate::shooter::Location;
 use crate::units::{FOOT_M, INCH_M, REV_RAD};
@@ -117,6 +117,8 @@ pub struct ShooterShots {
     pub tracks: Vec<Vec<TrackedPoint>>,
     /// Squared residuals of each trajectory, and what is expected of them.
     pub chi_squares: Vec<(f64, f64)>,
+    /// Releases that were measured beside the landings.
+    pub differences: Vec<ReleaseDifference>,
 }
 
 /// A shot before its place is known.
@@ -420,6 +422,7 @@ impl Reader<'_> {
             speed_unit: unit,
             tracks: Vec::new(),
             chi_squares: Vec::new(),
+            differences: Vec::new(),
         };
         self.group_by_place(raw, &mut shooter);
         if self.source == Source::Releases {
@@ -428,6 +431,9 @@ impl Reader<'_> {
                 .map_err(|error| error.to_string())?;
         }
         self.reject_shots(&mut shooter);
+        if self.source == Source::Landings {
+            shooter.differences = self.release_differences(rows, &shooter.shots);
+        }
         Ok(shooter)
     }
 
@@ -454,6 +460,42 @@ impl Reader<'_> {
             }
         }
         raw
+    }
+
+    /// Compares the releases that the file holds beside landings with those that the landings give.
+    fn release_differences(
+        &self,
+        rows: &[(u64, &[String])],
+        shots: &[MeasuredRelease],
+    ) -> Vec<ReleaseDifference> {
+        /// Fewer shots than this say nothing.
+        const LEAST_SHOTS: usize = 5;
+        let cells: BTreeMap<u64, &[String]> = rows.iter().copied().collect();
+        let compared = [(0, Quantity::Speed), (1, Quantity::Pitch)];
+        let columns = compared.into_iter().filter_map(|(value, quantity)| {
+            Some((value, quantity, self.columns.quantity(quantity)?))
+        });
+        columns
+            .filter_map(|(value, quantity, column)| {
+                let differences: Vec<f64> = shots
+                    .iter()
+                    .filter_map(|shot| {
+                        // A cell that holds no number says nothing of the landing.
+                        let stated = self.value(cells[&shot.row], quantity).ok().flatten()?;
+                        Some(stated - shot.values[value])
+                    })
+                    .collect();
+                let count = differences.len() as f64;
+                let summary = Interval::of(differences);
+                (count >= LEAST_SHOTS as f64).then(|| ReleaseDifference {
+                    column: self.columns.name(column.index).to_owned(),
+                    value,
+                    shots: count as usize,
+                    mean: summary.mean,
+                    standard_error: summary.sd / count.sqrt(),
+                })
+            })
+            .collect()
     }
 
     /// The flights of the tracked shots, each at its own place.

@@ -1,13 +1,14 @@
 //! Plots of measured shots and of what was fitted to them.
 
 use super::axes::Axes;
-use super::svg::{Anchor, FAINT, INK, Plot, Svg};
+use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::fitting::{
     CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, Values, landing_of, nominal_of,
     release_of_landing,
 };
 use crate::units::{DEGREE_RAD, UnitSystem};
 use rayon::prelude::*;
+use std::ops::Range;
 
 const MADE: &str = "#0072b2";
 const MISSED: &str = "#d55e00";
@@ -18,12 +19,20 @@ const OUTSIDE: [u8; 4] = [250, 250, 250, 255];
 const ZONE_CELLS: (usize, usize) = (72, 72);
 /// Two-dimensional normal: 95 % are within this many standard deviations.
 const RADIUS_95: f64 = 2.447_747;
+/// More sessions than this are not named in a plot.
+const MOST_NAMED_SESSIONS: usize = 8;
 /// Points of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
-/// All plots of a fit at its first place.
+/// All plots of a fit at its first place. `sessions` has the session of each shot; empty texts where
+/// there is none.
 #[must_use]
-pub fn all(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Vec<Plot> {
+pub fn all(
+    fit: &ShooterFit,
+    shots: &[MeasuredRelease],
+    sessions: &[String],
+    units: UnitSystem,
+) -> Vec<Plot> {
     let mut plots = vec![
         release_scatter(fit, shots, units),
         make_zone(fit, shots, units),
@@ -31,7 +40,7 @@ pub fn all(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Ve
     if !fit.makes.bins.is_empty() {
         plots.push(reliability(fit));
     }
-    plots.extend([drift(fit, shots, units), intervals(fit, units)]);
+    plots.extend([drift(fit, shots, sessions, units), intervals(fit, units)]);
     plots
 }
 
@@ -132,19 +141,21 @@ fn release_scatter(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSyste
     let labels = [
         &speed_label,
         "pitch angle (deg)",
-        "aim from the line to the hoop (deg, + left)",
+        "aim from the line to the hoop (deg, left is +)",
     ];
     for (panel, (i, j)) in [(0, 1), (2, 0)].into_iter().enumerate() {
         let curve = ellipse(fit, (i, j));
+        let x = range(
+            shots
+                .iter()
+                .map(|s| display(i, s.values[i]))
+                .chain(curve.iter().map(|p| display(i, p.0))),
+        );
+        // What went to the left is on the left.
         let axes = Axes {
             corner: (80.0 + 480.0 * panel as f64, 70.0),
             size: (380.0, 320.0),
-            x: range(
-                shots
-                    .iter()
-                    .map(|s| display(i, s.values[i]))
-                    .chain(curve.iter().map(|p| display(i, p.0))),
-            ),
+            x: if i == 2 { (x.1, x.0) } else { x },
             y: range(
                 shots
                     .iter()
@@ -313,7 +324,12 @@ fn landing_ellipse(fit: &ShooterFit, inch: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot {
+fn drift(
+    fit: &ShooterFit,
+    shots: &[MeasuredRelease],
+    sessions: &[String],
+    units: UnitSystem,
+) -> Plot {
     let (long, metre) = units.length();
     let speed = format!("speed ({long}/s)");
     let rows = [
@@ -326,8 +342,9 @@ fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot
         (20.0, 26.0),
         16.0,
         Anchor::Start,
-        "Over the session: each shot less the mean of its place",
+        "The shots in their order: each less the mean of its place",
     );
+    let runs = runs_of_equal(sessions);
     let window = (shots.len() / 8).clamp(5, 50);
     for (panel, (i, label, unit)) in rows.into_iter().enumerate() {
         let deviations: Vec<f64> = shots
@@ -348,15 +365,28 @@ fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot
                 shot.made,
             );
         }
-        let smooth = (0..deviations.len()).map(|k| {
-            let from = k.saturating_sub(window / 2);
-            let part = &deviations[from..(k + window / 2 + 1).min(deviations.len())];
-            axes.pixel((k as f64 + 1.0, part.iter().sum::<f64>() / part.len() as f64))
-        });
-        svg.polyline(
-            smooth,
-            &format!("stroke=\"{INK}\" stroke-width=\"1.5\" fill=\"none\""),
-        );
+        // A mean does not reach from one session into the next.
+        for run in &runs {
+            let smooth = run.clone().map(|k| {
+                let from = k.saturating_sub(window / 2).max(run.start);
+                let part = &deviations[from..(k + window / 2 + 1).min(run.end)];
+                axes.pixel((k as f64 + 1.0, part.iter().sum::<f64>() / part.len() as f64))
+            });
+            svg.polyline(
+                smooth,
+                &format!("stroke=\"{INK}\" stroke-width=\"1.5\" fill=\"none\""),
+            );
+            if runs.len() == 1 || runs.len() > MOST_NAMED_SESSIONS {
+                continue;
+            }
+            let (x, top) = axes.pixel((run.start as f64 + 0.5, axes.y.1));
+            let style = format!("stroke=\"{INK}\" stroke-dasharray=\"4 3\" fill=\"none\"");
+            svg.polyline([(x, top), (x, top + axes.size.1)], &style);
+            if panel == 0 {
+                let name = shortened(&sessions[run.start], 16);
+                svg.text((x + 4.0, top + 13.0), 11.0, Anchor::Start, &name);
+            }
+        }
         axes.draw(&mut svg, label, if panel == 2 { "shot" } else { "" }, "");
     }
     key(
@@ -366,6 +396,18 @@ fn drift(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot
         &format!("mean of {window} shots"),
     );
     named(fit, "drift", "the shots in their order", svg)
+}
+
+/// The runs of equal texts.
+fn runs_of_equal(texts: &[String]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (k, text) in texts.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if texts[run.start] == *text => run.end = k + 1,
+            _ => runs.push(k..k + 1),
+        }
+    }
+    runs
 }
 
 fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {

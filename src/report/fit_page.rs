@@ -46,10 +46,14 @@ pub fn fit_page(
             height_above_hoop_m: profile.height_above_hoop_m(),
             units,
         },
-        tables: vec![parameter_table(fit, units)],
+        tables: vec![parameter_table(fit, source.kind, units)],
         plots,
         footer: format!(
-            "bankshot {} ({}), profile {}.",
+            "Measured in {}; tracker {} (its noise is {}), physics {}. bankshot {} ({}), profile {}.",
+            source.file,
+            source.tracker.0,
+            source.tracker.1,
+            source.physics,
             env!("CARGO_PKG_VERSION"),
             env!("BANKSHOT_COMMIT"),
             &profile.hash()[..12]
@@ -85,12 +89,12 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
     )
 }
 
-fn parameter_table(fit: &ShooterFit, units: UnitSystem) -> HtmlTable {
+fn parameter_table(fit: &ShooterFit, kind: &str, units: UnitSystem) -> HtmlTable {
     let columns = ["parameter", "unit", "mean", "2.5 %", "97.5 %", "source"];
     HtmlTable {
         caption: "What was fitted".to_owned(),
         columns: columns.map(str::to_owned).to_vec(),
-        rows: parameters(&fit.posterior, units)
+        rows: parameters(&fit.posterior, kind, units)
             .into_iter()
             .map(|parameter| {
                 let interval = parameter.interval;

@@ -23,7 +23,11 @@ fn fit(file: &str, folder: &Path, flags: &[&str]) -> Answer {
 #[test]
 fn contract_each_kind_of_measurement_gives_a_profile() {
     let folder = TempDir::new().unwrap();
-    for file in ["lab", "gym_sensor", "optical_tracking"] {
+    for (file, source) in [
+        ("lab", "measured"),
+        ("gym_sensor", "from landings"),
+        ("optical_tracking", "from trajectories"),
+    ] {
         let out = folder.path().join(file);
         let answer = fit(&format!("docs/data/{file}.csv"), &out, &["--json"])
             .exits(0)
@@ -41,7 +45,7 @@ fn contract_each_kind_of_measurement_gives_a_profile() {
                 low - margin < truth && truth < high + margin,
                 "{file} {name} {low} {high}"
             );
-            assert_eq!(found["source"], "measured");
+            assert_eq!(found["source"], source);
         }
         let p = &answer["probability"];
         assert!(p["low"].as_f64().unwrap() < p["high"].as_f64().unwrap());
@@ -253,6 +257,81 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     );
 }
 
+/// The folder of a fit holds what its file tells.
+#[test]
+fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let rows: Vec<&str> = rows.lines().collect();
+    let paths = ["a", "b"].map(|name| folder.path().join(format!("{name}.csv")));
+    for (path, part) in paths.iter().zip([&rows[..30], &rows[30..]]) {
+        fs::write(path, format!("{header}\n{}\n", part.join("\n"))).unwrap();
+    }
+    let compare = |first: &Path, second: &Path, flags: &[&str]| {
+        let mut command = bankshot();
+        command.arg("compare-sessions").args([first, second]);
+        Answer::of(command.args(["--json", "--quiet"]).args(flags))
+    };
+    let of_files = compare(&paths[0], &paths[1], &[]).exits(0).json();
+    let folders = ["a", "b"].map(|name| folder.path().join(name));
+    for (path, out) in paths.iter().zip(&folders) {
+        fit(path.to_str().unwrap(), out, &[]).exits(0);
+    }
+    let of_folders = compare(&folders[0], &folders[1], &[]).exits(0).json();
+    assert_eq!(of_files["changes"], of_folders["changes"]);
+    let mixed = compare(&folders[0], &paths[1], &[]).exits(0).json();
+    assert_eq!(of_files["changes"], mixed["changes"]);
+    let p = &of_files["changes"][0];
+    let grew = p["probability_of_growth"].as_f64().unwrap();
+    assert!(p["name"] == "P" && (0.0..=1.0).contains(&grew), "{p}");
+    let of_nba = folder.path().join("nba");
+    fit(paths[1].to_str().unwrap(), &of_nba, &["--physics", "nba"]).exits(0);
+    compare(&folders[0], &of_nba, &[])
+        .exits(2)
+        .says("fitted with different physics");
+}
+
+/// A sensor that tells speeds beside the landings: what it says more than they give is said.
+#[test]
+fn contract_speeds_beside_landings_are_compared_with_them() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let plain = fit("docs/data/gym_sensor.csv", &out, &["--json"])
+        .exits(0)
+        .json();
+    let mean = |fit: &serde_json::Value, name: &str| {
+        let listed = fit["parameters"].as_array().unwrap();
+        let found = listed.iter().find(|parameter| parameter["name"] == name);
+        found.unwrap()["mean"].as_f64().unwrap()
+    };
+    let speed_ft_s = mean(&plain, "speed_mean");
+    let text = fs::read_to_string("docs/data/gym_sensor.csv").unwrap();
+    let mut lines = text.lines();
+    let mut with_speed = format!("{},speed_ft_s\n", lines.next().unwrap());
+    for line in lines {
+        with_speed += &format!("{line},{:.3}\n", speed_ft_s + 0.5);
+    }
+    let path = folder.path().join("with_speed.csv");
+    fs::write(&path, with_speed).unwrap();
+    let answer = fit(path.to_str().unwrap(), &out, &["--json"])
+        .exits(0)
+        .json();
+    let found = &answer["measured_less_from_landings"][0];
+    assert!(
+        (found["mean"].as_f64().unwrap() - 0.5).abs() < 0.05,
+        "{found}"
+    );
+    assert_eq!(found["unit"], "ft/s");
+    assert_eq!(answer["parameters"], plain["parameters"]);
+    let said = fit(path.to_str().unwrap(), &out, &[]).exits(0);
+    assert!(
+        said.stdout().contains("speed_ft_s says +0."),
+        "{}",
+        said.stdout()
+    );
+}
+
 #[test]
 fn contract_design_says_what_a_test_will_tell() {
     let flags = [
@@ -290,4 +369,19 @@ fn contract_design_says_what_a_test_will_tell() {
             "{text}"
         );
     }
+    // A target is met by a row of its own.
+    let json = Answer::of(
+        bankshot()
+            .args(["design", "configs/free_throw.toml", "--quiet", "--json"])
+            .args(flags)
+            .args(["--target", "4"]),
+    );
+    let answer = json.exits(0).json();
+    let tests = answer["tests"].as_array().unwrap();
+    let row = tests
+        .iter()
+        .find(|row| row["shots"] == answer["target"]["shots"])
+        .unwrap();
+    let error = row["probability_error"].as_f64().unwrap();
+    assert!((error / 0.04 - 1.0).abs() < 0.2, "{answer}");
 }

@@ -11,6 +11,7 @@ use crate::fitting::{
     likelihood_curve,
 };
 use crate::measured_shots::read::ShooterShots;
+use crate::model::{Preset, SolidId};
 use crate::output::atomic_file;
 use crate::output::fit_files::draws_table::draws_parquet;
 use crate::output::fit_files::fit_json::fit_json;
@@ -314,7 +315,7 @@ fn default_folder(shots: &Path) -> PathBuf {
     Path::new("results").join(format!("{}-fit", run_folder::safe_name(&stem)))
 }
 
-pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, names_rows: bool) {
+pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only: bool) {
     if shots.rejected.is_empty() {
         return;
     }
@@ -323,20 +324,20 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, names_r
     } else {
         format!("{}: ", shots.name)
     };
-    if names_rows {
-        for (row, reason) in shots.rejected.iter().take(MOST_NAMED) {
-            print_remark(&format!(
-                "{}: {} {row}: {reason}",
-                file.file.display(),
-                file.row_name
-            ));
-        }
-        if shots.rejected.len() > MOST_NAMED {
-            print_remark(&format!(
-                "... and {} more (all are in shots.csv)",
-                shots.rejected.len() - MOST_NAMED
-            ));
-        }
+    // Of several shooters, fewer of each.
+    let most_named = if is_only { MOST_NAMED } else { 3 };
+    for (row, reason) in shots.rejected.iter().take(most_named) {
+        print_remark(&format!(
+            "{}: {} {row}: {reason}",
+            file.file.display(),
+            file.row_name
+        ));
+    }
+    if shots.rejected.len() > most_named {
+        print_remark(&format!(
+            "... and {} more (all are in shots.csv)",
+            shots.rejected.len() - most_named
+        ));
     }
     print_remark(&format!(
         "{of}{} shots are used, {} were kept out",
@@ -374,7 +375,7 @@ fn write(
         let path = folder.join(name);
         atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
     }
-    let plots = measured_shots::all(fit, &shots.shots, units);
+    let plots = measured_shots::all(fit, &shots.shots, &shots.sessions, units);
     plot_files::write(&folder.join("plots"), &plots)?;
     let page = fit_page(fit, &source, plots, units);
     let html = page.html()?;
@@ -415,7 +416,7 @@ fn answer(
     Ok(())
 }
 
-/// What the shots say of a parameter that was not measured.
+/// What the shots say of a parameter that was not measured, and how to use it.
 fn free_parameter(
     name: &str,
     file: &MeasuredFile,
@@ -428,12 +429,11 @@ fn free_parameter(
         let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
         return Ok(match found {
             Some((best, [low, high])) => format!(
-                "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n",
+                "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n{}",
                 tracks.len(),
                 file.physics_name,
-                file.with_drag(file.physics.air.drag_coefficient)
-                    .air
-                    .drag_coefficient
+                file.physics.air.drag_coefficient,
+                physics_with(file, &format!("drag_coefficient = {best:.3}"))
             ),
             None => "drag_coefficient  these flights cannot tell\n".to_owned(),
         });
@@ -451,10 +451,29 @@ fn free_parameter(
         UnseenParameter::Backspin => (" rev/s", REV_RAD),
         UnseenParameter::HoopRestitution => ("", 1.0),
     };
+    let best = curve.best / size;
+    let (fitted_with, use_it) = match parameter {
+        UnseenParameter::Backspin => (
+            format!(
+                "the fit's mean is {:.2} rev/s",
+                fit.typical.means[0][3] / REV_RAD
+            ),
+            format!(
+                "This fit did not use it. To use it, fit again with --backspin '{best:.2} rev/s'.\n"
+            ),
+        ),
+        UnseenParameter::HoopRestitution => (
+            format!(
+                "the physics {} has {:.2}",
+                file.physics_name,
+                file.physics.restitution_on(SolidId::Ring)
+            ),
+            physics_with(file, &format!("hoop_restitution = {best:.2}")),
+        ),
+    };
     let [low, high] = curve.interval.map(|end| end / size);
     let mut text = format!(
-        "{name}  {:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}\n",
-        curve.best / size,
+        "{name}  {best:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}; {fitted_with}\n",
         if curve.is_decided {
             ""
         } else {
@@ -467,5 +486,23 @@ fn free_parameter(
             value / size
         );
     }
+    if curve.is_decided && !(parameter == UnseenParameter::Backspin && is_measured) {
+        text += &use_it;
+    }
     Ok(text)
+}
+
+/// How the fit is made with another constant of the physics.
+fn physics_with(file: &MeasuredFile, line: &str) -> String {
+    if Preset::named(&file.physics_name).is_some() {
+        format!(
+            "This fit did not use it. To use it, write a file with these lines, and fit again with --physics FILE:\n  [physics]\n  preset = \"{}\"\n  {line}\n",
+            file.physics_name
+        )
+    } else {
+        format!(
+            "This fit did not use it. To use it, write {line} into [physics] of {}, and fit again.\n",
+            file.physics_name
+        )
+    }
 }

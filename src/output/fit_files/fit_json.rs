@@ -1,7 +1,9 @@
 //! `fit.json`: a fit for programs.
 
-use super::parameters::parameters;
-use crate::fitting::{DrawProbabilities, Interval, ShooterFit, Wilson};
+use super::parameters::{parameters, value_units};
+use crate::fitting::{
+    DrawProbabilities, Interval, ReleaseDifference, ShooterFit, VALUE_NAMES, Wilson,
+};
 use crate::output::json_object::{Record, number, object, provenance};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use serde_json::Value;
@@ -23,6 +25,8 @@ pub struct FitSource<'a> {
     pub seed: u64,
     /// Rows kept out, and why.
     pub rejected: &'a [(u64, String)],
+    /// Releases that were measured beside the landings.
+    pub differences: &'a [ReleaseDifference],
 }
 
 fn named(name: &str, value: Value) -> (String, Value) {
@@ -64,15 +68,17 @@ fn wilson_json(wilson: &Wilson) -> Value {
 pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> Value {
     let posterior = &fit.posterior;
     let (long, metre) = units.length();
-    let listed = parameters(posterior, units).into_iter().map(|parameter| {
-        let mut record = vec![
-            named("name", parameter.name.into()),
-            named("unit", parameter.unit.into()),
-        ];
-        record.extend(interval_json(&parameter.interval));
-        record.push(named("source", parameter.source.into()));
-        object(record)
-    });
+    let listed = parameters(posterior, source.kind, units)
+        .into_iter()
+        .map(|parameter| {
+            let mut record = vec![
+                named("name", parameter.name.into()),
+                named("unit", parameter.unit.into()),
+            ];
+            record.extend(interval_json(&parameter.interval));
+            record.push(named("source", parameter.source.into()));
+            object(record)
+        });
     let places = fit.places.iter().zip(&fit.probabilities).map(|(place, p)| {
         object(vec![
             named(
@@ -114,6 +120,18 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             named("reason", reason.clone().into()),
         ])
     });
+    let of_value = value_units(units);
+    let differences = source.differences.iter().map(|difference| {
+        let (unit, size) = of_value[difference.value];
+        object(vec![
+            named("column", difference.column.clone().into()),
+            named("name", VALUE_NAMES[difference.value].into()),
+            named("unit", unit.into()),
+            named("shots", difference.shots.into()),
+            named("mean", number(difference.mean / size)),
+            named("standard_error", number(difference.standard_error / size)),
+        ])
+    });
     let weights = ["speed_sd", "pitch_sd", "polar_sd", "backspin_sd"]
         .iter()
         .zip(posterior.prior_weights)
@@ -127,6 +145,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         named("places", places.collect()),
         named("shots", posterior.shots.into()),
         named("rejected", rejected.collect()),
+        named("measured_less_from_landings", differences.collect()),
         named(
             "warnings",
             fit.warnings

@@ -1,8 +1,8 @@
 //! The answer of `fit` for people.
 
 use super::fit_json::FitSource;
-use super::parameters::parameters;
-use crate::fitting::{DrawProbabilities, ShooterFit};
+use super::parameters::{parameters, value_units};
+use crate::fitting::{DrawProbabilities, ShooterFit, VALUE_NAMES};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
 /// A probability as a percentage.
@@ -65,6 +65,13 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             makes.expected,
             makes.expected_sd
         );
+        if makes.labelled < posterior.shots {
+            text += &format!(
+                "        {} of the {} shots have no result\n",
+                posterior.shots - makes.labelled,
+                posterior.shots
+            );
+        }
         let auc = makes
             .area_under_curve
             .map_or_else(|| "-".to_owned(), |auc| format!("{auc:.2}"));
@@ -77,11 +84,24 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             makes.brier, makes.log_loss
         );
     }
+    let of_value = value_units(units);
+    for difference in source.differences {
+        let (unit, size) = of_value[difference.value];
+        text += &format!(
+            "column  {} says {:+.2} \u{b1} {:.2} {unit} more {} than the landings give under {} ({} shots)\n",
+            difference.column,
+            difference.mean / size,
+            difference.standard_error / size,
+            VALUE_NAMES[difference.value],
+            source.physics,
+            difference.shots
+        );
+    }
     text += &format!(
         "\n{:<28} {:>9} {:>9} {:>9}  {:<6} {}\n",
         "", "mean", "2.5 %", "97.5 %", "unit", "source"
     );
-    for parameter in parameters(posterior, units) {
+    for parameter in parameters(posterior, source.kind, units) {
         let interval = &parameter.interval;
         text += &format!(
             "{:<28} {:>9.3} {:>9.3} {:>9.3}  {:<6} {}\n",

@@ -8,7 +8,7 @@ use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 /// The text of the profile at the first place. `physics` is the text of its `[physics]` table.
 #[must_use]
 pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &str) -> String {
-    let listed = parameters(&fit.posterior, UnitSystem::Imperial);
+    let listed = parameters(&fit.posterior, source.kind, UnitSystem::Imperial);
     let comment = |name: &str| {
         let found = listed.iter().find(|parameter| parameter.name == name);
         found.map_or_else(String::new, |parameter| {

@@ -12,7 +12,7 @@ pub struct Parameter {
     pub unit: &'static str,
     /// Its distribution, in that unit.
     pub interval: Interval,
-    /// `measured`, `given` or `assumed`.
+    /// `measured`, `from landings`, `from trajectories`, `given` or `assumed`.
     pub source: &'static str,
 }
 
@@ -34,9 +34,16 @@ pub fn value_units(units: UnitSystem) -> [(&'static str, f64); 4] {
 
 /// All parameters of a posterior: means (of further places with the number of the place), standard
 /// deviations, correlations, the tail weight (one over the degrees of freedom) where it was fitted,
-/// and the coefficients of the speed's standard deviation where there are several.
+/// and the coefficients of the speed's standard deviation where there are several. `kind` is what
+/// was measured: `releases`, `landings` or `trajectories`.
 #[must_use]
-pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
+pub fn parameters(posterior: &Posterior, kind: &str, units: UnitSystem) -> Vec<Parameter> {
+    // Releases that the flight model found under a landing or a track were not measured.
+    let release_source = match kind {
+        "landings" => "from landings",
+        "trajectories" => "from trajectories",
+        _ => "measured",
+    };
     let of_value = value_units(units);
     let measured = if posterior.spin == SpinSource::Measured {
         4
@@ -44,8 +51,8 @@ pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
         3
     };
     let source = |value: usize| {
-        if value < measured {
-            "measured"
+        if value < 3 {
+            release_source
         } else {
             posterior.spin.name()
         }
@@ -71,9 +78,13 @@ pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
         }
     }
     for (i, name) in VALUE_NAMES.iter().enumerate() {
-        // The scatter of a spin that was not measured is the population's, also where its mean was
-        // given.
-        let source = if i < measured { "measured" } else { "assumed" };
+        let source = match (i < 3, posterior.spin) {
+            (true, _) => release_source,
+            (false, SpinSource::Measured) => "measured",
+            // The scatter of a spin that was not measured is the population's, also where its
+            // mean was given.
+            (false, _) => "assumed",
+        };
         add(format!("{name}_sd"), of_value[i], source, &|draw| {
             draw.sds[i]
         });
@@ -81,15 +92,18 @@ pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
     for j in 1..measured {
         for i in 0..j {
             let name = format!("corr_{}", pair_name(i, j));
-            add(name, ("", 1.0), "measured", &|draw| {
+            add(name, ("", 1.0), release_source, &|draw| {
                 draw.correlation[(i, j)]
             });
         }
     }
     if posterior.draws.iter().any(|draw| draw.tail_weight > 0.0) {
-        add("tail_weight".to_owned(), ("", 1.0), "measured", &|draw| {
-            draw.tail_weight
-        });
+        add(
+            "tail_weight".to_owned(),
+            ("", 1.0),
+            release_source,
+            &|draw| draw.tail_weight,
+        );
     }
     let metre = units.length().1;
     let coefficients = [
@@ -111,7 +125,7 @@ pub fn parameters(posterior: &Posterior, units: UnitSystem) -> Vec<Parameter> {
             .enumerate()
             .take(posterior.growth_terms + 1)
         {
-            add(name.to_owned(), (unit, size), "measured", &|draw| {
+            add(name.to_owned(), (unit, size), release_source, &|draw| {
                 draw.speed_coefficients[k]
             });
         }
