@@ -24,8 +24,8 @@ const MOST_NAMED_SESSIONS: usize = 8;
 /// Points of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
-/// All plots of a fit at its first place. `sessions` has the session of each shot; empty texts where
-/// there is none.
+/// All plots of a fit at its first place. `sessions` has the session of each shot, with empty texts
+/// where there is none.
 #[must_use]
 pub fn all(
     fit: &ShooterFit,

@@ -43,9 +43,8 @@ impl Page {
             "{0}: {1}\n{2}: {3}\nThe shots that move are those of {0}.",
             self.title, self.answer, other.title, other.answer
         );
-        if let Some(plot) = difference {
+        if let Some(plot) = &difference {
             self.answer = format!("{}\n{}", self.answer, plot.caption);
-            self.plots.insert(0, plot);
         }
         for table in &mut self.tables {
             table.name(&self.title);
@@ -59,10 +58,20 @@ impl Page {
                 }
                 table
             }));
-        self.plots.extend(other.plots.into_iter().map(|mut plot| {
+        for plot in &mut self.plots {
+            plot.caption = format!("{}: {}", self.title, plot.caption);
+        }
+        // Each plot beside its counterpart: what is compared stands together.
+        for mut plot in other.plots {
+            plot.caption = format!("{}: {}", other.title, plot.caption);
+            let counterpart = self.plots.iter().position(|own| own.name == plot.name);
+            let place = counterpart.map_or(self.plots.len(), |index| index + 1);
             plot.name.push_str("_against");
-            plot
-        }));
+            self.plots.insert(place, plot);
+        }
+        if let Some(plot) = difference {
+            self.plots.insert(0, plot);
+        }
         self.title = format!("{} against {}", self.title, other.title);
         self.footer = format!("{} {}", self.footer, other.footer);
     }
@@ -108,9 +117,28 @@ fn figure_html(plot: &Plot) -> String {
     // Writing to a String never fails.
     let _ = write!(
         html,
-        "<figure class=\"wide\">\n{svg}<figcaption>{caption}</figcaption>\n</figure>\n"
+        "<figure class=\"wide\" style=\"--aspect: {:.3}\">\n{svg}<figcaption>{caption}</figcaption>\n\
+         </figure>\n",
+        aspect(&plot.svg)
     );
     html
+}
+
+/// Width over height of a drawing, by its `viewBox`; 1 without one.
+fn aspect(svg: &str) -> f64 {
+    let view_box = svg
+        .split_once("viewBox=\"")
+        .and_then(|(_, rest)| rest.split_once('"'))
+        .map_or("", |(numbers, _)| numbers);
+    let sides: Vec<f64> = view_box
+        .split(' ')
+        .skip(2)
+        .filter_map(|side| side.parse().ok())
+        .collect();
+    match sides[..] {
+        [width, height] if height > 0.0 => width / height,
+        _ => 1.0,
+    }
 }
 
 /// Replaces each `{{name}}` of a template by its part. One pass over the template: braces inside a

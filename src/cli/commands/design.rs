@@ -37,7 +37,7 @@ pub(crate) struct DesignOptions {
     /// The tracker: lab, noah, optical_25hz or optical_60hz.
     #[arg(long, value_name = "NAME", default_value = "lab")]
     pub(crate) tracker: String,
-    /// Also ask how many shots make P known to this many points (one standard deviation), such as 3.
+    /// Also ask how many shots make P known to this many points (one standard deviation).
     #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
     pub(crate) target: Option<f64>,
     /// Print one JSON object.
