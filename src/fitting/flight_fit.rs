@@ -7,7 +7,7 @@
 //! in a row are not where the ball would be.
 
 use super::measured_release::{Covariance, Place, Values};
-use super::tracker::TrackerNoise;
+use super::tracker_noise::TrackerNoise;
 use crate::dynamics::Simulator;
 use crate::math::vector::Vec3;
 use crate::model::{BallState, Physics};
@@ -553,7 +553,7 @@ pub fn fit_drag_coefficient(
 #[cfg(test)]
 mod tests {
     use super::super::landing::start_of;
-    use super::super::tracker::Tracker;
+    use super::super::tracker_noise::Tracker;
     use super::*;
     use crate::math::normal_distribution::quantile;
     use crate::model::Preset;

@@ -20,14 +20,14 @@ mod flight_fit;
 mod interval;
 mod landing;
 mod measured_release;
-mod parameter_from_makes;
 mod posterior;
 mod prior;
 mod session_comparison;
 mod shooter_fit;
 mod student_posterior;
 mod test_design;
-mod tracker;
+mod tracker_noise;
+mod unmeasured_parameter_likelihood;
 
 pub use advice::{
     Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
@@ -48,10 +48,10 @@ pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_
 pub use measured_release::{
     Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,
 };
-pub use parameter_from_makes::{LikelihoodCurve, UnseenParameter, likelihood_curve};
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
 pub use prior::{PopulationPrior, Spread};
 pub use session_comparison::{SessionComparison, compare_probabilities, compare_sessions};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};
-pub use tracker::{Tracker, TrackerNoise};
+pub use tracker_noise::{Tracker, TrackerNoise};
+pub use unmeasured_parameter_likelihood::{LikelihoodCurve, UnseenParameter, likelihood_curve};

@@ -1,8 +1,8 @@
 //! Measured shots of a file, by shooter.
 
+use super::column_map_proposal::map_proposal;
 use super::columns::{Columns, Label, Quantity, QuantityColumn, parse_made};
 use super::court_frame::CourtFrame;
-use super::map_proposal::map_proposal;
 use super::table::Table;
 use crate::dynamics::Simulator;
 use crate::fitting::{

@@ -8,7 +8,7 @@ use super::svg::{Anchor, Plot, Svg};
 use super::sweep_results::SweepResults;
 use crate::analysis::sensitivity::Difference;
 use crate::sweep::columns;
-use crate::sweep::place_chances::{PlaceChances, Preference};
+use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 use crate::units::UnitSystem;
 
 /// y of the map, px.
@@ -35,7 +35,7 @@ pub struct PlayerPoster {
 /// Draws the poster of a player; `None` if nothing can be made from any place.
 #[must_use]
 pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
-    let found: Vec<(f64, &PlaceChances)> = results
+    let found: Vec<(f64, &PlaceProbabilities)> = results
         .chances()
         .iter()
         .filter_map(|place| Some((place.best()?.value, place)))
@@ -45,10 +45,10 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let best = best.fold(first, |a, b| if b.0 > a.0 { b } else { a });
     let worst = found.iter().copied();
     let worst = worst.fold(first, |a, b| if b.0 < a.0 { b } else { a });
-    let is_bank = |place: &PlaceChances| place.preference() == Some(Preference::Bank);
-    let at = |place: &PlaceChances| (place.place.x_m, place.place.y_m);
+    let is_bank = |place: &PlaceProbabilities| place.preference() == Some(Preference::Bank);
+    let at = |place: &PlaceProbabilities| (place.place.x_m, place.place.y_m);
     let bank = results.chances().iter().filter(|place| is_bank(place));
-    let bank: Vec<&PlaceChances> = bank.collect();
+    let bank: Vec<&PlaceProbabilities> = bank.collect();
     let outlined: Vec<(f64, f64)> = bank.iter().map(|place| at(place)).collect();
     let numbers: Vec<((f64, f64), String, bool)> = found
         .iter()
@@ -112,8 +112,8 @@ fn pale(p: f64) -> Rgb {
 }
 
 /// Where banking helps most, and how to.
-fn bank_in_words(bank: &[&PlaceChances], units: UnitSystem) -> String {
-    let gain = |place: &PlaceChances| place.bank_gain().map_or(1.0, |gain| gain.value);
+fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
+    let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
     let most = bank
         .iter()
         .reduce(|a, b| if gain(b) > gain(a) { b } else { a });

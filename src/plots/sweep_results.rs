@@ -10,7 +10,7 @@ use crate::model::league_courts::Court;
 use crate::sweep::bank_direct_difference::is_significant;
 use crate::sweep::columns;
 use crate::sweep::job_list::Jobs;
-use crate::sweep::place_chances::PlaceChances;
+use crate::sweep::probability_by_place::PlaceProbabilities;
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::{CourtPlace, Region, SweepConfig};
 use crate::units::UnitSystem;
@@ -40,7 +40,7 @@ pub struct SweepResults<'a> {
     config: &'a SweepConfig,
     court: Court,
     places: Vec<PlaceResults>,
-    chances: Vec<PlaceChances>,
+    chances: Vec<PlaceProbabilities>,
     kinds: Vec<ShotKind>,
 }
 
@@ -70,7 +70,7 @@ impl<'a> SweepResults<'a> {
             config,
             court: config.league.court(),
             places,
-            chances: PlaceChances::of_sweep(config, rows),
+            chances: PlaceProbabilities::of_sweep(config, rows),
             kinds: jobs.kinds,
         }
     }
@@ -80,7 +80,7 @@ impl<'a> SweepResults<'a> {
     }
 
     /// The chances at each place.
-    pub(super) fn chances(&self) -> &[PlaceChances] {
+    pub(super) fn chances(&self) -> &[PlaceProbabilities] {
         &self.chances
     }
 

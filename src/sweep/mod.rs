@@ -15,7 +15,7 @@ pub mod finished_jobs;
 mod folder_error;
 pub mod job_list;
 mod manifest;
-pub mod place_chances;
+pub mod probability_by_place;
 mod region_toml;
 pub mod result_row;
 pub mod run;

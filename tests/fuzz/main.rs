@@ -5,7 +5,7 @@
 //! --release --test fuzz -- --nocapture` is the campaign of `docs/reliability.md`; its random
 //! numbers differ from run to run, unless `BANKSHOT_FUZZ_SEED` (0 to 255) fixes them.
 
-mod mutation;
+mod text_mutation;
 
 use bankshot::best_shot::ShotKind;
 use bankshot::config::{parse_locations, parse_physics, parse_profile};
@@ -19,12 +19,12 @@ use bankshot::sweep::CourtPlace;
 use bankshot::sweep::result_row::ResultRow;
 use bankshot::sweep::sqlite_results::{self, ResultStore};
 use bankshot::sweep::sweep_toml::{SourceTexts, named_files, parse_sweep};
-use mutation::Script;
 use parquet::basic::Type as Physical;
 use proptest::test_runner::{Config as ProptestConfig, RngAlgorithm, TestRng, TestRunner};
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+use text_mutation::Script;
 
 const PROFILES: [&str; 4] = [
     include_str!("../../configs/free_throw.toml"),

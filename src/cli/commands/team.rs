@@ -19,7 +19,7 @@ use crate::report::poster_page::poster_page;
 use crate::shooter::Profile;
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
-use crate::sweep::place_chances::{PlaceChances, Preference};
+use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::sweep_toml::parse_sweep;
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -165,18 +165,18 @@ const MOST_BANK_PLACES: usize = 5;
 /// A player's finished sweep.
 struct PlayerSweep {
     name: String,
-    places: Vec<PlaceChances>,
+    places: Vec<PlaceProbabilities>,
 }
 
 impl PlayerSweep {
     /// The places where a bank shot is better, those with the greatest gain first.
-    fn bank_places(&self) -> Vec<&PlaceChances> {
-        let mut places: Vec<&PlaceChances> = self
+    fn bank_places(&self) -> Vec<&PlaceProbabilities> {
+        let mut places: Vec<&PlaceProbabilities> = self
             .places
             .iter()
             .filter(|place| place.preference() == Some(Preference::Bank))
             .collect();
-        let gain = |place: &PlaceChances| place.bank_gain().map_or(1.0, |gain| gain.value);
+        let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
         places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
         places
     }
@@ -216,7 +216,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         write_pictures(folder, &name, &config, &rows)?;
         players.push(PlayerSweep {
             name,
-            places: PlaceChances::of_sweep(&config, &rows),
+            places: PlaceProbabilities::of_sweep(&config, &rows),
         });
     }
     let csv = team_csv(&players, units);
@@ -329,7 +329,7 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     ];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     for (number, player) in players.iter().enumerate() {
-        let found = player.places.iter().filter_map(PlaceChances::best);
+        let found = player.places.iter().filter_map(PlaceProbabilities::best);
         let found: Vec<f64> = found.map(|p| p.value).collect();
         let mean = found.iter().sum::<f64>() / found.len().max(1) as f64;
         let own = best.iter().filter(|of| **of == Some(number)).count();

@@ -1,7 +1,7 @@
 //! A batch that is being simulated, and what its phases share.
 
-use super::lane_block::LaneBlock;
 use super::workspace::{BatchWorkspace, Phase};
+use super::world_frame_block::WorldFrameBlock;
 use crate::dynamics::end_rules::{ShotLimits, first_ending};
 use crate::dynamics::integrators::event_driven::{self, MAX_PHASES};
 use crate::dynamics::outcome::Ending;
@@ -62,7 +62,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
 
     /// Fills the free lanes with shots that wait for `phase`.
     #[inline(always)]
-    pub(super) fn refill<T: SimdReal<Simd = S>>(&mut self, block: &mut LaneBlock, phase: Phase) {
+    pub(super) fn refill<T: SimdReal<Simd = S>>(
+        &mut self,
+        block: &mut WorldFrameBlock,
+        phase: Phase,
+    ) {
         let free = T::ALL & !block.occupied();
         let (slots, queue) = self.workspace.slots_and_queue(phase);
         block.fill(free, self.params, slots, || queue.pop());
@@ -74,7 +78,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     pub(super) fn should_suspend<T: SimdReal<Simd = S>>(
         &self,
-        block: &LaneBlock,
+        block: &WorldFrameBlock,
         phase: Phase,
     ) -> bool {
         block.occupied() != T::ALL && self.workspace.other_phase_fills(Wide::<S>::LANES, phase)

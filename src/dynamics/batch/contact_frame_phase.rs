@@ -1,9 +1,9 @@
 //! The contacts of a batch with one solid: the shots of a block step together.
 
 use super::batch_state::Batch;
-use super::contact_block::{ContactBlock, ContactShots};
-use super::lane_block::{bit, lanes_in};
+use super::contact_frame_block::{ContactFrameBlock, ContactShots};
 use super::workspace::Phase;
+use super::world_frame_block::{bit, lanes_in};
 use crate::dynamics::contact::contact_frame_step::Contact;
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::{GapAtEnd, has_arrived, passed};
@@ -50,7 +50,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             solid,
             oscillator,
         };
-        let mut block = ContactBlock::<T::Element>::new(A::ID);
+        let mut block = ContactFrameBlock::<T::Element>::new(A::ID);
         loop {
             let free = T::ALL & !block.occupied();
             let (slots, queue) = self.workspace.slots_and_queue(phase);
@@ -77,7 +77,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     fn finish_contacts<E: LaneElement>(
         &mut self,
-        block: &mut ContactBlock<E>,
+        block: &mut ContactFrameBlock<E>,
         other: SolidId,
         result: &StepResult,
     ) {
@@ -121,7 +121,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
 fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
     contact: &Contact<'_, T, A>,
     other: &B,
-    block: &mut ContactBlock<T::Element>,
+    block: &mut ContactFrameBlock<T::Element>,
     simd: T::Simd,
     given_up: LaneBits,
 ) -> StepResult {

@@ -1,8 +1,8 @@
 //! The free flights of a batch that are parabolas, a block at a time.
 
 use super::batch_state::Batch;
-use super::lane_block::{LaneBlock, LaneShots, bit, lanes_in, set_bit};
 use super::workspace::Phase;
+use super::world_frame_block::{LaneShots, WorldFrameBlock, bit, lanes_in, set_bit};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
 use crate::dynamics::flight::FlightEvents;
@@ -49,7 +49,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_all<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
         let queue = self.workspace.take_flights();
-        let mut block = LaneBlock::new();
+        let mut block = WorldFrameBlock::new();
         for slots in queue.chunks(T::LANES) {
             // Lanes without a shot repeat the last one.
             let last = slots[slots.len() - 1];
@@ -67,7 +67,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     fn fly_first_arcs<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();
-        let mut block = LaneBlock::new();
+        let mut block = WorldFrameBlock::new();
         loop {
             let shots = self.workspace.next_starts(T::LANES);
             if shots.is_empty() {
@@ -86,7 +86,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     pub(super) fn finish_first_flights(
         &mut self,
-        block: &mut LaneBlock,
+        block: &mut WorldFrameBlock,
         (first, starts): (usize, &[BallState]),
         ended: LaneBits,
         end: &FlightEnd,
@@ -130,7 +130,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_lanes<T: SimdReal<Simd = S, Element = f64>>(
         &self,
         params: &ModelParams<T>,
-        block: &mut LaneBlock,
+        block: &mut WorldFrameBlock,
     ) -> FlightEnd {
         let mut shots = block.load::<T>(self.simd);
         block.leave_ring(self.simd, params, &mut shots.state);
@@ -162,7 +162,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     pub(super) fn finish_flights(
         &mut self,
-        block: &mut LaneBlock,
+        block: &mut WorldFrameBlock,
         slots: &[u32],
         real_lanes: LaneBits,
         end: &FlightEnd,
@@ -241,7 +241,7 @@ impl FlightEnd {
 #[inline(always)]
 pub(super) fn store_ring_motions<T: SimdReal<Element = f64>>(
     params: &ModelParams<T>,
-    block: &mut LaneBlock,
+    block: &mut WorldFrameBlock,
     shots: &LaneShots<T>,
     end: &FlightEnd,
 ) {

@@ -2,9 +2,9 @@
 //! (Flights with lift are left to the scalar code.)
 
 use super::batch_state::Batch;
-use super::lane_block::{LaneBlock, LaneShots};
 use super::parabola_flight_phase::{FlightEnd, store_ring_motions};
 use super::workspace::Phase;
+use super::world_frame_block::{LaneShots, WorldFrameBlock};
 use crate::dynamics::end_rules::rose_to_ring;
 use crate::dynamics::flight::{drag_segment, far_segment, is_far};
 use crate::math::real::{Mask, SimdReal};
@@ -40,8 +40,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();
         let mut queue = self.workspace.take_flights();
-        let mut first_flights = LaneBlock::new();
-        let mut later_flights = LaneBlock::new();
+        let mut first_flights = WorldFrameBlock::new();
+        let mut later_flights = WorldFrameBlock::new();
         loop {
             let numbers = self.workspace.next_starts(T::LANES);
             let starts = &starts[numbers.clone()];

@@ -1,8 +1,8 @@
 //! The contacts of a batch in the world frame: on a bracket, on an edge, on board and ring at once.
 
 use super::batch_state::Batch;
-use super::lane_block::{LaneBlock, bit, lanes_in};
 use super::workspace::Phase;
+use super::world_frame_block::{WorldFrameBlock, bit, lanes_in};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::contact::other_solid_touch::approach_in_world;
 use crate::dynamics::contact::world_frame_step::{self, WorldContact};
@@ -48,7 +48,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn contacts_in_world<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
         let phase = Phase::InWorld;
-        let mut block = LaneBlock::new();
+        let mut block = WorldFrameBlock::new();
         loop {
             self.refill::<T>(&mut block, phase);
             if block.occupied() == 0 {
@@ -69,7 +69,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn step_in_world<T: SimdReal<Simd = S, Element = f64>>(
         &self,
         params: &ModelParams<T>,
-        block: &mut LaneBlock,
+        block: &mut WorldFrameBlock,
         given_up: LaneBits,
     ) -> StepResult {
         let simd = self.simd;
@@ -146,7 +146,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     fn finish_contacts_in_world(
         &mut self,
-        block: &mut LaneBlock,
+        block: &mut WorldFrameBlock,
         result: &StepResult,
         given_up: LaneBits,
     ) {
@@ -186,7 +186,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     }
 
     /// Takes all shots of a block out of their lanes and queues them again.
-    fn suspend_contacts_in_world(&mut self, block: &mut LaneBlock) {
+    fn suspend_contacts_in_world(&mut self, block: &mut WorldFrameBlock) {
         for lane in lanes_in(block.occupied()) {
             let slot = block.slot(lane);
             let shot = &mut self.workspace.slots[slot as usize];

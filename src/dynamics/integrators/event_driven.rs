@@ -16,7 +16,7 @@ use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::observer::{Impulses, NO_IMPULSES, Observer};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::real::{Real, ScalarReal};
-use crate::math::single_precision::F32;
+use crate::math::scalar_f32::F32;
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{CONTACT_VALUES, ContactFrameState, Solid, TOUCH_GAP_M};

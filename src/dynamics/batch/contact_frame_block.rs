@@ -1,6 +1,6 @@
 //! The shots in contact with one solid, side by side in lanes.
 
-use super::lane_block::{bit, count_step, lanes_in, set_bit};
+use super::world_frame_block::{bit, count_step, lanes_in, set_bit};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::integrators::event_driven::ShotProgress;
@@ -13,7 +13,7 @@ type Row<E> = [E; MAX_LANES];
 
 /// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
 /// the last one, and steps on without harm.
-pub(super) struct ContactBlock<E> {
+pub(super) struct ContactFrameBlock<E> {
     solid: SolidId,
     /// The values of [`ContactFrameState`].
     motion: [Row<E>; CONTACT_VALUES],
@@ -50,7 +50,7 @@ pub(super) struct ContactShots<T: SimdReal> {
     pub(super) crossing: HoopCrossing<T>,
 }
 
-impl<E: LaneElement> ContactBlock<E> {
+impl<E: LaneElement> ContactFrameBlock<E> {
     pub(super) fn new(solid: SolidId) -> Self {
         let zeros = [E::default(); MAX_LANES];
         Self {

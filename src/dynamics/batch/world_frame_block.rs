@@ -15,7 +15,7 @@ const ZEROS: LaneArray = [0.0; MAX_F64_LANES];
 
 /// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
 /// the last one, and steps on without harm.
-pub(super) struct LaneBlock {
+pub(super) struct WorldFrameBlock {
     /// The nine state variables.
     state: [LaneArray; 9],
     /// The values of [`ContactFrameState`] of a ball that comes from the ring or has reached it.
@@ -89,7 +89,7 @@ pub(super) fn count_step(steps: &mut [u32], max_steps: u32) -> LaneBits {
     reached
 }
 
-impl LaneBlock {
+impl WorldFrameBlock {
     pub(super) fn new() -> Self {
         Self {
             state: [ZEROS; 9],

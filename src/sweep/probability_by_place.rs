@@ -56,7 +56,7 @@ impl Preference {
 
 /// A player's chances at one place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlaceChances {
+pub struct PlaceProbabilities {
     /// The place.
     pub place: CourtPlace,
     /// Its name, if the sweep gives one.
@@ -70,7 +70,7 @@ pub struct PlaceChances {
     pub board_aim_m: Option<(f64, f64)>,
 }
 
-impl PlaceChances {
+impl PlaceProbabilities {
     /// Of every place of a sweep, in order.
     #[must_use]
     pub fn of_sweep(config: &SweepConfig, rows: &BTreeMap<u64, ResultRow>) -> Vec<Self> {
