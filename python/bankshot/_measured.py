@@ -115,7 +115,7 @@ class Advice:
 
     def to_arrow(self) -> Any:
         """A row for each cause and each thing to train: its gain."""
-        parts = [("cause", self.causes), ("a tenth less scatter", self.training)]
+        parts = [("cause", self.causes), ("10 % less scatter", self.training)]
         return _tables.arrow(
             [
                 {"what": what, "of": name, "mean": e.mean, "low": e.low, "high": e.high}

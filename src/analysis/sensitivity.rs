@@ -4,7 +4,7 @@
 //! Every comparison is between two shots, or two shooters, under the same Sobol points
 //! (`probability/shared_sample.rs`). Each scramble gives a difference, and the scatter of these
 //! gives its standard error. A shooter without an error, another backspin and another height are
-//! simulated. A shooter with a tenth less of an error, and other speeds of a shot, reuse the shots
+//! simulated. A shooter with 10 % less of an error, and other speeds of a shot, reuse the shots
 //! of the nearest simulated one.
 
 use super::aim_past_hoop::with_same_aim;
@@ -306,7 +306,7 @@ impl<'a> Comparison<'a> {
         (errors, backspins, heights)
     }
 
-    /// Gain in P if the standard deviation of an error is a tenth less.
+    /// Gain in P if the standard deviation of an error is 10 % less.
     fn gain_of_a_tenth(
         &self,
         sample: &SharedSample,

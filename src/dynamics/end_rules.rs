@@ -80,8 +80,8 @@ pub(crate) fn fell_below_ring<T: Real>(params: &ModelParams<T>, state: &BallStat
     state.position_m.z.lt(-params.ring.reach) & state.velocity_m_s.z.is_negative()
 }
 
-/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -(R + r)`
-/// (r the radius of the rod). One that never rises so high ends at its highest point.
+/// Whether a flight that ended at `state`, without a touch, ended by falling through `z = -reach`.
+/// One that never rises so high ends at its highest point.
 #[inline(always)]
 pub(crate) fn rose_to_ring<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> T::Mask {
     let height = params.splat(-1.0) * params.ring.reach - TOUCH_GAP_M;

@@ -15,7 +15,10 @@
 //! | sliding | friction is `mu N`, against the slip or the slip that is about to start |
 //! | rolling | friction below `mu N` keeps the slip at zero |
 //! | at zero slip | rolling, or about to roll or slide |
-//! | solid | the board or the ring |
+//! | solid | the board, or the hoop (ring and bracket) |
+//! | core, reach | a solid is what lies within a radius of its core (a rectangle, a circle); the reach is that radius and the ball's |
+//! | a solid acts | it can exert a force on a ball at this position (the paper's board only in front of its face) |
+//! | frame | coordinates along the normal of one contact and across it |
 //! | contact on a solid | with the face of the board or the ring alone, in the frame of the contact |
 //! | contact in the world frame | with the bracket, an edge of the board, or both solids at once |
 //! | phase | one flight or one contact of a shot; a shot waits for its next phase |

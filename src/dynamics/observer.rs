@@ -23,7 +23,7 @@ pub(crate) trait Observer {
     /// A step of `dt` in contact, from the first state to the second.
     fn step(&mut self, _t: f64, _dt: f64, _states: (&BallState, &BallState), _impulses: Impulses) {}
     /// A contact ends.
-    fn part(&mut self, _t: f64, _solid: SolidId, _state: &BallState) {}
+    fn separation(&mut self, _t: f64, _solid: SolidId, _state: &BallState) {}
 }
 
 impl Observer for () {}
@@ -41,8 +41,8 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.step(t, dt, states, impulses);
         self.1.step(t, dt, states, impulses);
     }
-    fn part(&mut self, t: f64, solid: SolidId, state: &BallState) {
-        self.0.part(t, solid, state);
-        self.1.part(t, solid, state);
+    fn separation(&mut self, t: f64, solid: SolidId, state: &BallState) {
+        self.0.separation(t, solid, state);
+        self.1.separation(t, solid, state);
     }
 }

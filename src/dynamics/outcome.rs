@@ -94,8 +94,8 @@ pub enum Ending {
     Fell,
     /// The ball never rose to `z = -reach`.
     NeverRose,
-    /// The centre is behind the plane of the board's core: its face, on a board with round edges
-    /// their radius behind it.
+    /// The centre passed behind the board: its face or, with round edges, the plane one edge radius
+    /// behind the face.
     BehindBoard,
     /// The ball rolled on two solids at once for the physics' `lodged_after_s`.
     Lodged,

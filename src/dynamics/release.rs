@@ -24,8 +24,8 @@ pub struct Release {
     /// Backspin omega_beta0, about the horizontal axis across the flight, rad/s; positive is
     /// backwards.
     pub backspin_rad_s: f64,
-    /// Rifle spin omega_r0, about the level line of flight, rad/s; positive is clockwise as the
-    /// hoop sees it (the axis points from the hoop to the shooter).
+    /// Rifle spin omega_r0, about the horizontal direction of flight, rad/s; positive is clockwise
+    /// as seen from the hoop (the axis points from the hoop to the shooter).
     pub rifle_spin_rad_s: f64,
     /// Side spin omega_z0, about the vertical, rad/s; positive is counter-clockwise from above.
     pub side_spin_rad_s: f64,

@@ -96,7 +96,7 @@ impl Integrator {
     }
 }
 
-/// The numbers in which contacts are computed.
+/// The floating-point precision of contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Precision {
     /// Single precision where that gives the same shares of made shots: for at most 16 steps per
@@ -124,12 +124,13 @@ fn suits_single_precision(physics: &Physics) -> bool {
         && (0.1..=100.0).contains(&physics.gravity_m_s2)
 }
 
-/// Steps in the world frame over the steps per contact. (Two solids together are stiffer.)
+/// Ratio of the steps in the world frame to the steps per contact. (Two solids together are
+/// stiffer.)
 const WORLD_STEP_FACTOR: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 1,000 at
-/// the default steps (four a contact of some 13 ms); some constants that are far from any ball
-/// would take steps without end. So many steps take 30 ms at most.
+/// the default steps (four a contact of some 13 ms); constants far from those of any ball can
+/// cause endless steps. This limit takes at most 30 ms.
 fn max_steps(integrator: Integrator) -> u32 {
     const STEPS: u32 = 10_000;
     const AT_STEPS_PER_CONTACT: u32 = 4;
@@ -405,6 +406,12 @@ impl Simulator {
         Some((moved.x * moved.x + moved.y * moved.y).sqrt())
     }
 
+    /// Height of an undisturbed shot above the hoop at the horizontal distance `length_m` from the
+    /// release, m; minus infinity if it falls before.
+    pub(crate) fn height_at_length_m(&self, release: &Release, length_m: f64) -> f64 {
+        height_at_length_m(&self.params, &release.state(), length_m)
+    }
+
     /// Speed of the undisturbed shot that passes the height `z_m` at the horizontal distance
     /// `length_m`, m/s, in the direction and with the spin of `release`; `None` if there is none.
     pub(crate) fn speed_through_m_s(
@@ -424,7 +431,8 @@ impl Simulator {
         if !self.params.ball.has_air {
             return Some(speed);
         }
-        // Newton's steps with the derivative of the parabola.
+        // Secants, after a step of Newton's with the derivative of the parabola.
+        let mut before: Option<(f64, f64)> = None;
         for _ in 0..MAX_STEPS {
             let start = Release {
                 speed_m_s: speed,
@@ -432,7 +440,7 @@ impl Simulator {
             };
             let height = height_at_length_m(&self.params, &start.state(), length_m);
             if !height.is_finite() {
-                speed *= 1.1;
+                (speed, before) = (1.1 * speed, None);
                 continue;
             }
             let miss = z_m - height;
@@ -440,7 +448,16 @@ impl Simulator {
                 return Some(speed);
             }
             let fallen = release.height_above_hoop_m + length_m * sin / cos - height;
-            let step = 0.5 * miss * speed / fallen.max(1e-3);
+            let by_parabola = 0.5 * miss * speed / fallen.max(1e-3);
+            let by_secant =
+                before.map(|(old_speed, old_miss)| (speed - old_speed) / (old_miss - miss) * miss);
+            // A faster shot passes higher: both steps have the sign of the miss, or the secant is
+            // worth nothing.
+            let step = match by_secant {
+                Some(step) if step * miss > 0.0 => step,
+                _ => by_parabola,
+            };
+            before = Some((speed, miss));
             speed += step.clamp(-0.2 * speed, 0.2 * speed);
         }
         None

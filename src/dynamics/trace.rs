@@ -86,17 +86,18 @@ pub(crate) struct Recorder {
 /// Longest time between two samples in contact, s.
 const CONTACT_INTERVAL_S: f64 = 1e-3;
 
-/// The state at a share of a step: the cubic with the positions and velocities of both ends. The
-/// spin changes evenly.
-fn within_step((from, to): (&BallState, &BallState), dt: f64, share: f64) -> BallState {
+/// The state at a fraction of a step: the cubic Hermite interpolant between both ends. The spin
+/// changes linearly.
+fn within_step((from, to): (&BallState, &BallState), dt: f64, fraction: f64) -> BallState {
     let (v_0, v_1) = (from.velocity_m_s, to.velocity_m_s);
     let mean = (to.position_m - from.position_m) / dt.max(f64::MIN_POSITIVE);
     let curve = mean * 3.0 - v_0 * 2.0 - v_1;
     let cubic = v_0 + v_1 - mean * 2.0;
     BallState {
-        position_m: from.position_m + (v_0 + (curve + cubic * share) * share) * (share * dt),
-        velocity_m_s: v_0 + (curve * 2.0 + cubic * (3.0 * share)) * share,
-        spin_rad_s: from.spin_rad_s + (to.spin_rad_s - from.spin_rad_s) * share,
+        position_m: from.position_m
+            + (v_0 + (curve + cubic * fraction) * fraction) * (fraction * dt),
+        velocity_m_s: v_0 + (curve * 2.0 + cubic * (3.0 * fraction)) * fraction,
+        spin_rad_s: from.spin_rad_s + (to.spin_rad_s - from.spin_rad_s) * fraction,
     }
 }
 
@@ -175,12 +176,12 @@ impl Observer for Recorder {
     }
 
     fn step(&mut self, t: f64, dt: f64, states: (&BallState, &BallState), impulses: Impulses) {
-        let parts = (dt / CONTACT_INTERVAL_S).ceil().max(1.0);
-        let mut part = 0.0;
-        while part < parts {
-            let share = part / parts;
-            self.sample(t + share * dt, within_step(states, dt, share));
-            part += 1.0;
+        let samples = (dt / CONTACT_INTERVAL_S).ceil().max(1.0);
+        let mut sample = 0.0;
+        while sample < samples {
+            let fraction = sample / samples;
+            self.sample(t + fraction * dt, within_step(states, dt, fraction));
+            sample += 1.0;
         }
         for (contact, impulse) in self.open.iter_mut().zip(impulses) {
             if let Some(contact) = contact {
@@ -191,7 +192,7 @@ impl Observer for Recorder {
         self.next_sample_s = t + dt;
     }
 
-    fn part(&mut self, t: f64, solid: SolidId, state: &BallState) {
+    fn separation(&mut self, t: f64, solid: SolidId, state: &BallState) {
         let unopened = OpenContact {
             began_s: t,
             impulse: Vec3::zeros(),

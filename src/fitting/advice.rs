@@ -16,7 +16,7 @@ const DRAWS: usize = 400;
 /// shot.
 const SHOTS: usize = 32_768;
 const MIXTURE_SHOTS: usize = 8_192;
-/// What "a tenth less scatter" multiplies a standard deviation with.
+/// The factor on a standard deviation for "10 % less scatter".
 const TRAINED: f64 = 0.9;
 /// The combinations of four causes.
 const COMBINATIONS: usize = 16;
@@ -45,7 +45,7 @@ pub struct CauseOfGap {
     pub gain: Interval,
 }
 
-/// What a tenth less scatter of one value gains.
+/// What 10 % less scatter of one value gains.
 #[derive(Clone, Debug)]
 pub struct TrainingGain {
     /// The value.

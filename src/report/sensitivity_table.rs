@@ -48,7 +48,7 @@ fn what_changes(topic: &str, variable: &str) -> String {
         "window_low" => format!("window, lowest {variable}"),
         "window_high" => format!("window, highest {variable}"),
         "without" => format!("no error in {variable}"),
-        "a_tenth_less" => format!("a tenth less error in {variable}"),
+        "a_tenth_less" => format!("10 % less error in {variable}"),
         "release_height" => "release height".to_owned(),
         other => other.to_owned(),
     }

@@ -196,10 +196,44 @@ impl Bracket {
             if !lifts && speed >= least {
                 break;
             }
-            let [slow, fast] = self.speeds_in_air(s, z, pitch_rad);
-            least = least.min(slow).min(fast);
+            // A faster path lies above a slower one, so one flight tells whether `s` needs less.
+            if least == f64::INFINITY || self.passes_above(least, s, z, pitch_rad) {
+                let [slow, fast] = self.speeds_in_air(s, z, pitch_rad);
+                least = least.min(slow).min(fast);
+            }
         }
         least
+    }
+
+    /// Whether a path with this speed, of either spin, is above the height `z` at the horizontal
+    /// distance `s`.
+    fn passes_above(&self, speed_m_s: f64, s: f64, z: f64, pitch_rad: f64) -> bool {
+        let Some((simulator, spins)) = &self.air else {
+            return self.parabola_speed_through(s, z, pitch_rad) < speed_m_s;
+        };
+        let is_above = |backspin_rad_s| {
+            let release = Release {
+                speed_m_s,
+                ..self.release(pitch_rad, backspin_rad_s)
+            };
+            simulator.height_at_length_m(&release, s) > z
+        };
+        is_above(spins[0]) || spins[0] != spins[1] && is_above(spins[1])
+    }
+
+    /// A release towards the hoop, without a speed.
+    fn release(&self, pitch_rad: f64, backspin_rad_s: f64) -> Release {
+        Release {
+            distance_m: self.location.distance_m,
+            court_angle_rad: self.location.angle_rad,
+            height_above_hoop_m: self.start_height_m,
+            speed_m_s: 0.0,
+            pitch_rad,
+            polar_rad: self.location.angle_rad,
+            backspin_rad_s,
+            rifle_spin_rad_s: 0.0,
+            side_spin_rad_s: 0.0,
+        }
     }
 
     /// The greatest speed of the paths that pass the height `z` at the horizontal distance `s`;
@@ -219,17 +253,7 @@ impl Bracket {
             return [self.parabola_speed_through(s, z, pitch_rad); 2];
         };
         let speed = |backspin_rad_s| {
-            let release = Release {
-                distance_m: self.location.distance_m,
-                court_angle_rad: self.location.angle_rad,
-                height_above_hoop_m: self.start_height_m,
-                speed_m_s: 0.0,
-                pitch_rad,
-                polar_rad: self.location.angle_rad,
-                backspin_rad_s,
-                rifle_spin_rad_s: 0.0,
-                side_spin_rad_s: 0.0,
-            };
+            let release = self.release(pitch_rad, backspin_rad_s);
             simulator
                 .speed_through_m_s(&release, s, z)
                 .unwrap_or(f64::INFINITY)

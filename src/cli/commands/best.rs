@@ -23,7 +23,7 @@ Examples:
   bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
   bankshot best configs/bank_wing.toml --units metric --out wing
 
-Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the
+Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
 best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
 pub(crate) struct BestOptions {
     /// The shooter's profile.

@@ -29,9 +29,9 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-For a sweep: P of the best direct and bank shots over the court and their difference; maps of the best P, kind,
+For a sweep: P of the best direct and bank shots over the court and their difference; maps of the best P, kind, \
 pitch angle and spin; and, if they were computed, the gain from spin and the costliest error.
-For a profile: outcomes and P over speed and pitch angle about the best direct and bank shots, and their
+For a profile: outcomes and P over speed and pitch angle about the best direct and bank shots, and their \
 difference.
 Each map is written as SVG and PNG.
 

@@ -31,13 +31,13 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The file holds releases (speed, pitch, polar or aim), landings (entry_angle, depth, left_right) or trajectories (shot,
-time, x, y, z); each column has its unit in its name, as in speed_ft_s, depth_in, time_s. It can have made, shooter,
-session, and the place (distance, court_angle, release_height). Angles of release are positive to the shooter's left:
-aim from the line to the hoop's centre, polar from the court's long axis. left_right is positive to the right. Units:
+The file holds releases (speed, pitch, polar or aim), landings (entry_angle, depth, left_right) or trajectories (shot, \
+time, x, y, z); each column has its unit in its name, as in speed_ft_s, depth_in, time_s. It can have made, shooter, \
+session, and the place (distance, court_angle, release_height). Angles of release are positive to the shooter's left: \
+aim from the line to the hoop's centre, polar from the court's long axis. left_right is positive to the right. Units: \
 ft_s m_s mph km_h, deg rad, rev_s rpm rad_s, ft in m cm mm, s ms.
 
-Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv, report.html and plots; with several
+Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv, report.html and plots; with several \
 shooters, one folder for each and shooters.csv.
 
 Examples:

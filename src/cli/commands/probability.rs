@@ -47,8 +47,8 @@ impl Method {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The shot comes from the flags, then from the profile's [nominal] table. The errors are those of
-[shooter.errors]: c10 to c42, and rifle_spin, side_spin, distance, court_angle, height as standard
+The shot comes from the flags, then from the profile's [nominal] table. The errors are those of \
+[shooter.errors]: c10 to c42, and rifle_spin, side_spin, distance, court_angle, height as standard \
 deviations; [shooter.correlation] gives their correlations.
 
 Examples:

@@ -33,12 +33,12 @@ pub(crate) enum IntegratorName {
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Columns, by name and in any order: distance_ft, court_angle_deg, release_height_ft, speed_ft_s,
-pitch_deg, polar_deg; optional backspin_rev_s, rifle_spin_rev_s, side_spin_rev_s. The suffixes _m,
-_m_s, _rad and _rad_s are accepted instead. Other columns are copied. One that is named like a
-quantity needs --carry, so that no misspelt column is overlooked. The columns made, kind, contacts,
-n_board, n_ring, flight_time_s (to the end of the shot, bounces included), entry_angle_deg and
-first_touch_s are added. A row that cannot be simulated is reported with its line and has empty
+Columns, by name and in any order: distance_ft, court_angle_deg, release_height_ft, speed_ft_s, \
+pitch_deg, polar_deg; optional backspin_rev_s, rifle_spin_rev_s, side_spin_rev_s. The suffixes _m, \
+_m_s, _rad and _rad_s are accepted instead. Other columns are copied. One that is named like a \
+quantity needs --carry, so that no misspelt column is overlooked. The columns made, kind, contacts, \
+n_board, n_ring, flight_time_s (to the end of the shot, bounces included), entry_angle_deg and \
+first_touch_s are added. A row that cannot be simulated is reported with its line and has empty \
 results; the exit code is then 3. Files named *.parquet are Parquet, others CSV.
 
 Examples:

@@ -27,8 +27,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The folder has store/*.sqlite (every result as it is computed; query it while the sweep runs) and, at the
-end, best_shots.csv, best_shots.parquet and provenance.json. The same command again computes only what is
+The folder has store/*.sqlite (every result as it is computed; query it while the sweep runs) and, at the \
+end, best_shots.csv, best_shots.parquet and provenance.json. The same command again computes only what is \
 missing.
 
 Examples:

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are
+Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
 interpolated. Where that costs more than --max-loss in P, nodes are added halfway. The table says what is left.
 
 Examples:

@@ -32,8 +32,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Without --sweep each player shoots from the location of their profile, and one table is printed.
 
-With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.csv has every place and
-player. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like;
+With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.csv has every place and \
+player. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
 the same command continues.
 
 Examples:

@@ -26,14 +26,10 @@ pub(super) struct Batch<'a, S: Simd, const WIDTH: u8> {
 pub(super) const WIDE: u8 = 2;
 /// Eight lanes; with AVX2 they are several registers already.
 pub(super) const NARROW: u8 = 1;
-/// Eight lanes.
-pub(super) type Narrow<S> = F64x8<S>;
-/// Sixteen lanes.
-pub(super) type Wide<S> = Unrolled<F64x8<S>>;
-/// Sixteen lanes in single precision.
-pub(super) type NarrowF32<S> = F32x16<S>;
-/// Thirty-two lanes in single precision.
-pub(super) type WideF32<S> = Unrolled<F32x16<S>>;
+pub(super) type EightLanes<S> = F64x8<S>;
+pub(super) type SixteenLanes<S> = Unrolled<F64x8<S>>;
+pub(super) type SixteenLanesF32<S> = F32x16<S>;
+pub(super) type ThirtyTwoLanesF32<S> = Unrolled<F32x16<S>>;
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     /// The parameters in every lane, as near as the lanes can hold them.
@@ -45,7 +41,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         )
     }
 
-    /// Simulates one segment of a shot with the scalar code and queues the shot again.
+    /// Simulates one phase of a shot with the scalar code and queues the shot again.
     #[cold]
     pub(super) fn run_scalar(&mut self, slot: u32) {
         let shot = &mut self.workspace.slots[slot as usize];
@@ -81,7 +77,10 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         block: &WorldFrameBlock,
         phase: Phase,
     ) -> bool {
-        block.occupied() != T::ALL && self.workspace.other_phase_fills(Wide::<S>::LANES, phase)
+        block.occupied() != T::ALL
+            && self
+                .workspace
+                .other_phase_fills(SixteenLanes::<S>::LANES, phase)
     }
 
     /// Records the end of a shot in contact: by a rule, or given up if none of them holds.

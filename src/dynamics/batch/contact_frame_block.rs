@@ -18,9 +18,9 @@ pub(super) struct ContactFrameBlock<E> {
     /// The values of [`ContactFrameState`].
     motion: [Row<E>; CONTACT_VALUES],
     slip_tolerances: Row<E>,
-    /// [`ShotProgress::step_share`], [`ShotProgress::contact_time_s`], and the time left at the
+    /// [`ShotProgress::step_fraction`], [`ShotProgress::contact_time_s`], and the time left at the
     /// start of the contact.
-    step_shares: Row<E>,
+    step_fractions: Row<E>,
     contact_times_s: Row<E>,
     allowed_times_s: Row<E>,
     slots: [u32; MAX_LANES],
@@ -45,7 +45,7 @@ struct ContactFlags {
 pub(super) struct ContactShots<T: SimdReal> {
     pub(super) motion: ContactFrameState<T>,
     pub(super) friction: FrictionState<T>,
-    pub(super) step_share: T,
+    pub(super) step_fraction: T,
     pub(super) contact_time_s: T,
     pub(super) crossing: HoopCrossing<T>,
 }
@@ -57,7 +57,7 @@ impl<E: LaneElement> ContactFrameBlock<E> {
             solid,
             motion: [zeros; CONTACT_VALUES],
             slip_tolerances: zeros,
-            step_shares: zeros,
+            step_fractions: zeros,
             contact_times_s: zeros,
             allowed_times_s: zeros,
             slots: [0; MAX_LANES],
@@ -104,7 +104,7 @@ impl<E: LaneElement> ContactFrameBlock<E> {
             }
             let friction = &shot.friction[self.solid.index()];
             self.slip_tolerances[lane] = E::from_f64(friction.slip_tolerance);
-            self.step_shares[lane] = E::from_f64(shot.step_share);
+            self.step_fractions[lane] = E::from_f64(shot.step_fraction);
             self.contact_times_s[lane] = E::from_f64(shot.contact_time_s);
             self.allowed_times_s[lane] = E::from_f64(time_limit_s - shot.time_s);
             self.slots[lane] = slot;
@@ -142,7 +142,7 @@ impl<E: LaneElement> ContactFrameBlock<E> {
             rolling_failed: bit(self.flags.rolling_failed, lane),
             slip_tolerance: self.slip_tolerances[lane].to_f64(),
         };
-        shot.step_share = self.step_shares[lane].to_f64();
+        shot.step_fraction = self.step_fractions[lane].to_f64();
         shot.contact_time_s = self.contact_times_s[lane].to_f64();
         shot.steps = self.steps[lane];
         shot.crossing = HoopCrossing {
@@ -164,7 +164,7 @@ impl<E: LaneElement> ContactFrameBlock<E> {
                 rolling_failed: T::mask_from_bits(simd, self.flags.rolling_failed),
                 slip_tolerance: T::load(simd, &self.slip_tolerances),
             },
-            step_share: T::load(simd, &self.step_shares),
+            step_fraction: T::load(simd, &self.step_fractions),
             contact_time_s: T::load(simd, &self.contact_times_s),
             crossing: HoopCrossing {
                 has_been_above: T::mask_from_bits(simd, self.flags.has_been_above),
@@ -188,7 +188,7 @@ impl<E: LaneElement> ContactFrameBlock<E> {
             .friction
             .slip_tolerance
             .store(&mut self.slip_tolerances);
-        shots.step_share.store(&mut self.step_shares);
+        shots.step_fraction.store(&mut self.step_fractions);
         shots.contact_time_s.store(&mut self.contact_times_s);
         self.flags.rolling = T::mask_to_bits(shots.friction.rolling);
         self.flags.rolling_failed = T::mask_to_bits(shots.friction.rolling_failed);

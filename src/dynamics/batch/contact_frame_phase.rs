@@ -18,7 +18,7 @@ use fearless_simd::Simd;
 
 /// What happened in the lanes of a step.
 struct StepResult {
-    parts: LaneBits,
+    separates: LaneBits,
     /// On the other solid.
     arrived: LaneBits,
     /// Where the solid does not act.
@@ -83,7 +83,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     ) {
         let [a, b, c] = result.ends;
         let ended = a | b | c;
-        let done = (result.parts
+        let done = (result.separates
             | result.arrived
             | result.beside
             | result.leaves_frame
@@ -99,7 +99,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             } else if bit(ended, lane) {
                 let made = bit(result.made, lane);
                 self.finish_shot_in_contact(slot, result.ends.map(|rule| bit(rule, lane)), made);
-            } else if bit(result.parts, lane) {
+            } else if bit(result.separates, lane) {
                 shot.end_single_contact(ContactState::Free);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
             } else if bit(result.arrived, lane) {
@@ -127,45 +127,46 @@ fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
 ) -> StepResult {
     let (params, solid) = (contact.params, contact.solid);
     let shots = block.load::<T>(simd);
-    let step = contact.step(&shots.motion, &shots.friction, shots.step_share);
+    let step = contact.step(&shots.motion, &shots.friction, shots.step_fraction);
     let after = solid.to_world(&params.ball, &step.motion);
     let path = (shots.motion.speed_bound() + step.motion.speed_bound()) * step.dt;
     let end = GapAtEnd::new(params, other, &after, path);
-    let (mut again, mut share) = (end.is_near, params.one());
+    let (mut repeats, mut fraction) = (end.is_near, params.one());
     if end.is_near.any() {
         let before = solid.to_world(&params.ball, &shots.motion);
-        (again, share) = passed(params, other, &before, &end, step.dt);
+        (repeats, fraction) = passed(params, other, &before, &end, step.dt);
     }
-    let stays = again | T::mask_from_bits(simd, given_up);
+    let rejected = repeats | T::mask_from_bits(simd, given_up);
     let mut next = ContactShots {
         motion: step.motion,
         friction: step.friction,
-        step_share: params.one(),
+        step_fraction: params.one(),
         contact_time_s: shots.contact_time_s + step.dt,
         crossing: shots.crossing,
     };
     let was_below = shots.motion.is_below_hoop();
-    next.crossing.after_step(params, was_below, &after, !stays);
-    let mut counts = T::ALL;
-    if T::mask_to_bits(stays) != 0 {
-        counts = T::mask_to_bits(!stays);
-        let share_again = contact.share_of_longest(share * step.dt);
-        next.motion = shots.motion.select(stays, next.motion);
-        next.friction = FrictionState::select(shots.friction, stays, next.friction);
-        next.step_share = share_again.select(again, next.step_share);
-        next.contact_time_s = shots.contact_time_s.select(stays, next.contact_time_s);
+    next.crossing
+        .after_step(params, was_below, &after, !rejected);
+    let mut accepted = T::ALL;
+    if T::mask_to_bits(rejected) != 0 {
+        accepted = T::mask_to_bits(!rejected);
+        let repeated_fraction = contact.fraction_of_longest(fraction * step.dt);
+        next.motion = shots.motion.select(rejected, next.motion);
+        next.friction = FrictionState::select(shots.friction, rejected, next.friction);
+        next.step_fraction = repeated_fraction.select(repeats, next.step_fraction);
+        next.contact_time_s = shots.contact_time_s.select(rejected, next.contact_time_s);
     }
     let too_late = block.allowed_times_s::<T>(simd).lt(next.contact_time_s);
     let ends = ShotEndFlags::new(params, &after, too_late);
     block.store(&next);
     StepResult {
-        parts: T::mask_to_bits(step.parts) & counts,
-        arrived: T::mask_to_bits(has_arrived(params, other, &after)) & counts,
-        beside: T::mask_to_bits(!solid.acts(&after)) & counts,
-        leaves_frame: T::mask_to_bits(!solid.is_in_frame(&after)) & counts,
+        separates: T::mask_to_bits(step.separates) & accepted,
+        arrived: T::mask_to_bits(has_arrived(params, other, &after)) & accepted,
+        beside: T::mask_to_bits(!solid.acts(&after)) & accepted,
+        leaves_frame: T::mask_to_bits(!solid.is_in_frame(&after)) & accepted,
         ends: ends.map(
             #[inline(always)]
-            |rule| T::mask_to_bits(rule) & counts,
+            |rule| T::mask_to_bits(rule) & accepted,
         ),
         made: T::mask_to_bits(next.crossing.is_made(params, &after)),
         given_up,

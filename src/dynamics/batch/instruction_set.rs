@@ -40,15 +40,14 @@ impl InstructionSet {
         found
     }
 
-    /// Makes this the set of the simulators that are built from now on, in place of
+    /// Makes this the default of simulators that are built later, in place of
     /// [`InstructionSet::best`]. Only the first call counts.
     pub fn use_by_default(self) {
         let _ = DEFAULT.set(self);
     }
 
-    /// The instructions of the lanes; none for one shot at a time. That is also what x86-64 without
-    /// AVX2 does: its registers hold two numbers, and lanes of them would take a third of the time
-    /// to compile the library.
+    /// The instructions of the lanes; `None` for scalar code. That is also used on x86-64 without
+    /// AVX2: SSE2 holds two numbers, and lanes of them would add a third to the time of a build.
     pub(crate) fn level(self) -> Option<Level> {
         #[cfg(target_arch = "x86_64")]
         let level = self.0.filter(|level| level.as_avx2().is_some());

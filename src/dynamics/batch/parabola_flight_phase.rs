@@ -193,7 +193,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 if solid == SolidId::Ring && bit(end.ring_motions(), lane) {
                     shot.begin_single_contact(solid);
                 } else {
-                    shot.step_share = 1.0;
+                    shot.step_fraction = 1.0;
                     shot.set_touching(self.params, SolidId::ALL.map(|id| id == solid));
                 }
                 self.workspace.enqueue(slots[lane]);

@@ -9,7 +9,9 @@
 //! It is the same generic code as for one shot, with the same operations in the same order. So the
 //! verdicts are the same, bit for bit.
 
-use super::batch_state::{Batch, NARROW, Narrow, NarrowF32, WIDE, Wide, WideF32};
+use super::batch_state::{
+    Batch, EightLanes, NARROW, SixteenLanes, SixteenLanesF32, ThirtyTwoLanesF32, WIDE,
+};
 use super::board_contact_phase::board_contact;
 use super::parabola_flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
@@ -62,11 +64,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         loop {
             if !params.has_paper_flight() {
                 // Sixteen lanes would need more registers than there are.
-                fly_in_segments::<S, Narrow<S>, WIDTH>(&mut batch, starts);
+                fly_in_segments::<S, EightLanes<S>, WIDTH>(&mut batch, starts);
             } else if WIDTH == WIDE {
-                fly_from_release::<S, Wide<S>, WIDTH>(&mut batch, starts);
+                fly_from_release::<S, SixteenLanes<S>, WIDTH>(&mut batch, starts);
             } else {
-                fly_from_release::<S, Narrow<S>, WIDTH>(&mut batch, starts);
+                fly_from_release::<S, EightLanes<S>, WIDTH>(&mut batch, starts);
             }
             if batch.workspace.is_idle() {
                 return;
@@ -82,14 +84,16 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         match phase {
             // Done above, with the shots that start.
             Phase::Flight if !self.params.has_paper_flight() => {}
-            Phase::Flight if WIDTH == WIDE => fly::<S, Wide<S>, WIDTH>(self),
-            Phase::Flight => fly::<S, Narrow<S>, WIDTH>(self),
+            Phase::Flight if WIDTH == WIDE => fly::<S, SixteenLanes<S>, WIDTH>(self),
+            Phase::Flight => fly::<S, EightLanes<S>, WIDTH>(self),
             Phase::OnSolid(solid) if !self.limits.single_precision => {
-                on_solid::<S, Narrow<S>, WIDTH>(self, solid);
+                on_solid::<S, EightLanes<S>, WIDTH>(self, solid);
             }
-            Phase::OnSolid(solid) if WIDTH == WIDE => on_solid::<S, WideF32<S>, WIDTH>(self, solid),
-            Phase::OnSolid(solid) => on_solid::<S, NarrowF32<S>, WIDTH>(self, solid),
-            Phase::InWorld => in_world::<S, Narrow<S>, WIDTH>(self),
+            Phase::OnSolid(solid) if WIDTH == WIDE => {
+                on_solid::<S, ThirtyTwoLanesF32<S>, WIDTH>(self, solid)
+            }
+            Phase::OnSolid(solid) => on_solid::<S, SixteenLanesF32<S>, WIDTH>(self, solid),
+            Phase::InWorld => in_world::<S, EightLanes<S>, WIDTH>(self),
         }
     }
 }

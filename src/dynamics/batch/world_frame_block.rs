@@ -24,8 +24,8 @@ pub(super) struct WorldFrameBlock {
     /// [`FrictionState::slip_tolerance`] of each solid.
     slip_tolerances: [LaneArray; SolidId::COUNT],
     rolling_times_s: LaneArray,
-    /// [`ShotProgress::step_share`].
-    step_shares: LaneArray,
+    /// [`ShotProgress::step_fraction`].
+    step_fractions: LaneArray,
     slots: [u32; ZEROS.len()],
     /// [`ShotProgress::steps`].
     steps: [u32; ZEROS.len()],
@@ -97,7 +97,7 @@ impl WorldFrameBlock {
             times_s: ZEROS,
             slip_tolerances: [ZEROS; SolidId::COUNT],
             rolling_times_s: ZEROS,
-            step_shares: ZEROS,
+            step_fractions: ZEROS,
             slots: [0; ZEROS.len()],
             steps: [0; ZEROS.len()],
             flags: LaneFlags::default(),
@@ -206,7 +206,7 @@ impl WorldFrameBlock {
                 self.slip_tolerances[i][lane] = friction.slip_tolerance;
             }
             self.rolling_times_s[lane] = shot.rolling_time_s;
-            self.step_shares[lane] = shot.step_share;
+            self.step_fractions[lane] = shot.step_fraction;
         }
         self.flags = flags;
     }
@@ -218,13 +218,14 @@ impl WorldFrameBlock {
         count_step(&mut self.steps, max_steps)
     }
 
-    /// Takes the shot out of a lane, and leaves it as it was.
+    /// Frees a lane. The memory of its shot is not updated.
     #[inline(always)]
     pub(super) fn vacate(&mut self, lane: usize) {
         set_bit(&mut self.flags.occupied, lane, false);
     }
 
-    /// Takes the shot out of a lane; its contacts are left as they were.
+    /// Writes state, time and counters of the shot in a lane to its memory, and frees the lane. The
+    /// contacts in the memory are not updated.
     #[inline(always)]
     pub(super) fn remove(&mut self, lane: usize, shot: &mut ShotProgress) {
         let vector = |i: usize| {
@@ -274,13 +275,13 @@ impl WorldFrameBlock {
         }
     }
 
-    /// Takes the contacts of the shot in a lane out of it.
+    /// Writes the contacts of the shot in a lane to its memory.
     #[inline(always)]
     pub(super) fn remove_contacts(&self, lane: usize, shot: &mut ShotProgress) {
         shot.friction = SolidId::ALL.map(|solid| self.friction(solid, lane));
         shot.touching = self.flags.touching.map(|bits| bit(bits, lane));
         shot.rolling_time_s = self.rolling_times_s[lane];
-        shot.step_share = self.step_shares[lane];
+        shot.step_fraction = self.step_fractions[lane];
     }
 
     /// The solids that the balls touch.
@@ -297,13 +298,13 @@ impl WorldFrameBlock {
     }
 
     #[inline(always)]
-    pub(super) fn load_step_shares<T: SimdReal<Element = f64>>(&self, simd: T::Simd) -> T {
-        T::load(simd, &self.step_shares)
+    pub(super) fn load_step_fractions<T: SimdReal<Element = f64>>(&self, simd: T::Simd) -> T {
+        T::load(simd, &self.step_fractions)
     }
 
     #[inline(always)]
-    pub(super) fn store_step_shares<T: SimdReal<Element = f64>>(&mut self, shares: T) {
-        shares.store(&mut self.step_shares);
+    pub(super) fn store_step_fractions<T: SimdReal<Element = f64>>(&mut self, fractions: T) {
+        fractions.store(&mut self.step_fractions);
     }
 
     /// The state of balls that come from the ring, from the frame of that contact.

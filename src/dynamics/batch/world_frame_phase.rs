@@ -33,7 +33,7 @@ where
 /// What happened in the lanes of a step.
 struct StepResult {
     /// The ball no longer touches, or has arrived at, each solid.
-    parts: [LaneBits; SolidId::COUNT],
+    separates: [LaneBits; SolidId::COUNT],
     arrived: [LaneBits; SolidId::COUNT],
     /// On one solid, in the part that a frame describes.
     enters_frame: LaneBits,
@@ -84,7 +84,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         let contact = WorldContact {
             touching,
             step_s: params.splat(self.limits.longest_world_step_s),
-            share: block.load_step_shares(simd),
+            fraction: block.load_step_fractions(simd),
         };
         let mut next_friction = friction;
         let step = world_frame_step::step(
@@ -97,45 +97,50 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         let states = (&before, &shots.state);
         let approach = approach_in_world(params, solids, touching, states, step.dt);
         let given_up = T::mask_from_bits(simd, given_up);
-        let stays = approach.again | given_up;
-        let share = approach.share * (step.dt / contact.step_s);
-        block.store_step_shares(share.select(approach.again, params.one()));
-        shots.state = before.select(stays, shots.state);
+        let rejected = approach.repeats | given_up;
+        let fraction = approach.fraction * (step.dt / contact.step_s);
+        block.store_step_fractions(fraction.select(approach.repeats, params.one()));
+        shots.state = before.select(rejected, shots.state);
         for i in [0, 1] {
-            next_friction[i] = FrictionState::select(friction[i], stays, next_friction[i]);
+            next_friction[i] = FrictionState::select(friction[i], rejected, next_friction[i]);
         }
         let before_s = block.load_rolling_times(simd);
         let rolling_times = world_frame_step::rolling_time(&next_friction, before_s, step.dt);
-        let rolling_times = before_s.select(stays, rolling_times);
-        let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & !stays;
-        let end = shots.after_step(params, &before, (step.dt, !stays), self.limits.time_limit_s);
+        let rolling_times = before_s.select(rejected, rolling_times);
+        let lodged = is_lodged(rolling_times, self.limits.lodged_after_s) & !rejected;
+        let end = shots.after_step(
+            params,
+            &before,
+            (step.dt, !rejected),
+            self.limits.time_limit_s,
+        );
         block.store(&shots);
         block.store_rolling_times(rolling_times);
         for solid in SolidId::ALL {
             block.store_friction(solid, &next_friction[solid.index()]);
         }
         let acts = [solids.0.acts(&shots.state), solids.1.acts(&shots.state)];
-        let parts = [
-            touching[0] & (step.parts[0] | !acts[0]) & !stays,
-            touching[1] & (step.parts[1] | !acts[1]) & !stays,
+        let separates = [
+            touching[0] & (step.separates[0] | !acts[0]) & !rejected,
+            touching[1] & (step.separates[1] | !acts[1]) & !rejected,
         ];
         let on = [
-            (touching[0] & !parts[0]) | approach.arrived[0],
-            (touching[1] & !parts[1]) | approach.arrived[1],
+            (touching[0] & !separates[0]) | approach.arrived[0],
+            (touching[1] & !separates[1]) | approach.arrived[1],
         ];
         let enters_frame = (on[0] & !on[1] & solids.0.is_in_frame(&shots.state))
             | (on[1] & !on[0] & solids.1.is_in_frame(&shots.state));
-        let counts = T::mask_to_bits(!stays);
+        let accepted = T::mask_to_bits(!rejected);
         StepResult {
-            parts: [T::mask_to_bits(parts[0]), T::mask_to_bits(parts[1])],
+            separates: [T::mask_to_bits(separates[0]), T::mask_to_bits(separates[1])],
             arrived: [
-                T::mask_to_bits(approach.arrived[0]) & counts,
-                T::mask_to_bits(approach.arrived[1]) & counts,
+                T::mask_to_bits(approach.arrived[0]) & accepted,
+                T::mask_to_bits(approach.arrived[1]) & accepted,
             ],
-            enters_frame: T::mask_to_bits(enters_frame) & counts,
+            enters_frame: T::mask_to_bits(enters_frame) & accepted,
             ends: end.map(
                 #[inline(always)]
-                |rule| T::mask_to_bits(rule) & counts,
+                |rule| T::mask_to_bits(rule) & accepted,
             ),
             made: T::mask_to_bits(shots.crossing.is_made(params, &shots.state)),
             lodged: T::mask_to_bits(lodged),
@@ -152,7 +157,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     ) {
         let [a, b, c] = result.ends;
         let ended = a | b | c;
-        let [off_board, off_ring] = result.parts;
+        let [off_board, off_ring] = result.separates;
         let [to_board, to_ring] = result.arrived;
         let changed = off_board | off_ring | to_board | to_ring | result.enters_frame;
         let done = changed | ended | result.lodged | given_up;
@@ -172,7 +177,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 let mut touching = shot.touching;
                 for solid in SolidId::ALL {
                     let i = solid.index();
-                    touching[i] &= !bit(result.parts[i], lane);
+                    touching[i] &= !bit(result.separates[i], lane);
                     if bit(result.arrived[i], lane) {
                         touching[i] = true;
                         shot.contacts.push(solid);

@@ -6,8 +6,8 @@
 //! integrated with three evaluations, at the start, the middle and the end of the step, by
 //! Simpson's rule; the normal force enters by its exact impulse.
 //!
-//! Friction slides or rolls throughout a step. The step ends where that changes, or where the ball
-//! parts: at the root of a function of the closed form.
+//! Within a step the contact either slides or rolls. The step ends where that changes, or where the
+//! ball leaves: at the root of a function of the closed form.
 //!
 //! Sliding is the paper's law (Eqs. 3 and 13). Rolling is its exact limit (a Filippov solution on
 //! the surface of zero slip; the paper's Appendix 2 approaches it by chattering): the friction that
@@ -47,7 +47,7 @@ pub(crate) struct MacroStep<T: Real> {
     /// Length of the step, s.
     pub(crate) dt: T,
     /// The ball leaves the solid at the end of the step.
-    pub(crate) parts: T::Mask,
+    pub(crate) separates: T::Mask,
 }
 
 /// The rates of what changes slowly, without friction.
@@ -94,8 +94,8 @@ struct Evaluation<T> {
     slip_rate: Vec2<T>,
 }
 
-/// Friction's impulses over a step, per unit of mass: along 1 and 2 (on the ring times d and D),
-/// and along both times the lever.
+/// Impulses of friction over a step, per unit of mass: along 1 and 2 (on the ring times d and D),
+/// and the same times the lever, which change the spin.
 #[derive(Clone, Copy)]
 struct FrictionImpulse<T> {
     linear: Vec2<T>,
@@ -127,7 +127,7 @@ struct StepStart<T: Real> {
 struct StepEnd<T: Real> {
     /// In units of the longest step.
     tau: T,
-    parts: T::Mask,
+    separates: T::Mask,
     ends_slip: T::Mask,
 }
 
@@ -313,7 +313,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let at_zero_slip =
             friction.rolling | slip.norm_squared().le(friction.slip_tolerance.squared());
         if at_zero_slip.any() {
-            // Friction's own impulse removes the slip.
+            // An impulse of friction sets the slip to zero.
             let removed = scaled(slip, effective_mass.select(at_zero_slip, zero));
             let spin_change = scaled(removed, distances.lever * mass_over_inertia);
             let (v, w) = (&mut motion.velocity.tangent, &mut motion.spin.tangent);
@@ -327,7 +327,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             - material.stiffness * motion.velocity.normal;
         let pressing = normal.positive_part();
         let limit = material.friction_coefficient * pressing;
-        // A slip that its rate can turn within half a step follows the rate after a failed roll.
+        // After a roll has failed: if the slip rate can reverse the slip within half a step,
+        // friction acts against the slip rate, not against the slip.
         let max_slip_squared = at.slip_rate.norm_squared() * self.oscillator.half_step_s.squared();
         let follows_rate = friction.rolling_failed & at.slip.norm_squared().le(max_slip_squared);
         let slip_or_rate = at.slip_rate.select(at_zero_slip | follows_rate, at.slip);
@@ -335,9 +336,9 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let direction = scaled(slip_or_rate, one / size.select(size.is_positive(), one));
         let required = effective_mass * size;
         let loading = normal_rate.is_positive();
-        let (share, min_reserve) = self.oscillator.roll_reserve;
-        let with_reserve = required * share + min_reserve;
-        let suffices = required.select(loading, with_reserve).le(limit);
+        let (factor, min_margin) = self.oscillator.rolling_margin;
+        let with_margin = required * factor + min_margin;
+        let suffices = required.select(loading, with_margin).le(limit);
         let rolling_failed = (friction.rolling_failed | (at_zero_slip & !suffices)) & !loading;
         StepStart {
             rolling: at_zero_slip & suffices & !rolling_failed,
@@ -375,7 +376,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             rate: zero,
         };
         let compression_at_end = at_end.0 - shift;
-        let parts = compression_at_end.le(zero);
+        let separates = compression_at_end.le(zero);
         // Sliding: the slip along its direction. Rolling: mu N minus the friction that rolling
         // needs.
         let mu = material.friction_coefficient;
@@ -400,7 +401,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         };
         let (mut tau, mut until) = (one, one);
         let mut last = change.value(at_end, one);
-        if parts.any() {
+        if separates.any() {
             let root = compression.first_root(
                 material,
                 oscillator,
@@ -408,12 +409,12 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 (one, compression_at_end),
                 NEWTON_STEPS_TO_PARTING,
             );
-            tau = root.select(parts, one);
-            // After N = 0 the formula's slip grows again: a slip that ends later does not count.
+            tau = root.select(separates, one);
+            // Beyond N = 0 the formula does not hold: an end of the slip there is ignored.
             let pressed = (tau - oscillator.relaxation).positive_part();
-            until = pressed.select(parts & !start.rolling, one);
+            until = pressed.select(separates & !start.rolling, one);
             let there = normal_motion.after(material, oscillator, oscillator.at(until));
-            last = change.value(there, until).select(parts, last);
+            last = change.value(there, until).select(separates, last);
         }
         let can_change =
             start.rolling | (start.slip_speed.is_positive() & start.normal.is_positive());
@@ -438,7 +439,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let cut = longest.lt(tau);
         StepEnd {
             tau: Real::max(longest.select(cut, tau), one * SHORTEST_STEP),
-            parts: parts & !change_first & !cut,
+            separates: separates & !change_first & !cut,
             ends_slip: change_first & !start.rolling & !cut,
         }
     }
@@ -470,7 +471,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             (tau, last),
             NEWTON_STEPS_TO_PARTING,
         );
-        // A step that starts at the root goes on.
+        // A root at the start of the step is ignored.
         let ahead = one.splat(SHORTEST_STEP * 2.0).lt(root);
         root.select(ends & ahead, one)
     }
@@ -502,8 +503,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         }
     }
 
-    /// The part of the impulse of N that is negative, at the end of a step where N is `normal` and
-    /// the acceleration of the centre is `acceleration`.
+    /// The integral of min(N, 0) over a step, at whose end N is `normal` and the acceleration of
+    /// the centre is `acceleration`.
     #[inline(always)]
     fn negative_impulse(&self, h: T, normal: T, normal_velocity: T, acceleration: T) -> T {
         let material = self.material();
@@ -513,7 +514,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         if !negative.any() {
             return zero;
         }
-        // Along the Taylor polynomial of N about the end, back to N = 0.
+        // By the Taylor polynomial of N about the end, back to N = 0.
         let inverse_rate = one / rate.select(negative, one);
         // Where N only just becomes negative the polynomial does not apply; these bounds hold for
         // the exact value.
@@ -532,7 +533,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
 
     /// A time in units of the longest step.
     #[inline(always)]
-    pub(crate) fn share_of_longest(&self, dt: T) -> T {
+    pub(crate) fn fraction_of_longest(&self, dt: T) -> T {
         dt * self.oscillator.inverse_step
     }
 
@@ -557,8 +558,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let middle = self.middle_stage(&start, &normal);
         let (last, negative_impulse) = self.end_stage(&start, &normal, &middle);
         let mut next = self.simpson_step(&start, &normal, (&middle, &last), negative_impulse);
-        // A ball that parts is at zero compression, but for the error of the step.
-        next.compression = self.params.zero().select(end.parts, next.compression);
+        // A ball that leaves has zero compression, up to the error of the step.
+        next.compression = self.params.zero().select(end.separates, next.compression);
         self.solid.rebase(&mut next);
         let (fraction, min_remainder) = oscillator.slip_remainder;
         let remainder = Real::max(start.slip_speed * fraction, min_remainder);
@@ -571,7 +572,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 slip_tolerance: remainder.select(end.ends_slip, usual),
             },
             dt: normal.h,
-            parts: end.parts,
+            separates: end.separates,
         }
     }
 
@@ -601,8 +602,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
 
     /// 3. The middle of the step, with G as at the start.
     ///
-    /// If G then grows evenly by D until the middle, the compression there is less by `D h^2/24`
-    /// and the velocity greater by `D h/4`; N counts them.
+    /// If G grows linearly, by dG until the middle, the compression there is less by `dG h^2/24`
+    /// and the velocity greater by `dG h/4`. The force N has both corrections.
     #[inline(always)]
     fn middle_stage(&self, start: &StepStart<T>, normal: &NormalStep<T>) -> Stage<T> {
         let (params, material) = (self.params, self.material());
@@ -640,8 +641,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
 
     /// 4. The end of the step, and the part of the impulse of N that is negative.
     ///
-    /// G grows evenly, by D until the middle. To the first order in k h^2 and c h, the compression
-    /// is less by `D h^2/3` and the velocity greater by `D h (1 - k h^2/12 - c h/3)`.
+    /// G grows linearly, by dG until the middle. To the first order in k h^2 and c h, the
+    /// compression is less by `dG h^2/3` and the velocity greater by `dG h (1 - k h^2/12 - c h/3)`.
     #[inline(always)]
     fn end_stage(
         &self,
@@ -692,9 +693,9 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
 
     /// 5. Simpson's rule, with the exact moments of N and v_n.
     ///
-    /// A change of G in the middle acts for the other half of the step. Its response is that of the
-    /// oscillator: `1 - c t + (c^2 - k) t^2/2 + k^2 t^4/24` in velocity, and the integral of that
-    /// in compression, with `t = h/2`.
+    /// A change of G in the middle acts during the second half of the step. The response is that of
+    /// the oscillator: `1 - c t + (c^2 - k) t^2/2 + k^2 t^4/24` in velocity, and the integral of
+    /// that in compression, with `t = h/2`.
     #[inline(always)]
     fn simpson_step(
         &self,
@@ -720,13 +721,14 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             - simpson(sixth, g, at_m.normal_acceleration, at_e.normal_acceleration)
             - negative_impulse)
             .positive_part();
-        // What Simpson's rule misses of the impulse and of the path acts as in the middle.
+        // What the exact impulse and displacement have beyond Simpson's rule acts in the direction
+        // of the middle.
         let missing_impulse = (mu
             * (normal_impulse - simpson(sixth, start.pressing, middle.normal, last.normal)))
         .select(normal.presses, self.params.zero());
-        let missing_path = start.motion.compression - u_1 - simpson(sixth, v_n, vn_m, vn_1);
+        let missing_displacement = start.motion.compression - u_1 - simpson(sixth, v_n, vn_m, vn_1);
         let per_vn_m = scaled(at_m.slip_rate_per_vn, middle.friction.factor);
-        let missing = scaled(per_vn_m, missing_path).select(
+        let missing = scaled(per_vn_m, missing_displacement).select(
             start.rolling,
             scaled(middle.friction.direction, missing_impulse),
         );

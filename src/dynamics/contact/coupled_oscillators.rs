@@ -49,13 +49,13 @@ pub(super) struct CoupledOscillators<T> {
 /// A function of tau. An event happens where it falls through zero.
 pub(super) struct EventSeries<T>([T; TERMS + 1]);
 
-/// The slip along its direction.
-pub(super) struct SlipSeries<T> {
+/// The slip along its direction while its rate is `rate + per_vn v_n + per_force N`.
+pub(super) struct SlipModel<T> {
     pub(super) speed: T,
-    /// Its rate without normal forces, minus that from the normal velocity, m/s^2.
+    /// Its rate without normal forces and normal velocity, m/s^2.
     pub(super) rate: T,
-    /// Its change for a unit of path along the normal, 1/s.
-    pub(super) per_path: T,
+    /// Its change per displacement along the normal, 1/s.
+    pub(super) per_vn: T,
     /// Its rate for a unit of normal force at each contact.
     pub(super) per_force: [T; 2],
 }
@@ -88,9 +88,9 @@ impl<T: Real> CoupledOscillators<T> {
             } else {
                 acceleration
             };
-            let part = 1.0 / (term + 1) as f64;
-            let next = for_both!(i => step_s * acceleration[i] * part);
-            force = for_both!(i => -(k[i] * (step_s * velocity[i] * part)) - c[i] * next[i]);
+            let factor = 1.0 / (term + 1) as f64;
+            let next = for_both!(i => step_s * acceleration[i] * factor);
+            force = for_both!(i => -(k[i] * (step_s * velocity[i] * factor)) - c[i] * next[i]);
             velocity = next;
         }
         series
@@ -115,7 +115,7 @@ impl<T: Real> CoupledOscillators<T> {
 
     /// The first and the second integral of N over time, m/s and m.
     #[inline(always)]
-    pub(super) fn impulse_and_path(&self, contact: usize, tau: T) -> (T, T) {
+    pub(super) fn impulse_and_displacement(&self, contact: usize, tau: T) -> (T, T) {
         let terms = &self.forces[contact];
         let (mut impulse, mut path) = (tau.zero(), tau.zero());
         for term in (0..TERMS).rev() {
@@ -138,8 +138,8 @@ impl<T: Real> CoupledOscillators<T> {
     pub(super) fn compression_series(&self, contact: usize) -> EventSeries<T> {
         let mut terms = [self.compressions[contact]; TERMS + 1];
         for term in 0..TERMS {
-            let part = self.step_s * (-1.0 / (term + 1) as f64);
-            terms[term + 1] = self.velocities[contact][term] * part;
+            let factor = self.step_s * (-1.0 / (term + 1) as f64);
+            terms[term + 1] = self.velocities[contact][term] * factor;
         }
         EventSeries(terms)
     }
@@ -157,14 +157,14 @@ impl<T: Real> CoupledOscillators<T> {
 
     /// The slip of a contact along its direction at the start.
     #[inline(always)]
-    pub(super) fn slip_series(&self, contact: usize, slip: &SlipSeries<T>) -> EventSeries<T> {
+    pub(super) fn slip_series(&self, contact: usize, slip: &SlipModel<T>) -> EventSeries<T> {
         let EventSeries(compression) = self.compression_series(contact);
         let [first, second] = slip.per_force;
         let mut terms = [slip.speed; TERMS + 1];
         for term in 0..TERMS {
-            let part = self.step_s * (1.0 / (term + 1) as f64);
+            let factor = self.step_s * (1.0 / (term + 1) as f64);
             let force = first * self.forces[0][term] + second * self.forces[1][term];
-            terms[term + 1] = force * part - slip.per_path * compression[term + 1];
+            terms[term + 1] = force * factor - slip.per_vn * compression[term + 1];
         }
         terms[1] = terms[1] + slip.rate * self.step_s;
         EventSeries(terms)
@@ -272,7 +272,7 @@ mod tests {
                 let n = series.force(i, 1.0);
                 assert!((n - force(y, i)).abs() < 0.03, "{coupling:?} {i}: {n}");
                 // The velocity of the centre along the normal is the sum of the impulses.
-                let impulse = |i: usize| series.impulse_and_path(i, 1.0).0;
+                let impulse = |i: usize| series.impulse_and_displacement(i, 1.0).0;
                 let q = start.velocities[i]
                     + start.accelerations[i] * step_s
                     + impulse(i)
@@ -282,7 +282,7 @@ mod tests {
                     "{coupling:?} {i}: {q} {}",
                     y[2 + i]
                 );
-                let path = |i: usize| series.impulse_and_path(i, 1.0).1;
+                let path = |i: usize| series.impulse_and_displacement(i, 1.0).1;
                 let moved = start.velocities[i] * step_s
                     + 0.5 * start.accelerations[i] * step_s * step_s
                     + path(i)

@@ -18,16 +18,16 @@ use crate::model::solids::Material;
 
 /// Degree of the polynomials, without their constant terms.
 const DEGREE: usize = 6;
-/// [`Oscillator::roll_reserve`] with [`COARSE_STEPS`]: the share above 1, and m/s^2. Both it and
-/// the next were tuned for the agreement of made and missed with steps that are 250 times finer.
-const ROLL_RESERVE: (f64, f64) = (0.1, 2.0);
+/// [`Oscillator::rolling_margin`] with [`COARSE_STEPS`]: relative, and in m/s^2. This and the next
+/// were tuned for the agreement of made and missed with steps that are 250 times finer.
+const ROLLING_MARGIN: (f64, f64) = (0.1, 2.0);
 /// [`Oscillator::slip_remainder`] with [`COARSE_STEPS`].
 const SLIP_REMAINDER: (f64, f64) = (0.25, 2e-4);
 /// Steps per contact at which both hold; with finer steps they are smaller.
 const COARSE_STEPS: f64 = 5.0;
-/// Up to this many steps a contact the last one goes from the end of the slip or the roll to the
-/// parting. Its error (1e-4 m/s) does not fall with the step, so finer steps end at N = 0 too.
-const STEPS_ACROSS_ZERO_FORCE: f64 = 10.0;
+/// With at most this many steps a contact, the last step may cross N = 0. Its error (1e-4 m/s) does
+/// not fall with the step. So with more steps, a step also ends at N = 0.
+const MAX_STEPS_CROSSING_ZERO_FORCE: f64 = 10.0;
 
 /// The oscillation over steps of at most `step_s`.
 #[derive(Clone, Copy, Debug)]
@@ -51,10 +51,10 @@ pub(crate) struct Oscillator<T = f64> {
     pub(crate) relaxation: T,
     /// A factor, and a margin in m/s^2: while N falls, a roll ends where mu N is less than the
     /// factor times the friction that rolling needs, plus the margin. Otherwise a tiny step would
-    /// follow.
-    pub(crate) roll_reserve: (T, T),
+    /// follow, to the point where mu N is too small.
+    pub(crate) rolling_margin: (T, T),
     /// A step that ends the slip may leave this fraction of it, and at least this much (m/s).
-    /// Friction's own impulse removes the rest.
+    /// An impulse of friction then sets the rest to zero.
     pub(crate) slip_remainder: (T, T),
     /// Half a step, s.
     pub(crate) half_step_s: T,
@@ -83,16 +83,16 @@ impl Oscillator {
             frequency_squared: stiffness - half_damping * half_damping,
             inverse_stiffness: 1.0 / stiffness,
             relaxation: damping / stiffness / step_s,
-            roll_reserve: (
-                1.0 + ROLL_RESERVE.0 * coarseness,
-                ROLL_RESERVE.1 * coarseness,
+            rolling_margin: (
+                1.0 + ROLLING_MARGIN.0 * coarseness,
+                ROLLING_MARGIN.1 * coarseness,
             ),
             slip_remainder: (
                 SLIP_REMAINDER.0 * COARSE_STEPS / steps,
                 SLIP_REMAINDER.1 * COARSE_STEPS / steps,
             ),
             half_step_s: 0.5 * step_s,
-            stops_at_zero_force: steps > STEPS_ACROSS_ZERO_FORCE,
+            stops_at_zero_force: steps > MAX_STEPS_CROSSING_ZERO_FORCE,
         }
     }
 
@@ -109,7 +109,7 @@ impl Oscillator {
             frequency_squared: f(self.frequency_squared),
             inverse_stiffness: f(self.inverse_stiffness),
             relaxation: f(self.relaxation),
-            roll_reserve: (f(self.roll_reserve.0), f(self.roll_reserve.1)),
+            rolling_margin: (f(self.rolling_margin.0), f(self.rolling_margin.1)),
             slip_remainder: (f(self.slip_remainder.0), f(self.slip_remainder.1)),
             half_step_s: f(self.half_step_s),
             stops_at_zero_force: self.stops_at_zero_force,

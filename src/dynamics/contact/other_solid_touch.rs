@@ -1,11 +1,11 @@
 //! The approach of a ball in contact to another solid.
 //!
-//! A step does not know of the other solid. After it, the gap to that solid is followed through the
-//! step by the cubic that has its values and rates at both ends. A step that passed the solid is
-//! taken again, only so far as the cubic reaches the solid. The cubic errs by at most a few
-//! micrometres (`h^4/384` times the fourth derivative of the gap, which is that of an oscillation
-//! of the contact). So a step whose cubic comes closer than [`GRAZE_M`] inside the step is taken
-//! again too, as far as the closest point: no touch is lost.
+//! A step ignores the other solid. After it, the gap to that solid within the step is taken from
+//! the cubic Hermite interpolant between both ends. A step that passed the solid is repeated,
+//! shortened to the root of the cubic. The cubic errs by at most a few micrometres (`h^4/384` times
+//! the fourth derivative of the gap, which is that of an oscillation of the contact). So a step
+//! whose cubic comes closer than [`GRAZE_M`] is repeated too, shortened to the closest point: no
+//! touch is lost.
 
 use crate::math::real::{Mask, Real};
 use crate::model::constants_per_ball_mass::ModelParams;
@@ -15,14 +15,14 @@ use crate::model::{BallState, SolidId};
 /// Gap at which an approached solid counts as touched, m. A compression of this size changes the
 /// speed of a bounce by less than 1e-6 m/s.
 pub(crate) const ARRIVED_M: f64 = 2e-6;
-/// Greatest overlap that counts as a new touch, m: a solid in which the ball is deeper does not
-/// act.
-const DEEPEST_M: f64 = 1e-4;
-/// An approach closer than this within a step is looked at again, m.
+/// Greatest overlap that counts as a new touch, m. With a deeper one the ball has come in front of
+/// the paper's board from beside it, and the contact would begin fully compressed: it is ignored.
+const MAX_OVERLAP_M: f64 = 1e-4;
+/// A step that comes closer to a solid than this is repeated up to the closest point, m.
 const GRAZE_M: f64 = 1e-5;
-/// The least and the greatest share of a step that is taken again.
-const MIN_SHARE: f64 = 0.02;
-const MAX_SHARE: f64 = 0.98;
+/// The least and the greatest fraction of a step that is repeated.
+const MIN_FRACTION: f64 = 0.02;
+const MAX_FRACTION: f64 = 0.98;
 /// Newton steps to the root of the cubic.
 const NEWTON_STEPS: u32 = 4;
 
@@ -34,8 +34,7 @@ pub(crate) fn has_arrived<T: Real, S: Solid<T>>(
     state: &BallState<T>,
 ) -> T::Mask {
     let (gap, rate) = other.gap(&params.ball, state);
-    // A ball that comes in front of the paper's board from beside it would be compressed at once.
-    let begins = params.splat(-DEEPEST_M).lt(gap) & gap.le(params.splat(ARRIVED_M));
+    let begins = params.splat(-MAX_OVERLAP_M).lt(gap) & gap.le(params.splat(ARRIVED_M));
     begins & rate.is_negative() & other.acts(state)
 }
 
@@ -48,19 +47,19 @@ pub(crate) struct GapAtEnd<T: Real> {
 }
 
 impl<T: Real> GapAtEnd<T> {
-    /// After a step to `after` on a path of at most `longest_path`.
+    /// After a step to `after` on a path of at most `max_displacement`.
     #[inline(always)]
     pub(crate) fn new<O: Solid<T>>(
         params: &ModelParams<T>,
         other: &O,
         after: &BallState<T>,
-        longest_path: T,
+        max_displacement: T,
     ) -> Self {
         let (gap, rate) = other.gap(&params.ball, after);
         Self {
             gap,
             rate,
-            is_near: gap.lt(longest_path) & other.acts(after),
+            is_near: gap.lt(max_displacement) & other.acts(after),
         }
     }
 }
@@ -79,7 +78,7 @@ pub(crate) fn passed<T: Real, O: Solid<T>>(
     let (gap_0, rate_0) = other.gap(&params.ball, before);
     let (gap_1, rate_1, near) = (end.gap, end.rate, end.is_near);
     let is_separated = params.splat(-ARRIVED_M).lt(gap_0);
-    // gap_0 + a s + c s^2 + d s^3 at the share s of the step.
+    // gap_0 + a s + c s^2 + d s^3 at the fraction s of the step.
     let (a, b, change) = (rate_0 * dt, rate_1 * dt, gap_1 - gap_0);
     let c = change * 3.0 - a * 2.0 - b;
     let d = a + b - change * 2.0;
@@ -95,25 +94,28 @@ pub(crate) fn passed<T: Real, O: Solid<T>>(
     let denominator = c + root;
     let closest = -a / denominator.select(denominator.is_positive(), one);
     let grazes = turns & !passes & cubic.value(closest).lt(params.splat(GRAZE_M));
-    let mut share = gap_0.positive_part() / (gap_0 - gap_1).select(passes, one);
+    let mut fraction = gap_0.positive_part() / (gap_0 - gap_1).select(passes, one);
     for _ in 0..NEWTON_STEPS {
-        let slope = cubic.slope(share);
+        let slope = cubic.slope(fraction);
         let falls = slope.is_negative();
-        let next = share - cubic.value(share) / slope.select(falls, one);
-        share = Real::max(Real::min(next.select(falls, share * 0.5), one), one.zero());
+        let next = fraction - cubic.value(fraction) / slope.select(falls, one);
+        fraction = Real::max(
+            Real::min(next.select(falls, fraction * 0.5), one),
+            one.zero(),
+        );
     }
-    let share = closest.select(grazes, share);
-    let share = Real::max(Real::min(share, one * MAX_SHARE), one * MIN_SHARE);
-    let again = near & is_separated & (passes | grazes);
-    (again, share.select(again, one))
+    let fraction = closest.select(grazes, fraction);
+    let fraction = Real::max(Real::min(fraction, one * MAX_FRACTION), one * MIN_FRACTION);
+    let repeats = near & is_separated & (passes | grazes);
+    (repeats, fraction.select(repeats, one))
 }
 
 /// How a step in the world frame came to the solids that the ball did not touch.
 pub(crate) struct Approach<T: Real> {
-    /// The step passed a solid, and is to be taken again.
-    pub(crate) again: T::Mask,
-    /// The share of it that is to be taken then; 1 elsewhere.
-    pub(crate) share: T,
+    /// The step passed a solid, and is to be repeated.
+    pub(crate) repeats: T::Mask,
+    /// The fraction of it that is to be repeated; 1 elsewhere.
+    pub(crate) fraction: T,
     /// The ball has arrived at each solid.
     pub(crate) arrived: [T::Mask; SolidId::COUNT],
 }
@@ -129,8 +131,8 @@ pub(crate) fn approach_in_world<T: Real, A: Solid<T>, B: Solid<T>>(
 ) -> Approach<T> {
     let none = params.splat_mask(false);
     let mut approach = Approach {
-        again: none,
-        share: params.one(),
+        repeats: none,
+        fraction: params.one(),
         arrived: [none; SolidId::COUNT],
     };
     let [on_first, on_second] = touching;
@@ -160,10 +162,10 @@ impl<T: Real> Approach<T> {
         if !looks.any() {
             return;
         }
-        let (again, share) = passed(params, solid, before, &end, dt);
-        let again = again & looks;
-        self.again = self.again | again;
-        self.share = Real::min(share.select(again, self.share), self.share);
+        let (repeats, fraction) = passed(params, solid, before, &end, dt);
+        let repeats = repeats & looks;
+        self.repeats = self.repeats | repeats;
+        self.fraction = Real::min(fraction.select(repeats, self.fraction), self.fraction);
         self.arrived[S::ID.index()] = has_arrived(params, solid, after) & looks;
     }
 }
@@ -178,13 +180,13 @@ struct Cubic<T> {
 
 impl<T: Real> Cubic<T> {
     #[inline(always)]
-    fn value(&self, share: T) -> T {
-        self.gap + share * (self.a + share * (self.c + share * self.d))
+    fn value(&self, fraction: T) -> T {
+        self.gap + fraction * (self.a + fraction * (self.c + fraction * self.d))
     }
 
     #[inline(always)]
-    fn slope(&self, share: T) -> T {
-        self.a + share * (self.c * 2.0 + share * self.d * 3.0)
+    fn slope(&self, fraction: T) -> T {
+        self.a + fraction * (self.c * 2.0 + fraction * self.d * 3.0)
     }
 }
 
@@ -220,20 +222,20 @@ mod tests {
             let speed = |state: &BallState| state.velocity_m_s.abs().sum();
             let path = (speed(&before) + speed(&after)) * dt;
             let end = GapAtEnd::new(&params, &params.board, &after, path);
-            let (again, share) = passed(&params, &params.board, &before, &end, dt);
+            let (repeats, fraction) = passed(&params, &params.board, &before, &end, dt);
             let turn = (-rate / acceleration).clamp(0.0, dt);
             let gap_at = |t: f64| params.board.gap(&params.ball, &at(t)).0;
             let min_gap = gap_at(turn).min(gap_at(dt));
             if min_gap < -2.0 * ARRIVED_M {
-                prop_assert!(again);
+                prop_assert!(repeats);
             }
-            if again {
+            if repeats {
                 // The shorter step goes to the touch or to the closest point, or is one of several
                 // towards it.
-                let reached = gap_at(share * dt);
-                prop_assert!(share < 1.0 && reached > min_gap - 1e-9);
+                let reached = gap_at(fraction * dt);
+                prop_assert!(fraction < 1.0 && reached > min_gap - 1e-9);
                 // A touch in the first hundredths of the step is passed by the shortest step.
-                prop_assert!(reached < gap_at(0.0) + 1e-9 || share <= MIN_SHARE);
+                prop_assert!(reached < gap_at(0.0) + 1e-9 || fraction <= MIN_FRACTION);
             }
         }
     }

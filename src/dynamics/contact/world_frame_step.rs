@@ -4,15 +4,16 @@
 //! them are constant ([`super::coupled_oscillators`]). The motion with these forces is the base of
 //! a step. What they leave out (the turning of the frames, the direction of the slip, the friction
 //! of rolling, the change of drag) is the remainder: an acceleration, evaluated in the middle and
-//! at the end of the step, that acts on the base as two kicks by Simpson's rule. The base answers
-//! to the first of them through the same linear equations.
+//! at the end of the step, that acts on the base as two changes of velocity with Simpson's
+//! weights (at the start it is zero). The base responds to the first of them through the same
+//! linear equations.
 //!
 //! A step ends at the first event of either contact: its slip or its roll ends, its force reaches
 //! zero, the ball parts. A solid that the ball does not touch has no stiffness, no damping and no
 //! friction.
 
 use super::contact_pair::{ContactPair, FIRST, Response, SECOND, for_both};
-use super::coupled_oscillators::{CoupledOscillators, CoupledStart, SlipSeries};
+use super::coupled_oscillators::{CoupledOscillators, CoupledStart, SlipModel};
 use super::friction::{DIRECTION_SLIP_FRACTION, FrictionState, SLIP_TOLERANCE_M_S};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
@@ -21,10 +22,10 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{ContactVector, Solid};
 
 /// A step meant to end the slip may leave this fraction of it, and this much (m/s): the other
-/// contact turns the slip as it decreases. Friction's own impulse removes the rest.
+/// contact turns the slip as it decreases. An impulse of friction then sets the rest to zero.
 const SLIP_REMAINDER: (f64, f64) = (0.2, 1e-3);
-/// Shortest step, as a fraction of the longest. (Two sliding contacts can end each other's slip
-/// without end.)
+/// Shortest step, as a fraction of the longest. (Otherwise two sliding contacts could stop each
+/// other's slip in ever shorter steps.)
 const SHORTEST_STEP: f64 = 2e-4;
 
 /// The result of one step.
@@ -32,7 +33,7 @@ pub(crate) struct WorldContactStep<T: Real> {
     /// Length of the step, s.
     pub(crate) dt: T,
     /// Whether the ball leaves each solid at the end of the step.
-    pub(crate) parts: [T::Mask; 2],
+    pub(crate) separates: [T::Mask; 2],
     /// Impulses of both contacts per unit of mass, m/s.
     pub(crate) impulses: [Vec3<T>; 2],
 }
@@ -58,11 +59,11 @@ struct BaseForces<T: Real> {
     /// The acceleration by gravity and air.
     free: Vec3<T>,
     oscillators: CoupledOscillators<T>,
-    /// What a unit of each normal force does, together with the friction that slides.
+    /// Acceleration for a unit of each normal force, with the sliding friction that goes with it.
     per_force: [Response<T>; 2],
-    /// The part of it that is the sliding friction.
+    /// The part of it by sliding friction.
     sliding: [Response<T>; 2],
-    /// The friction that rolls.
+    /// Acceleration by the friction of rolling contacts.
     rolling: [Response<T>; 2],
 }
 
@@ -70,7 +71,7 @@ struct BaseForces<T: Real> {
 struct StepEnd<T: Real> {
     /// In units of the longest step.
     tau: T,
-    parts: [T::Mask; 2],
+    separates: [T::Mask; 2],
     /// Where the force of each contact ends: before the compression of an outgoing ball does.
     zero_force: [T; 2],
     ends_slip: [T::Mask; 2],
@@ -81,9 +82,9 @@ struct StepEnd<T: Real> {
 pub(crate) struct WorldContact<T: Real> {
     /// Whether the ball touches each solid.
     pub(crate) touching: [T::Mask; 2],
-    /// The longest step, s, and the share of it that this one takes at most.
+    /// The longest step, s, and the fraction of it that this one takes at most.
     pub(crate) step_s: T,
-    pub(crate) share: T,
+    pub(crate) fraction: T,
 }
 
 /// Advances a ball in contact by one step.
@@ -99,7 +100,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
         touching, step_s, ..
     } = *contact;
     let mut pair = ContactPair::new(params, solids, state, touching);
-    // Slips that have ended are removed by friction's own impulses.
+    // Slips that have ended are set to zero by an impulse of friction.
     let at_zero_slip = for_both!(i => {
         let slip = pair.kinematics[i].slip();
         let is_small = slip.norm_squared().le(friction[i].slip_tolerance.squared());
@@ -142,12 +143,12 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
         next.velocity_m_s = next.velocity_m_s.add_scaled(change, weight_end);
     }
     for i in [FIRST, SECOND] {
-        let (impulse, path) = caused.impulse_and_path(i, half);
+        let (impulse, path) = caused.impulse_and_displacement(i, half);
         let (linear, angular) = base.per_force[i];
         next.position_m = next.position_m.add_scaled(linear, path);
         kick(&mut next, (linear, angular), impulse);
         kick(&mut next, at_end[i], weight_end);
-        let (base_impulse, _) = base.oscillators.impulse_and_path(i, end.tau);
+        let (base_impulse, _) = base.oscillators.impulse_and_displacement(i, end.tau);
         impulses[i] = impulses[i]
             .add_scaled(linear, base_impulse + impulse)
             .add_scaled(base.rolling[i].0, dt)
@@ -155,8 +156,10 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
             .add_scaled(at_end[i].0, weight_end);
         let pulls = end.zero_force[i].lt(end.tau);
         if pulls.any() {
-            // The base slides with a negative force too, on the last way to zero compression.
-            let (at_zero_force, _) = base.oscillators.impulse_and_path(i, end.zero_force[i]);
+            // Without the sliding friction that the base has while N is negative.
+            let (at_zero_force, _) = base
+                .oscillators
+                .impulse_and_displacement(i, end.zero_force[i]);
             let negative = (at_zero_force - base_impulse).select(pulls, params.zero());
             kick(&mut next, base.sliding[i], negative);
             impulses[i] = impulses[i].add_scaled(base.sliding[i].0, negative);
@@ -164,8 +167,8 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     }
     *state = next;
     for i in [FIRST, SECOND] {
-        let (share, min_remainder) = SLIP_REMAINDER;
-        let left = Real::max(mode.slip_speeds[i] * share, params.splat(min_remainder));
+        let (fraction, min_remainder) = SLIP_REMAINDER;
+        let left = Real::max(mode.slip_speeds[i] * fraction, params.splat(min_remainder));
         let failed = friction[i].rolling_failed | mode.fails_now[i];
         friction[i] = FrictionState {
             rolling: mode.rolling[i],
@@ -175,7 +178,7 @@ pub(crate) fn step<T: Real, A: Solid<T>, B: Solid<T>>(
     }
     WorldContactStep {
         dt,
-        parts: end.parts,
+        separates: end.separates,
         impulses,
     }
 }
@@ -198,8 +201,8 @@ impl<T: Real> FrictionMode<T> {
         let against_slip = for_both!(i => {
             friction_against(limits[i], unit(slips[i], sizes[i]))
         });
-        // What rolling needs. A failed roll leaves hardly any slip: it follows this, faster than a
-        // step can.
+        // The friction that rolling would need. Just after a roll has failed the slip is tiny, and
+        // turns against this faster than a step resolves.
         let candidates = for_both!(i => at_zero_slip[i] | failed[i]);
         let required = pair.frictions(params, candidates, against_slip);
         let follows = for_both!(i => {
@@ -303,7 +306,7 @@ impl<T: Real> BaseForces<T> {
             spin_rad_s: from.spin_rad_s,
         };
         for i in [FIRST, SECOND] {
-            let (impulse, path) = self.oscillators.impulse_and_path(i, tau);
+            let (impulse, path) = self.oscillators.impulse_and_displacement(i, tau);
             let ((linear, angular), rolling) = (self.per_force[i], self.rolling[i]);
             state.position_m = state
                 .position_m
@@ -367,24 +370,24 @@ fn first_event<T: Real>(
     let one = params.one();
     let oscillators = &base.oscillators;
     let parting = for_both!(i => oscillators.compression_series(i));
-    let parts = for_both!(i => parting[i].first_root(one, contact.touching[i]));
-    let until = Real::min(parts[FIRST].1, parts[SECOND].1);
+    let separates = for_both!(i => parting[i].first_root(one, contact.touching[i]));
+    let until = Real::min(separates[FIRST].1, separates[SECOND].1);
     // An outgoing ball reaches zero force this much before zero compression.
     let relaxation = for_both!(i => pair.materials[i].relaxation_time / oscillators.step_s());
     let zero_force = for_both!(i => {
-        let earlier = (parts[i].1 - relaxation[i]).positive_part();
-        earlier.select(parts[i].0, one)
+        let earlier = (separates[i].1 - relaxation[i]).positive_part();
+        earlier.select(separates[i].0, one)
     });
     let changing = for_both!(i => {
         let kinematics = &pair.kinematics[i];
         let (direction, speed) = (mode.directions[i], mode.slip_speeds[i]);
-        let per_path = kinematics.slip_rate_swing().dot(direction);
+        let per_vn = kinematics.slip_rate_per_vn().dot(direction);
         let from_rolling = pair.slip_rate(i, base.rolling[1 - i]);
         let still = kinematics.frictionless_slip_rate() + from_rolling;
-        let slip = SlipSeries {
+        let slip = SlipModel {
             speed,
-            rate: still.dot(direction) - per_path * kinematics.velocity.normal,
-            per_path,
+            rate: still.dot(direction) - per_vn * kinematics.velocity.normal,
+            per_vn,
             per_force: [
                 pair.slip_rate(i, base.per_force[FIRST]).dot(direction),
                 pair.slip_rate(i, base.per_force[SECOND]).dot(direction),
@@ -402,7 +405,7 @@ fn first_event<T: Real>(
     let change = Real::min(changes[FIRST].1, changes[SECOND].1);
     let tau = Real::min(until, change);
     let at = |event: &(T::Mask, T)| event.0 & event.1.le(tau);
-    let [first_parts, second_parts] = [at(&parts[FIRST]), at(&parts[SECOND])];
+    let [first_parts, second_parts] = [at(&separates[FIRST]), at(&separates[SECOND])];
     let [first_changes, second_changes] = [at(&changes[FIRST]), at(&changes[SECOND])];
     let any = first_parts | second_parts | first_changes | second_changes;
     let mut refined = tau;
@@ -416,10 +419,10 @@ fn first_event<T: Real>(
             );
         refined = earliest.refined_root(tau).select(any, tau);
     }
-    let cut = contact.share.lt(refined);
+    let cut = contact.fraction.lt(refined);
     StepEnd {
-        tau: Real::max(contact.share.select(cut, refined), one * SHORTEST_STEP),
-        parts: [first_parts & !cut, second_parts & !cut],
+        tau: Real::max(contact.fraction.select(cut, refined), one * SHORTEST_STEP),
+        separates: [first_parts & !cut, second_parts & !cut],
         zero_force,
         ends_slip: [
             first_changes & !mode.rolling[FIRST] & !cut,

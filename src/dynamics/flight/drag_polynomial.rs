@@ -1,4 +1,4 @@
-//! A part of a flight under gravity and drag. Without lift it stays in a vertical plane, so its
+//! A segment of a flight under gravity and drag. Without lift it stays in a vertical plane, so its
 //! horizontal path is straight, and everything is a function of the distance along it.
 //!
 //! With `y = 1/v_h`, `q = v_z/v_h` and l the horizontal distance,
@@ -11,7 +11,7 @@
 //! those of [`super::flight_path`]. The distance from the hoop's axis and from the plane of the
 //! board have closed forms in s, as they have in time without drag.
 
-use super::flight_path::{LONGEST_SHARE, SHORTEST_S};
+use super::flight_path::{LONGEST_FRACTION, SHORTEST_S};
 use super::height_path::HeightPath;
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
@@ -20,12 +20,12 @@ use crate::model::ball_params::BallParams;
 
 /// Terms of y and q.
 const TERMS: usize = 9;
-/// The length of an arc as a share of that to the singularity: the greatest of these lines in
-/// `w = drag_strength |v|` (value at w = 0, slope), which lie below the share at which position and
+/// The length of an arc as a fraction of that to the singularity: the maximum of these lines (value
+/// at w = 0, slope) in `w = drag_strength |v|`. They lie below the fraction at which position and
 /// velocity err by 3e-6 m and 7e-5 m/s, less than a contact does (`val_the_series_are_the_flight`).
-const SHARES: [(f64, f64); 3] = [(1.36, -1.66), (1.02, -0.45), (0.76, -0.14)];
-/// The least share, for the strongest drag.
-const MIN_SHARE: f64 = 0.40;
+const FRACTIONS: [(f64, f64); 3] = [(1.36, -1.66), (1.02, -0.45), (0.76, -0.14)];
+/// The least fraction, for the strongest drag.
+const MIN_FRACTION: f64 = 0.40;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
 const MIN_HORIZONTAL_SPEED_M_S: f64 = 1e-6;
 /// Newton steps to the highest point.
@@ -35,19 +35,20 @@ const MAX_STEPS_TO_HEIGHT: u32 = 30;
 /// Height within which a search for a rising crossing must end, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-10;
 
-/// A part of a flight, from s = 0 to 1.
+/// A segment of a flight, from s = 0 to 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DragPolynomial<T: Real> {
     start_x: T,
     start_y: T,
-    /// Horizontal unit vector along the path, and the horizontal path itself, m.
+    /// Horizontal unit vector along the path, and the horizontal displacement over it, m.
     along: Vec2<T>,
-    pub(super) path: Vec2<T>,
+    pub(super) displacement: Vec2<T>,
     /// Coefficients of z and of its rate (m), and of 1/v_h (s/m).
     z: [T; TERMS + 1],
     rate: [T; TERMS],
     slowness: [T; TERMS],
-    length: T,
+    /// Its horizontal length, m.
+    pub(super) length: T,
     /// Height and its rate at s = 1.
     end: (T, T),
     never: T,
@@ -74,13 +75,13 @@ impl<T: Real> DragPolynomial<T> {
         let per_both = one / (speed * accelerations);
         let singular_s = speed.squared() * per_both;
         let shortest = ball.splat(SHORTEST_S);
-        let varies = shortest.le(singular_s * LONGEST_SHARE);
+        let varies = shortest.le(singular_s * LONGEST_FRACTION);
         let strength = ball.drag_strength * speed;
-        let mut share = ball.splat(MIN_SHARE);
-        for (value, slope) in SHARES {
-            share = Real::max(share, strength * slope + value);
+        let mut fraction = ball.splat(MIN_FRACTION);
+        for (value, slope) in FRACTIONS {
+            fraction = Real::max(fraction, strength * slope + value);
         }
-        let length = Real::max(singular_s * share, shortest) * speed_h;
+        let length = Real::max(singular_s * fraction, shortest) * speed_h;
         let along = Vec2::new((v.x * y_0).select(!is_vertical, one), v.y * y_0);
 
         let mut series = Series {
@@ -105,7 +106,7 @@ impl<T: Real> DragPolynomial<T> {
             start_x: p.x,
             start_y: p.y,
             along,
-            path: Vec2::new(along.x * length, along.y * length),
+            displacement: Vec2::new(along.x * length, along.y * length),
             z,
             rate,
             slowness: y,
@@ -122,8 +123,8 @@ impl<T: Real> DragPolynomial<T> {
     pub(super) fn position(&self, s: T) -> Vec3<T> {
         let z = polynomial(&self.z, s);
         Vec3::new(
-            self.start_x + self.path.x * s,
-            self.start_y + self.path.y * s,
+            self.start_x + self.displacement.x * s,
+            self.start_y + self.displacement.y * s,
             z,
         )
     }
@@ -134,7 +135,7 @@ impl<T: Real> DragPolynomial<T> {
         let rate = polynomial(&self.rate, s);
         BallState {
             position_m: self.position(s),
-            velocity_m_s: Vec3::new(self.path.x, self.path.y, rate),
+            velocity_m_s: Vec3::new(self.displacement.x, self.displacement.y, rate),
             spin_rad_s: Vec3::splat(s.zero()),
         }
     }
@@ -326,8 +327,7 @@ struct Series<T> {
 }
 
 impl<T: Real> Series<T> {
-    /// Computes all terms from the first. (The numbers are constants, so that nothing is left of
-    /// the loops.)
+    /// Computes all terms from the first. (N is a constant, so the compiler unrolls the loops.)
     #[inline(always)]
     fn append_all(&mut self) {
         const { assert!(TERMS == 9) };
@@ -341,8 +341,8 @@ impl<T: Real> Series<T> {
         self.append::<7>();
     }
 
-    /// Computes the terms N of r and N + 1 of y and q. Products with the newest terms come last:
-    /// the rest does not wait for them.
+    /// Computes the terms N of r and N + 1 of y and q. Products with the newest terms come last,
+    /// which shortens the chain of dependent operations.
     #[inline(always)]
     fn append<const N: usize>(&mut self) {
         let Self { y, q, r, .. } = self;
@@ -357,9 +357,9 @@ impl<T: Real> Series<T> {
             product = product + r[0] * y[N] + r[N] * y[0];
             square = inner_square::<T, N>(y) + y[0] * y[N] * 2.0;
         }
-        let part = 1.0 / (N + 1) as f64;
-        y[N + 1] = (self.k * part) * product;
-        q[N + 1] = (self.g * part) * square;
+        let factor = 1.0 / (N + 1) as f64;
+        y[N + 1] = (self.k * factor) * product;
+        q[N + 1] = (self.g * factor) * square;
     }
 }
 
@@ -377,8 +377,8 @@ fn inner_square<T: Real, const N: usize>(terms: &[T; TERMS]) -> T {
     sum
 }
 
-/// The polynomial with the coefficients `terms` at `s`, in groups of four terms: they do not wait
-/// for each other.
+/// The polynomial with the coefficients `terms` at `s`, by Estrin's scheme in groups of four terms,
+/// for instruction-level parallelism.
 #[inline(always)]
 fn polynomial<T: Real, const N: usize>(terms: &[T; N], s: T) -> T {
     let square = s.squared();
@@ -424,13 +424,13 @@ mod tests {
                 if !(end_z < 0.0 && end_rate < 0.0) {
                     continue;
                 }
-                for share in [1e-6, 1e-3, 0.007, 0.05, 0.3, 0.6, 0.95] {
-                    let height = end_z * share;
+                for fraction in [1e-6, 1e-3, 0.007, 0.05, 0.3, 0.6, 0.95] {
+                    let height = end_z * fraction;
                     let s = path.falls_through(height);
                     let (z, rate) = path.height_and_rate(s);
                     assert!(
                         (z - height).abs() < 1e-9 && rate < 0.0,
-                        "{vx} {vz} {share}: {z}"
+                        "{vx} {vz} {fraction}: {z}"
                     );
                 }
             }

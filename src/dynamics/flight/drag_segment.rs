@@ -1,7 +1,7 @@
 //! A segment of a flight without lift, and its first touch.
 //!
 //! The horizontal path is straight. So the planes of the board and the circles about the hoop's
-//! axis are reached at places s of a closed form, and the ring is searched as for a parabola
+//! axis are reached at an s of closed form, and the ring is searched as for a parabola
 //! ([`super::ring_search`]). Edges and bracket are searched only by balls that come near them:
 //! their cores are convex, so the gap G has `G'' >= -A`, with A a bound on `-z''`, and cannot close
 //! within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
@@ -51,10 +51,10 @@ pub(crate) fn drag_segment<T: Real>(
     let board = board_events(params, &arc, state, inverse_x);
     let near = comes_near_s(params, &arc, state, inverse_x);
     let last = Real::min(Real::min(one, near), Real::min(fell, board.behind));
-    let motion = HorizontalMotion::new(params, state.position_m, arc.path);
-    let falls_to_top = arc.falls_through(reach);
+    let motion = HorizontalMotion::new(params, state.position_m, arc.displacement);
+    let falls_through_reach = arc.falls_through(reach);
     let until = Real::min(last, board.face);
-    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_to_top, until));
+    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_through_reach, until));
     let mut end = Real::min(until, ring);
     let (mut edge, mut bracket) = (never, never);
     let mut unresolved = ring_unresolved | has_diverged(params, state);
@@ -71,7 +71,7 @@ pub(crate) fn drag_segment<T: Real>(
     }
     if params.ring.has_bracket {
         let is_above = params.ring.reach.lt(state.position_m.z);
-        let from = falls_to_top.select(is_above, params.zero());
+        let from = falls_through_reach.select(is_above, params.zero());
         let near = from.lt(end) & comes_to_bracket(params, &arc, from, end);
         if near.any() {
             let search_failed;
@@ -134,7 +134,7 @@ pub(crate) fn far_segment<T: Real>(
     (segment, is_far)
 }
 
-/// Half the width of what lies near the hoop, and how far in front of the hoop's centre it ends, m.
+/// The region around ring and board: half its width, and its front limit in x, m.
 #[inline(always)]
 fn near_side_and_front<T: Real>(params: &ModelParams<T>) -> (T, T) {
     let front = params.ring.radius + params.ring.reach;
@@ -153,9 +153,10 @@ pub(crate) fn is_far<T: Real>(params: &ModelParams<T>, state: &BallState<T>) -> 
     (front + margin).lt(p.x) | ((side + margin).lt(p.y.abs()) & !behind)
 }
 
-/// Where a ball that is far comes near; never for one that is near at the start, or stays far. Each
-/// segment of a flight ends there: the next one, on which ring and board are searched, then begins
-/// fast and is long. `inverse_x` is 1/x of the path of a ball that goes `forward`.
+/// Where a ball that is far comes near; never for one that is near at the start, or stays far. A
+/// segment ends there. So the next one, the first on which ring and board are searched, starts at
+/// the border of the region and covers as much of it as one polynomial can. For `inverse_x` see
+/// [`inverse_x_of`].
 #[inline(always)]
 fn comes_near_s<T: Real>(
     params: &ModelParams<T>,
@@ -169,8 +170,8 @@ fn comes_near_s<T: Real>(
     let (before, beside) = (p.x - front, p.y.abs() - side);
     let is_before = before.is_positive();
     let is_beside = beside.is_positive();
-    let comes_back = is_before & arc.path.x.is_negative();
-    let comes_in = is_beside & (p.y * arc.path.y).is_negative();
+    let comes_back = is_before & arc.displacement.x.is_negative();
+    let comes_in = is_beside & (p.y * arc.displacement.y).is_negative();
     let approaches = (comes_back | comes_in) & is_far(params, start);
     if !approaches.any() {
         return never;
@@ -178,7 +179,7 @@ fn comes_near_s<T: Real>(
     let to_front = (-before * inverse_x).select(comes_back, never.select(is_before, zero));
     let mut to_side = never.select(is_beside, zero);
     if comes_in.any() {
-        let rate = arc.path.y.abs().select(comes_in, one);
+        let rate = arc.displacement.y.abs().select(comes_in, one);
         to_side = (beside / rate).select(comes_in, to_side);
     }
     Real::max(to_front, to_side).select(approaches, never)
@@ -187,7 +188,7 @@ fn comes_near_s<T: Real>(
 /// 1/x of the path of a ball that flies towards the board; any number for others.
 #[inline(always)]
 fn inverse_x_of<T: Real>(arc: &DragPolynomial<T>) -> T {
-    let x = arc.path.x;
+    let x = arc.displacement.x;
     x.one() / x.select(x.is_negative(), -x.one())
 }
 
@@ -210,7 +211,7 @@ fn rising_crossing<T: Real>(
     if !may_rise.any() {
         return (may_rise, may_rise);
     }
-    // A ball that stays far from the ring rises outside it, wherever that is.
+    // A ball that stays far from the ring rises outside it: the exact point does not matter.
     let outside = may_rise & is_far(params, start) & end_z.is_positive();
     let may_rise = may_rise & !outside;
     if !may_rise.any() {
@@ -256,7 +257,7 @@ fn board_events<T: Real>(
     let board = &params.board;
     let (zero, one, never) = (params.zero(), params.one(), params.ball.never_s);
     let x = start.position_m.x;
-    let approaching = arc.path.x.is_negative();
+    let approaching = arc.displacement.x.is_negative();
     let plane = Real::max((board.touch_x - x) * inverse_x, zero);
     let behind = Real::max((board.core.low.x - x) * inverse_x, zero);
     let is_past = x.lt(board.touch_x - params.splat(BEHIND_PLANE_M));
@@ -323,8 +324,8 @@ fn comes_to_bracket<T: Real>(
     outside & near_x & near_y
 }
 
-/// Where the ball first touches a plate with a convex core between two places of an arc (never
-/// elsewhere), and where the search reached its limit.
+/// The s between two values at which the ball first touches a plate with a convex core (else
+/// never), and whether the search reached its limit.
 #[inline(always)]
 fn convex_touch<T: Real>(
     core: &Rectangle<T>,

@@ -1,4 +1,4 @@
-//! A part of a flight as a polynomial of time: gravity, drag and lift.
+//! A segment of a flight as a polynomial of time: gravity, drag and lift.
 //!
 //! The coefficients are those of the Taylor series of the motion, term by term from
 //!
@@ -6,9 +6,10 @@
 //! v' = -g z^ - k s v + l (w x v)        s = |v|,  s^2 = v.v
 //! ```
 //!
-//! As a function of complex time `|v|` is singular about `|v|/|a|` from the start (for gravity
-//! alone exactly there: where `v_h^2 + (v_z - g t)^2 = 0`), with |a| the sum of the sizes of all
-//! accelerations. So a path holds for a fraction of that time. Without air it is the parabola.
+//! As a function of complex time, `|v|` has a singularity at a distance of about `|v|/|a|` (for
+//! gravity alone exactly there: where `v_h^2 + (v_z - g t)^2 = 0`), with |a| the sum of the sizes
+//! of all accelerations. That limits the radius of convergence, so a path holds for a fraction of
+//! that time. Without air it is the parabola.
 
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec3};
@@ -17,15 +18,15 @@ use crate::model::ball_params::BallParams;
 
 /// Terms of the velocity.
 const TERMS: usize = 9;
-/// The time for which a path holds, as a share of |v|/|a|: the position then errs by less than 1e-7
-/// m.
-const SHARE: f64 = 0.45;
+/// The time for which a path holds, as a fraction of |v|/|a|: the position then errs by less than
+/// 1e-7 m.
+const FRACTION: f64 = 0.45;
 /// The shortest path, s.
 pub(super) const SHORTEST_S: f64 = 0.01;
-/// Where the shortest path is a greater share than this of |v|/|a|, |v| is taken as constant.
-pub(super) const LONGEST_SHARE: f64 = 0.6;
+/// Where the shortest path is a greater fraction than this of |v|/|a|, |v| is taken as constant.
+pub(super) const LONGEST_FRACTION: f64 = 0.6;
 
-/// A part of a flight.
+/// A segment of a flight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlightPath<T: Real = f64> {
     /// Coefficients of the position, m.
@@ -54,7 +55,7 @@ impl<T: Real> FlightPath<T> {
         let accelerations = ball.gravity + (ball.drag * speed + ball.lift.abs() * spin) * speed;
         let singular_s = speed / accelerations;
         let shortest = ball.splat(SHORTEST_S);
-        let longest_s = Real::max(singular_s * SHARE, shortest);
+        let longest_s = Real::max(singular_s * FRACTION, shortest);
         let speed_bound = speed + ball.gravity * longest_s;
         let air_acceleration_bound = if ball.has_air {
             (ball.drag * speed_bound + ball.lift.abs() * spin) * speed_bound
@@ -80,7 +81,7 @@ impl<T: Real> FlightPath<T> {
         (velocity[0], velocity[1]) = (v, acceleration);
         let mut speeds = [zero; TERMS];
         speeds[0] = speed;
-        let varies = shortest.le(singular_s * LONGEST_SHARE);
+        let varies = shortest.le(singular_s * LONGEST_FRACTION);
         let half_inverse = (one * 0.5) / speed.select(varies, one);
         for n in 1..TERMS - 1 {
             // The coefficient n of v.v, and from it that of |v|.

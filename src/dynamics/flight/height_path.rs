@@ -12,12 +12,12 @@ pub(super) trait HeightPath<T: Real> {
     fn first_height(&self) -> T;
     /// z and its rate at `t`.
     fn height_and_rate(&self, t: T) -> (T, T);
-    /// When it falls through `height`. Where it does not, the path is below `height` from the
-    /// result on: never, or (a parabola) the time of its highest point.
+    /// The time at which it falls through `height`. If it does not: never, or for a parabola the
+    /// time of the highest point.
     fn falls_through(&self, height: T) -> T;
-    /// Bounds on the time at which it rises through `height`: one not later, one not earlier. From
-    /// the later one to the highest point the path is above `height`. Where it does not rise
-    /// through it: any times before the highest point.
+    /// A lower and an upper bound on the time at which it rises through `height`. From the upper
+    /// bound to the highest point it is above `height`. If it does not rise through it: any two
+    /// times before the highest point.
     fn rises_between(&self, height: T) -> (T, T);
     /// A bound on -z''.
     fn acceleration_bound(&self) -> T;

@@ -1,14 +1,13 @@
 //! A segment of a flight with lift, and its first touch.
 //!
-//! The first touch is found with certainty, however short a graze. The search steps through the
-//! segment; at each time it asks every solid how long no touch is possible, and takes the shortest
-//! of the answers.
+//! The first touch is found with certainty, however short a graze, by conservative advancement:
+//! each step is the shortest of the times in which the solids cannot be reached.
 //!
 //! - Board and bracket: their cores are convex, so the distance d of the centre is a convex
 //!   function of its position, and `d'' >= -A`, with A a bound on the acceleration. A gap G with
 //!   the rate G' cannot close within `2 G/(sqrt(G'^2 + 2 A G) - G')`.
-//! - The ring's circle is not convex. There the search has the regions of a ball above the ring,
-//!   outside, within the circle, and near the rod. In the last one the bound is on
+//! - The ring's circle is not convex. The search distinguishes four regions: above the ring,
+//!   outside it, within the circle, and near the tube. In the last one the bound is on
 //!   `F = (R_H - D)^2 + z^2 - reach^2`:
 //!
 //! ```text
@@ -31,26 +30,26 @@ use crate::model::{BallState, SolidId};
 
 /// Height to which the search for a crossing converges where there is one, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-9;
-/// Nearer than this to the plane in which it touches the face, the ball's gap to the board counts,
-/// m.
+/// Within this distance of the plane in which the ball touches the face, the exact gap to the board
+/// is used, m.
 const PLANE_MARGIN_M: f64 = 1e-9;
 /// How long before it falls to the height of the hoop the search begins, s.
 const HEIGHT_MARGIN_S: f64 = 1e-9;
 /// Limit on the iterations. The search needs five or ten; a ball that parts with hardly any speed
 /// more.
 const MAX_ITERATIONS: u32 = 10_000;
-/// Longest step near the rod, s: the bounds on F'' hold for so long.
+/// Longest step near the tube, s: the bounds on F'' hold for so long.
 const LONGEST_STEP_S: f64 = 0.05;
-/// Near the rod is what is nearer to its circle, along and across the plane of the hoop, than this
-/// share of the reach.
+/// The bounds near the tube apply where `|z|` and `|D - R_H|` are below this multiple of the reach.
 const NEAR: f64 = 1.01;
-/// Farther from the reach of the bracket than this share of it, its gap does not count.
+/// Farther than this multiple of the reach outside the bracket's box, the distance to the box
+/// stands for the exact gap.
 const FAR: f64 = 0.1;
-/// A ball counts as inside the circle below this share of the distance from the axis at which it
+/// A ball counts as inside the circle where D is below this fraction of `R_H - reach`, at which it
 /// touches.
-const MAX_DISTANCE_SHARE: f64 = 0.9;
-/// The bounds near the rod hold down to this share of that distance.
-const BOUND_DISTANCE_SHARE: f64 = 0.8;
+const MAX_DISTANCE_FRACTION: f64 = 0.9;
+/// The bounds near the tube hold down to this fraction of `R_H - reach`.
+const BOUND_DISTANCE_FRACTION: f64 = 0.8;
 
 /// The segment that starts at `state`.
 #[inline(always)]
@@ -340,8 +339,8 @@ fn bracket_step<T: Real>(
     }
     let reach = params.ring.reach;
     let (p, bracket) = (state.position_m, &params.ring.bracket);
-    // Far along one coordinate, or within the ring's circle, where the ring is nearer: how far at
-    // least.
+    // A lower bound on the distance of a ball that is far along one coordinate, or within the
+    // ring's circle, where the ring is nearer.
     let beyond_x = p.x - bracket.high.x - reach;
     let beyond_y = p.y.abs() - bracket.high.y - reach;
     let beyond_z = p.z.abs() - reach;
@@ -379,7 +378,7 @@ fn ring_step<T: Real>(
     let outside_step = (beyond * path.inverse_speed_bound).select(outside, zero);
 
     // Within the circle: D^2 grows at most as fast as with the greatest horizontal speed.
-    let within = distance.lt(inner * MAX_DISTANCE_SHARE);
+    let within = distance.lt(inner * MAX_DISTANCE_FRACTION);
     let horizontal = horizontal_squared.sqrt();
     let fastest = horizontal + path.air_acceleration_bound * time_left;
     let growth = Real::max(
@@ -391,7 +390,7 @@ fn ring_step<T: Real>(
     let within_step = (root - dot) / growth;
     let within_step = within_step.select(within, zero);
 
-    // Near the rod.
+    // Near the tube.
     let inward = radius - distance;
     let value = inward.squared() + p.z.squared() - reach.squared();
     let half_slope = p.z * v.z - inward * dot / Real::max(distance, reach * 1e-3);
@@ -410,7 +409,7 @@ fn ring_step<T: Real>(
             horizontal + path.air_acceleration_bound * longest,
             params.splat(1e-9),
         );
-    let nearest = Real::max(inner * BOUND_DISTANCE_SHARE, closest);
+    let nearest = Real::max(inner * BOUND_DISTANCE_FRACTION, closest);
     let half_bound = (radius * max_angular.squared() / (nearest.squared() * nearest)
         + reach * (path.acceleration_bound + path.air_acceleration_bound) * NEAR
         - slowest.squared())
@@ -425,7 +424,7 @@ fn ring_step<T: Real>(
     );
     let denominator = (root - half_slope).select(closing, half_bound.select(bounded, one));
     let min_step = zero.select(closing, params.splat(PARTING_STEP));
-    let to_within = (distance - inner * BOUND_DISTANCE_SHARE) * path.inverse_speed_bound;
+    let to_within = (distance - inner * BOUND_DISTANCE_FRACTION) * path.inverse_speed_bound;
     let near_step = Real::min(
         Real::max(numerator / denominator, min_step),
         Real::max(Real::min(longest, to_within), min_step),

@@ -1,8 +1,8 @@
 //! The first touch of the ring by a ball in free flight, found with certainty.
 //!
-//! It is the first root of `F(t) = (R_H - D)^2 + z^2 - R^2`, where `D` is the distance from the
-//! hoop's axis. The search skips the parts of the arc with `|z| > R` or `|D - R_H| > R`. (With a
-//! rod, R stands for the reach: its radius more.) Elsewhere
+//! It is the first root of `F(t) = (R_H - D)^2 + z^2 - reach^2`, where `D` is the distance from the
+//! hoop's axis and the reach is the sum of the radii of ball and tube. The search skips the parts
+//! of the arc with `|z| > reach` or `|D - R_H| > reach`. Elsewhere
 //!
 //! ```text
 //! F'' = 2 (v_h^2 + v_z^2 - g z - R_H L^2/D^3),    L = x v_y - y v_x (constant in flight)
@@ -16,7 +16,7 @@ use crate::math::real::{Mask, Real};
 use crate::math::vector::{Vec2, Vec3};
 use crate::model::constants_per_ball_mass::ModelParams;
 
-/// F at which an approaching ball touches the ring, as a fraction of R^2.
+/// F at which an approaching ball touches the ring, as a fraction of the square of the reach.
 const TOUCH_TOLERANCE: f64 = 1e-10;
 /// Shortest jump, s; a shorter one is left to the safe step.
 const MIN_JUMP_S: f64 = 1e-9;
@@ -82,12 +82,12 @@ impl<T: Real> HorizontalMotion<T> {
 /// The parts of an arc in which no touch is possible, and the bound on F'' elsewhere.
 struct SearchBounds<T> {
     /// The centre falls through z = reach.
-    falls_to_top: T,
+    falls_through_reach: T,
     /// The centre rises through z = -reach, at this time or later.
-    rises_to_bottom: T,
+    rises_through_minus_reach: T,
     /// The centre rises through z = reach, at this time or before.
-    rises_to_top: T,
-    /// Times at which the centre enters and leaves the circle of radius R_H - R.
+    rises_through_reach: T,
+    /// Times at which the centre enters and leaves the circle of radius `R_H - reach`.
     inner_enter: T,
     inner_leave: T,
     /// The part of -F''/2 that comes from the curvature of the ring.
@@ -106,7 +106,7 @@ impl<T: Real> SearchBounds<T> {
         params: &ModelParams<T>,
         motion: &HorizontalMotion<T>,
         heights: &impl HeightPath<T>,
-        falls_to_top: T,
+        falls_through_reach: T,
     ) -> Self {
         let z = heights.first_height();
         let (ring_radius, reach) = (params.ring.radius, params.ring.reach);
@@ -121,9 +121,9 @@ impl<T: Real> SearchBounds<T> {
         Self {
             overlap: Real::min(value, value.zero()),
             height_bound: heights.acceleration_bound() * reach,
-            falls_to_top,
-            rises_to_bottom: heights.rises_between(-reach).0,
-            rises_to_top: heights.rises_between(reach).1,
+            falls_through_reach,
+            rises_through_minus_reach: heights.rises_between(-reach).0,
+            rises_through_reach: heights.rises_between(reach).1,
             inner_enter: (motion.closest_time - half_time)
                 .select(!motion.is_vertical, -params.ball.never_s),
             inner_leave: (motion.closest_time + half_time)
@@ -136,13 +136,14 @@ impl<T: Real> SearchBounds<T> {
 
 /// Time of the first touch of the ring's circle before `search_end` (else never), and whether the
 /// search reached its iteration limit. The time may be any variable in which the horizontal motion
-/// is even; `falls_to_top` is that at which the centre falls through the reach above the hoop.
+/// is linear; `falls_through_reach` is that at which the centre falls through the reach above the
+/// hoop.
 #[inline(always)]
 pub(super) fn ring_time<T: Real>(
     params: &ModelParams<T>,
     motion: &HorizontalMotion<T>,
     heights: &impl HeightPath<T>,
-    (falls_to_top, search_end): (T, T),
+    (falls_through_reach, search_end): (T, T),
 ) -> (T, T::Mask) {
     let (zero, reach) = (params.zero(), params.ring.reach);
     let outer = params.ring.radius + reach;
@@ -155,16 +156,16 @@ pub(super) fn ring_time<T: Real>(
         | motion.is_vertical & outer.squared().lt(motion.distance_squared);
     let stop = Real::min(search_end, leave_time);
     let mut t = enter_time.select(!motion.is_vertical, zero).positive_part();
-    // Start when the ball has come near the ring and has fallen through z = R. A ball that is below
-    // z = R and still rising then (a release from beneath) starts when it has come near.
+    // Start when the ball has come near the ring and has fallen through z = reach. A ball that is
+    // lower and still rising then (a release from beneath) starts when it has come near.
     let (z_then, _) = heights.height_and_rate(t);
-    t = Real::max(falls_to_top, t).select(reach.lt(z_then), t);
+    t = Real::max(falls_through_reach, t).select(reach.lt(z_then), t);
 
     let mut searching = t.lt(stop) & !out_of_reach;
     let mut found = params.ball.never_s;
     let mut iterations = 0;
     if searching.any() {
-        let bounds = SearchBounds::new(params, motion, heights, falls_to_top);
+        let bounds = SearchBounds::new(params, motion, heights, falls_through_reach);
         while searching.any() && iterations < MAX_ITERATIONS {
             iterations += 1;
             let (touches, next) = search_step(params, motion, &bounds, heights, t);
@@ -220,18 +221,20 @@ fn search_step<T: Real>(
     let above = reach.lt(z_t);
     let jump = Real::max(
         Real::max(
-            bounds.falls_to_top.select(above, zero),
-            bounds.rises_to_bottom.select(below, zero),
+            bounds.falls_through_reach.select(above, zero),
+            bounds.rises_through_minus_reach.select(below, zero),
         ),
         bounds.inner_leave.select(inside, zero),
     );
     let jumps = (t + MIN_JUMP_S).lt(jump);
-    // The bound holds up to the inner circle and, for a rising ball, up to z = R. Beyond them comes
-    // a part to jump over.
+    // The bound holds up to the inner circle and, for a rising ball, up to z = reach. Beyond them
+    // comes a part to jump over.
     let reaches_inner = t.lt(bounds.inner_enter) & bounds.inner_enter.lt(safe);
-    let reaches_top = t.lt(bounds.rises_to_top) & bounds.rises_to_top.lt(safe) & !reaches_inner;
-    let step = bounds
-        .inner_leave
-        .select(reaches_inner, bounds.falls_to_top.select(reaches_top, safe));
+    let reaches_top =
+        t.lt(bounds.rises_through_reach) & bounds.rises_through_reach.lt(safe) & !reaches_inner;
+    let step = bounds.inner_leave.select(
+        reaches_inner,
+        bounds.falls_through_reach.select(reaches_top, safe),
+    );
     (touches, jump.select(jumps, step))
 }

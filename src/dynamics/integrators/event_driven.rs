@@ -40,8 +40,8 @@ pub(crate) enum ContactState {
 /// A shot in progress.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotProgress {
-    /// In the world frame. If `frame` names a solid, `motion` is valid and this is out of date, but
-    /// after a step that was reported.
+    /// In the world frame. If `frame` names a solid, `motion` holds the state and this is out of
+    /// date, except right after a step was reported.
     pub(crate) state: BallState,
     /// The ball in the frame of a contact.
     pub(crate) motion: ContactFrameState,
@@ -52,7 +52,7 @@ pub(crate) struct ShotProgress {
     /// Friction at the board and at the ring.
     pub(crate) friction: [FrictionState; SolidId::COUNT],
     /// Length of the next step in contact, in units of the longest.
-    pub(crate) step_share: f64,
+    pub(crate) step_fraction: f64,
     /// Time in the present contact with one solid; not yet counted in `time_s`.
     pub(crate) contact_time_s: f64,
     /// Time for which the ball has rolled on both solids without a break, s.
@@ -79,7 +79,7 @@ impl ShotProgress {
             contact: ContactState::Free,
             touching: [false; SolidId::COUNT],
             friction: [friction; SolidId::COUNT],
-            step_share: 1.0,
+            step_fraction: 1.0,
             contact_time_s: 0.0,
             rolling_time_s: 0.0,
             time_s: 0.0,
@@ -95,7 +95,7 @@ impl ShotProgress {
     pub(crate) fn begin_single_contact(&mut self, solid: SolidId) {
         self.contact = ContactState::OnSolid(solid);
         self.frame = Some(solid);
-        self.step_share = 1.0;
+        self.step_fraction = 1.0;
         self.contact_time_s = 0.0;
     }
 
@@ -113,7 +113,7 @@ impl ShotProgress {
         self.end_single_contact(ContactState::InWorld);
         self.update_state(params);
         self.touching = SolidId::ALL.map(|id| id == solid);
-        self.step_share = 1.0;
+        self.step_fraction = 1.0;
     }
 
     /// The ball now also touches `arrived`.
@@ -121,7 +121,7 @@ impl ShotProgress {
         self.end_single_contact(ContactState::InWorld);
         self.update_state(params);
         self.touching = [true; SolidId::COUNT];
-        self.step_share = 1.0;
+        self.step_fraction = 1.0;
         self.contacts.push(arrived);
         self.friction[arrived.index()] = FrictionState::new(params);
     }
@@ -237,9 +237,9 @@ fn single_step<T: ScalarReal, S: Solid<T>>(
     contact: &Contact<'_, T, S>,
     motion: &ContactFrameState<T>,
     friction: &FrictionState<T>,
-    share: T,
+    fraction: T,
 ) -> MacroStep<T> {
-    contact.step(motion, friction, share)
+    contact.step(motion, friction, fraction)
 }
 
 /// The same in the world frame.
@@ -388,15 +388,15 @@ impl<O: Observer> Run<'_, O> {
         shot.contacts.push(solid);
         shot.friction[solid.index()] = FrictionState::new(self.params);
         shot.set_touching(self.params, SolidId::ALL.map(|id| id == solid));
-        shot.step_share = 1.0;
+        shot.step_fraction = 1.0;
         let time_s = shot.time_s;
         let state = shot.state;
         self.observer.touch(time_s, solid, &state);
     }
 
-    fn part(&mut self, solid: SolidId) {
+    fn separation(&mut self, solid: SolidId) {
         let time_s = self.shot.time_s + self.shot.contact_time_s;
-        self.observer.part(time_s, solid, &self.shot.state);
+        self.observer.separation(time_s, solid, &self.shot.state);
     }
 
     /// Contact with one solid until the ball parts, touches the other solid, or the shot ends.
@@ -414,7 +414,7 @@ impl<O: Observer> Run<'_, O> {
         };
         let mut motion = self.shot.motion.map(T::from_f64);
         let mut friction = self.shot.friction[S::ID.index()].map(T::from_f64);
-        let mut share = T::from_f64(self.shot.step_share);
+        let mut fraction = T::from_f64(self.shot.step_fraction);
         let mut elapsed = T::from_f64(self.shot.contact_time_s);
         let allowed = T::from_f64(self.limits.time_limit_s - self.shot.time_s);
         loop {
@@ -422,18 +422,18 @@ impl<O: Observer> Run<'_, O> {
             if self.shot.steps >= self.limits.max_steps {
                 return Some(self.shot.verdict(Ending::Unresolved, false));
             }
-            let step = single_step(&contact, &motion, &friction, share);
+            let step = single_step(&contact, &motion, &friction, fraction);
             let after = solid.to_world(&params.ball, &step.motion);
             let path = (motion.speed_bound() + step.motion.speed_bound()) * step.dt;
             let end = GapAtEnd::new(params, other, &after, path);
-            let mut again = false;
-            share = params.one();
+            let mut repeats = false;
+            fraction = params.one();
             if end.is_near {
                 let before = solid.to_world(&params.ball, &motion);
-                (again, share) = passed(params, other, &before, &end, step.dt);
+                (repeats, fraction) = passed(params, other, &before, &end, step.dt);
             }
-            if again {
-                share = contact.share_of_longest(share * step.dt);
+            if repeats {
+                fraction = contact.fraction_of_longest(fraction * step.dt);
                 continue;
             }
             let was_below = motion.is_below_hoop();
@@ -456,8 +456,8 @@ impl<O: Observer> Run<'_, O> {
                 let made = crossing.is_made(params, &after);
                 return Some(self.shot.verdict(ending, made));
             }
-            if step.parts {
-                self.part(S::ID);
+            if step.separates {
+                self.separation(S::ID);
                 self.shot.end_single_contact(ContactState::Free);
                 return None;
             }
@@ -468,7 +468,7 @@ impl<O: Observer> Run<'_, O> {
                 return None;
             }
             if !solid.acts(&after) {
-                self.part(S::ID);
+                self.separation(S::ID);
                 self.shot.end_single_contact(ContactState::Free);
                 return None;
             }
@@ -512,7 +512,7 @@ impl<O: Observer> Run<'_, O> {
             let contact = WorldContact {
                 touching: self.shot.touching,
                 step_s: self.limits.longest_world_step_s,
-                share: self.shot.step_share,
+                fraction: self.shot.step_fraction,
             };
             self.shot.steps += 1;
             if self.shot.steps >= self.limits.max_steps {
@@ -521,9 +521,9 @@ impl<O: Observer> Run<'_, O> {
             let step = world_step(params, solids, &mut after, &mut friction, &contact);
             let touching = contact.touching;
             let approach = approach_in_world(params, solids, touching, (&before, &after), step.dt);
-            self.shot.step_share = approach.share;
-            if approach.again {
-                self.shot.step_share *= step.dt / contact.step_s;
+            self.shot.step_fraction = approach.fraction;
+            if approach.repeats {
+                self.shot.step_fraction *= step.dt / contact.step_s;
                 continue;
             }
             let shot = &mut self.shot;
@@ -543,9 +543,9 @@ impl<O: Observer> Run<'_, O> {
             let mut now = touching;
             for solid in SolidId::ALL {
                 let i = solid.index();
-                if touching[i] && (step.parts[i] || !acts[i]) {
+                if touching[i] && (step.separates[i] || !acts[i]) {
                     now[i] = false;
-                    self.part(solid);
+                    self.separation(solid);
                 }
                 if approach.arrived[i] {
                     now[i] = true;

@@ -222,7 +222,7 @@ impl<O: Observer> Run<'_, O> {
                     self.contacts.push(solid);
                     self.observer.touch(self.time_s, solid, state);
                 }
-                (true, false) => self.observer.part(self.time_s, solid, state),
+                (true, false) => self.observer.separation(self.time_s, solid, state),
                 _ => {}
             }
         }

@@ -105,7 +105,7 @@ impl<T: Real> ContactKinematics<T> {
     /// The part of the slip's rate that is proportional to the normal velocity, for a unit of it:
     /// `-(n' + w x n)`.
     #[inline(always)]
-    pub(crate) fn slip_rate_swing(&self) -> Vec2<T> {
+    pub(crate) fn slip_rate_per_vn(&self) -> Vec2<T> {
         let (v, w) = (self.velocity.tangent, self.spin.tangent);
         Vec2::new(
             -(self.curvature_1 * v.x + w.y),
@@ -118,7 +118,7 @@ impl<T: Real> ContactKinematics<T> {
     #[inline(always)]
     fn slip_rate_of_motion(&self) -> Vec2<T> {
         let v = self.velocity;
-        let swing = self.slip_rate_swing();
+        let swing = self.slip_rate_per_vn();
         let twist = self.lever * self.spin.normal;
         Vec2::new(
             swing.x * v.normal + twist * (self.curvature_2 * v.tangent.y),

@@ -86,7 +86,7 @@ pub fn advice_text(
                     && !(cause.cause.name() == "backspin" && advice.backspin_is_assumed)
             };
             text += &format!(
-                "The same hand can make {} if you change the shot: ",
+                "With the same scatter you can make {} if you change the shot: ",
                 percent(p.mean + gain.mean)
             );
             text += &match advice.causes.iter().find(is_advice) {
@@ -108,7 +108,7 @@ pub fn advice_text(
     }
     if let Some(first) = advice.training.first() {
         text += &format!(
-            "What to train: {}. A tenth less scatter there gains {:.1} points.\n",
+            "What to train: {}. 10 % less scatter there gains {:.1} points.\n",
             scatter_in_words(first.cause),
             100.0 * first.gain.mean
         );
@@ -164,7 +164,7 @@ pub fn advice_text(
             advice.usual[3] / value_units(units)[3].1
         );
     }
-    text += "\na tenth less scatter\n";
+    text += "\n10 % less scatter\n";
     for training in &advice.training {
         text += &format!(
             "  {:<38} {}\n",
