@@ -177,9 +177,12 @@ mod tests {
             };
             let by_distance = height_without_lift(&params, &start, length_m);
             let in_time = height_with_lift(&params, &start, length_m);
-            // Further below, a steep fall multiplies the error of the distance.
             prop_assume!(by_distance > -5.0);
-            prop_assert!((by_distance - in_time).abs() < 1e-4, "{by_distance} {in_time}");
+            // A segment errs by 7e-5 m/s in velocity, for up to three seconds. On a steep path the
+            // height errs by the slope times the distance.
+            let slope = (vz.abs() + 10.0) / vx.abs();
+            let tolerance = 7e-5 * 3.0 * (1.0 + slope);
+            prop_assert!((by_distance - in_time).abs() < tolerance, "{by_distance} {in_time}");
         }
     }
 }
