@@ -131,9 +131,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     if let Some((points, shots)) = needed {
         text += &match shots {
             MOST_SHOTS.. => {
-                format!("\nMore than {MOST_SHOTS} shots make P known to {points} points.\n")
+                format!(
+                    "\nMore than {MOST_SHOTS} shots make P known to {points} points (one standard deviation).\n"
+                )
             }
-            _ => format!("\nAbout {shots} shots make P known to {points} points.\n"),
+            _ => format!(
+                "\nAbout {shots} shots make P known to {points} points (one standard deviation).\n"
+            ),
         };
     }
     print_prose(&text)

@@ -47,7 +47,7 @@ impl InstructionSet {
     }
 
     /// The instructions of the lanes; `None` for scalar code. That is also used on x86-64 without
-    /// AVX2: SSE2 holds two numbers, and lanes of them would add a third to the time of a build.
+    /// AVX2: SSE2 holds two numbers, and lanes of them would take a third of the time of a build.
     pub(crate) fn level(self) -> Option<Level> {
         #[cfg(target_arch = "x86_64")]
         let level = self.0.filter(|level| level.as_avx2().is_some());

@@ -166,8 +166,8 @@ pub fn check_text(table: &ShotTable, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     match table.costliest() {
         Some(check) => format!(
-            "Between the places, interpolation costs at most {:.4} in P\n\
-             ({} checked; most at {:.2} {long}, {:.1} deg).\n",
+            "Halfway between the places, interpolation costs at most {:.4} in P\n\
+             ({} checked; most at {:.2} {long}, {:.1} deg). Elsewhere it may cost more.\n",
             check.loss().max(0.0),
             table.checks.len(),
             check.location.distance_m / metre,
