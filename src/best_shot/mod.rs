@@ -6,7 +6,9 @@ mod search;
 mod shot_table;
 
 pub use crate::shooter::ShotKind;
-pub use physics_comparison::{PhysicsRow, PhysicsVariant, compare_physics, physics_variants};
+pub use physics_comparison::{
+    PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, compare_physics, physics_variants,
+};
 pub use search::{BestShot, BestShotError, BestShots, Limit, NoShot, find, find_kinds};
 pub use shot_table::{
     InterpolationCheck, MOST_HALVINGS, MOST_NODES, ShotTable, ShotTableError, ShotTableRequest,

@@ -27,8 +27,37 @@ pub struct PhysicsRow {
     pub bank: Result<BestShot, NoShot>,
     /// Where the undisturbed path of the best direct shot falls past the hoop's centre, m.
     pub aim_past_centre_m: Option<f64>,
-    /// P, here, of the direct shot that is best in the first row.
-    pub first_shot: Option<Estimate>,
+    /// P of [`PhysicsComparison::same_shot`].
+    pub same_shot: Option<Estimate>,
+}
+
+/// The best shots of a profile under each physics, and one shot under all of them.
+#[derive(Clone, Debug)]
+pub struct PhysicsComparison {
+    /// One for each physics.
+    pub rows: Vec<PhysicsRow>,
+    /// The shot that is released the same way in every row.
+    pub same_shot: SameShot,
+}
+
+/// A shot that is released the same way under each physics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SameShot {
+    /// The one that the profile gives: that of a shooter who does not know the answer.
+    OfProfile,
+    /// The best direct shot of the first row.
+    BestOfFirstRow,
+}
+
+impl SameShot {
+    /// What it is, in words.
+    #[must_use]
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::OfProfile => "the shot of the profile's [nominal] table",
+            Self::BestOfFirstRow => "the best direct shot of the first row",
+        }
+    }
 }
 
 /// The physics of a profile, every preset, and single changes: of the profile's own physics if it
@@ -51,7 +80,7 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         Some(preset) if !has_air => preset.physics(),
         _ => own.clone(),
     };
-    let with = if has_air { "with" } else { "ncaa with" };
+    let with = if has_air { "with" } else { "ncaa," };
     let changes: [(&str, fn(&mut Physics)); 8] = [
         ("no air", |physics| physics.air = Air::NONE),
         ("air of 5280 ft", |physics| physics.air.density_kg_m3 = 0.98),
@@ -95,8 +124,11 @@ pub fn compare_physics(
     profile: &Profile,
     variants: &[PhysicsVariant],
     progress: &dyn Progress,
-) -> Result<Vec<PhysicsRow>, BestShotError> {
+) -> Result<PhysicsComparison, BestShotError> {
     let mut rows: Vec<PhysicsRow> = Vec::new();
+    let own = profile
+        .nominal_overrides()
+        .whole_shot(profile.location().angle_rad);
     for variant in variants {
         let other = profile.with(|settings| settings.physics = variant.physics.clone());
         let Ok(other) = other else { continue };
@@ -110,10 +142,11 @@ pub fn compare_physics(
         let bank = shots.pop().unwrap_or_else(|| none(ShotKind::Bank));
         let direct = shots.pop().unwrap_or_else(|| none(ShotKind::Direct));
         let first = rows.first().map_or(&direct, |row| &row.direct);
+        let first = first.as_ref().ok().map(|shot| shot.nominal);
         let search = other.search();
-        let first_shot = first.as_ref().ok().map(|shot| {
+        let same_shot = own.or(first).map(|shot| {
             let sampler = Sampler::new(&other);
-            sampler.estimate(&shot.nominal, search.standard_error, search.seed, progress)
+            sampler.estimate(&shot, search.standard_error, search.seed, progress)
         });
         rows.push(PhysicsRow {
             name: variant.name.clone(),
@@ -123,8 +156,15 @@ pub fn compare_physics(
                 .and_then(|shot| aim_past_centre_m(&other, &shot.nominal)),
             direct,
             bank,
-            first_shot,
+            same_shot,
         });
     }
-    Ok(rows)
+    Ok(PhysicsComparison {
+        rows,
+        same_shot: if own.is_some() {
+            SameShot::OfProfile
+        } else {
+            SameShot::BestOfFirstRow
+        },
+    })
 }

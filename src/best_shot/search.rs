@@ -14,7 +14,7 @@ use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, Sensitivity, SensitivityTopics};
 use crate::dynamics::Outcome;
 use crate::math::sobol::{Scramble, ScrambleKey};
-use crate::probability::{Estimate, NominalProbabilities, NominalTable, Progress, Sampler};
+use crate::probability::{Estimate, NominalProbabilities, NominalTable, Progress, Sampler, Silent};
 use crate::search_space::{PlanError, TablePlan};
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 use rayon::prelude::*;
@@ -171,20 +171,58 @@ pub fn find_kinds(
         topics,
         progress,
     };
-    let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
-    for side_spin_rad_s in start_side_spins(profile, &plan) {
-        let plan = TablePlan::for_search_with_side_spin(profile, side_spin_rad_s)?;
-        let maxima = search.maxima_by_pitch(&search.table(&plan));
-        for (starts, maxima) in starts.iter_mut().zip(maxima) {
-            let separated = separated(&maxima);
-            starts.extend(separated.into_iter().map(|(_, nominal)| nominal));
-        }
-    }
+    let starts = search.starts()?;
     let shots = kinds
         .iter()
         .map(|&kind| search.best(kind, &starts[kind.index()]))
         .collect::<Result<_, _>>()?;
     Ok((plan, shots))
+}
+
+/// The best shot of a kind without its sensitivity, and P of the optimum of the other kind
+/// that climbs alone find; `None` where no shot of that kind is made.
+///
+/// # Errors
+/// As [`find`].
+pub(super) fn find_beside_other_kind(
+    profile: &Profile,
+    kind: ShotKind,
+    progress: &dyn Progress,
+) -> Result<(Result<BestShot, NoShot>, Option<Estimate>), BestShotError> {
+    let plan = TablePlan::for_search(profile)?;
+    let search = BestShotSearch {
+        profile,
+        plan: &plan,
+        topics: SensitivityTopics::NONE,
+        progress,
+    };
+    let starts = search.starts()?;
+    let best = search.best(kind, &starts[kind.index()])?;
+    let other = kind.other();
+    let optimum = search.optimum(other, &starts[other.index()]);
+    Ok((best, optimum.map(|(_, estimate)| estimate)))
+}
+
+/// The optimum of a kind that climbs from some shots reach, and its P; `None` where none of the
+/// shots is of the kind, or no shot at the optimum is made. There may be a higher one elsewhere.
+///
+/// # Errors
+/// As [`find`].
+pub(super) fn climb_from_shots(
+    profile: &Profile,
+    kind: ShotKind,
+    shots: &[Nominal],
+) -> Result<Option<(Nominal, Estimate)>, BestShotError> {
+    let plan = TablePlan::for_search(profile)?;
+    let search = BestShotSearch {
+        profile,
+        plan: &plan,
+        topics: SensitivityTopics::NONE,
+        progress: &Silent,
+    };
+    let of_kind = |shot: &&Nominal| ShotKind::of(profile, shot) == kind;
+    let starts: Vec<Nominal> = shots.iter().filter(of_kind).copied().collect();
+    Ok(search.optimum(kind, &starts))
 }
 
 /// The side spins from which the search starts: the fixed one; or none and the limits. One limit is
@@ -218,6 +256,40 @@ struct BestShotSearch<'a> {
 }
 
 impl BestShotSearch<'_> {
+    /// The starts of the climbs of each kind, from the coarse table.
+    fn starts(&self) -> Result<[Vec<Nominal>; 2], PlanError> {
+        let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
+        for side_spin_rad_s in start_side_spins(self.profile, self.plan) {
+            let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
+            let maxima = self.maxima_by_pitch(&self.table(&plan));
+            for (starts, maxima) in starts.iter_mut().zip(maxima) {
+                let separated = separated(&maxima);
+                starts.extend(separated.into_iter().map(|(_, nominal)| nominal));
+            }
+        }
+        Ok(starts)
+    }
+
+    /// The scramble of the climbs: of a replicate of its own, so that final estimates are
+    /// independent of the climb.
+    fn climb_scramble(&self, sampler: &Sampler<'_>) -> Scramble {
+        sampler.scramble(ScrambleKey {
+            seed: self.profile.search().seed,
+            replicate: u64::MAX,
+        })
+    }
+
+    /// The optimum that climbs from `starts` reach, and its P; `None` if no shot of it is made.
+    fn optimum(&self, kind: ShotKind, starts: &[Nominal]) -> Option<(Nominal, Estimate)> {
+        let sampler = Sampler::new(self.profile);
+        let scramble = self.climb_scramble(&sampler);
+        let nominal = self.climb_from(kind, starts, &sampler, &scramble)?;
+        let search = self.profile.search();
+        let target = search.standard_error;
+        let estimate = sampler.estimate(&nominal, target, search.seed, &Silent);
+        Some((nominal, estimate))
+    }
+
     /// For each kind: the best nominal shot at each nominal pitch angle.
     fn maxima_by_pitch(&self, table: &NominalProbabilities) -> [Vec<Option<Candidate>>; 2] {
         let rows: Vec<[Option<Candidate>; 2]> = (0..table.pitch_rad.len())
@@ -266,11 +338,7 @@ impl BestShotSearch<'_> {
     ) -> Result<Result<BestShot, NoShot>, PlanError> {
         let sampler = Sampler::new(self.profile);
         let search = self.profile.search();
-        let scramble = sampler.scramble(ScrambleKey {
-            seed: search.seed,
-            // A replicate of its own, so that the final estimate is independent of the climb.
-            replicate: u64::MAX,
-        });
+        let scramble = self.climb_scramble(&sampler);
         let Some(start) = self.climb_from(kind, starts, &sampler, &scramble) else {
             return Ok(Err(NoShot::Impossible(kind)));
         };

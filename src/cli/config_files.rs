@@ -188,8 +188,46 @@ fn physics_text(name: &str) -> Result<String, Failure> {
 
 /// Reads and checks a sweep and the files that it names, which are in its folder.
 pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Failure> {
-    let sweep = read_text(path)?;
-    let files = named_files(&sweep);
+    let texts = read_sweep(path)?;
+    let config = parse_sweep(&texts, &path.display().to_string())?;
+    Ok((config, texts))
+}
+
+/// Reads a sweep whose shooter gives way to another one: what belongs to the shooter is left out,
+/// and the file that it names is not read.
+pub(crate) fn read_sweep_without_shooter(path: &Path) -> Result<SourceTexts, Failure> {
+    let sweep = without_shooter(&read_text(path)?);
+    read_files_of_sweep(path, sweep, false)
+}
+
+fn read_sweep(path: &Path) -> Result<SourceTexts, Failure> {
+    read_files_of_sweep(path, read_text(path)?, true)
+}
+
+/// The text of a sweep without its shooter; a file is named in its place.
+fn without_shooter(text: &str) -> String {
+    let Ok(mut root) = text.parse::<toml::Table>() else {
+        return text.to_owned();
+    };
+    for table in ["shooter", "physics", "nominal"] {
+        root.remove(table);
+    }
+    if let Some(toml::Value::Table(sweep)) = root.get_mut("sweep") {
+        sweep.insert("shooter".to_owned(), "player.toml".into());
+    }
+    root.to_string()
+}
+
+/// The texts of the files that the text of a sweep names.
+fn read_files_of_sweep(
+    path: &Path,
+    sweep: String,
+    reads_shooter: bool,
+) -> Result<SourceTexts, Failure> {
+    let mut files = named_files(&sweep);
+    if !reads_shooter {
+        files.shooter = None;
+    }
     let folder = path.parent().unwrap_or(Path::new("."));
     // A faulty line is quoted in a message, so only files of the right type are read.
     let read = |name: Option<String>, key: &str, extension: &str| {
@@ -204,13 +242,18 @@ pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Fail
                 path.display()
             )));
         }
+        if key == "shooter" && !file.exists() {
+            return Err(Failure::usage(format!(
+                "{}: its shooter is \"{name}\", and there is no such file; write one: bankshot new player {}",
+                path.display(),
+                file.display()
+            )));
+        }
         read_text(&file).map(Some)
     };
-    let texts = SourceTexts {
+    Ok(SourceTexts {
         shooter: read(files.shooter, "shooter", "toml")?,
         places: read(files.places, "places", "csv")?,
         sweep,
-    };
-    let config = parse_sweep(&texts, &path.display().to_string())?;
-    Ok((config, texts))
+    })
 }

@@ -2,6 +2,7 @@
 
 use super::config_files::{load_profile, read_text};
 use super::failure::{Failure, code};
+use super::measured_shots_flags::MeasuredShotsOptions;
 use super::value_parsers::PhysicsArg;
 use crate::fitting::{
     Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile,
@@ -23,6 +24,8 @@ pub(crate) struct FitFolder {
     pub(crate) observed: (usize, usize),
     /// What the fit warned of.
     pub(crate) warnings: Vec<String>,
+    /// The name of the tracker, or the path of its file.
+    pub(crate) tracker: String,
 }
 
 fn damaged(path: &Path, message: impl std::fmt::Display) -> Failure {
@@ -39,12 +42,18 @@ impl FitFolder {
     }
 }
 
-/// Why `--physics` is refused beside the folder of a fit.
-pub(crate) fn other_physics(folder: &Path) -> Failure {
-    Failure::usage(format!(
-        "--physics: {} was fitted with its own physics; fit the shots again with the other one",
-        folder.display()
-    ))
+/// Refuses options that only a file of measured shots has a use for.
+pub(crate) fn refuse_options_of_files(
+    folder: &Path,
+    options: &MeasuredShotsOptions,
+) -> Result<(), Failure> {
+    match options.first_about_a_file() {
+        None => Ok(()),
+        Some(option) => Err(Failure::usage(format!(
+            "{option}: {} is a fit already; fit the shots again with it",
+            folder.display()
+        ))),
+    }
 }
 
 /// Reads the folder of a fit.
@@ -91,6 +100,10 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
         profiles,
         posterior,
         observed: (count("made"), count("shots")),
+        tracker: json["source"]["tracker"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned(),
         warnings: json["warnings"]
             .as_array()
             .into_iter()

@@ -146,6 +146,24 @@ impl MeasuredShotsOptions {
         self.units.into()
     }
 
+    /// The first option given that says something about a file, or about how to fit it.
+    pub(crate) fn first_about_a_file(&self) -> Option<&'static str> {
+        [
+            ("--physics", self.physics.physics.is_some()),
+            ("--tracker", self.tracker.is_some()),
+            ("--map", !self.map.is_empty()),
+            ("--shooter", self.shooter.is_some()),
+            ("--hoop", self.hoop.is_some()),
+            ("--distance", self.distance.is_some()),
+            ("--angle", self.angle.is_some()),
+            ("--release-height", self.release_height.is_some()),
+            ("--backspin", self.backspin.is_some()),
+            ("--tails", self.tails != TailsArg::Auto),
+        ]
+        .into_iter()
+        .find_map(|(option, is_given)| is_given.then_some(option))
+    }
+
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<MeasuredFile, Failure> {
         let refuse = |message: String| Failure::usage(format!("{}: {message}", path.display()));

@@ -16,7 +16,8 @@ pub struct SessionComparison {
     /// The probability that it has grown.
     pub grew: f64,
     /// Shots in each session that would decide about a change of this size (95 % level, 80 %
-    /// power), if the present ones do not.
+    /// power). `None` if the present ones do, and if the change is smaller than its standard
+    /// deviation: its size then says nothing of the true one.
     pub shots_to_decide: Option<f64>,
 }
 
@@ -40,13 +41,14 @@ fn compare(before: &[f64], after: &[f64], shots: [usize; 2]) -> SessionCompariso
     let change = Interval::of(changes);
     let harmonic = 2.0 / (1.0 / shots[0] as f64 + 1.0 / shots[1] as f64);
     let needed = POWER * change.sd / change.mean.abs();
+    let has_size = change.mean.abs() > change.sd;
     let is_decided = change.low > 0.0 || change.high < 0.0;
     SessionComparison {
         before: Interval::of(before.to_vec()),
         after: Interval::of(after.to_vec()),
         change,
         grew,
-        shots_to_decide: (!is_decided && needed.is_finite()).then_some(harmonic * needed * needed),
+        shots_to_decide: (!is_decided && has_size).then_some(harmonic * needed * needed),
     }
 }
 

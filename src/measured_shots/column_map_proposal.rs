@@ -96,6 +96,24 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
             quantity.unit_names().join(", ")
         );
     }
+    let is_known = |quantity: Quantity| {
+        taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
+    };
+    if !is_known(Quantity::Time) {
+        let missing: Vec<&str> = [
+            (Quantity::Distance, "--distance '13.75 ft'"),
+            (Quantity::ReleaseHeight, "--release-height '7 ft'"),
+        ]
+        .into_iter()
+        .filter_map(|(quantity, option)| (!is_known(quantity)).then_some(option))
+        .collect();
+        if !missing.is_empty() {
+            text += &format!(
+                "\nand, as no column says where the shots are from: {}",
+                missing.join(" ")
+            );
+        }
+    }
     text
 }
 

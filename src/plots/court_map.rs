@@ -4,7 +4,7 @@ use super::axes::Axes;
 use super::colormaps::{NO_VALUE, Rgb, hex};
 use super::colour_key::{ColourKey, draw_legend};
 use super::court_lines::draw_court_lines;
-use super::svg::{Anchor, INK, Svg};
+use super::svg::{INK, Svg};
 use crate::model::Physics;
 use crate::model::league_courts::Court;
 use crate::units::UnitSystem;
@@ -167,15 +167,13 @@ impl CourtMap<'_> {
         if side < NARROWEST {
             return;
         }
-        let size = (0.62 * side).min(20.0);
         for ((x_m, y_m), text, is_bold) in numbers {
+            // Three digits must stay inside the square.
+            let part = if text.len() > 2 { 0.46 } else { 0.62 };
+            let size = (part * side).min(20.0);
             let (left, top) = axes.pixel((y_m / unit_m, x_m / unit_m));
             let at = (left, top + 0.36 * size);
-            if *is_bold {
-                svg.heading(at, size, Anchor::Middle, text);
-            } else {
-                svg.text(at, size, Anchor::Middle, text);
-            }
+            svg.number_over_lines(at, size, text, *is_bold);
         }
     }
 

@@ -2,9 +2,9 @@
 
 use super::axes::{format_tick, ticks};
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
-use crate::best_shot::PhysicsRow;
+use crate::best_shot::{PhysicsComparison, PhysicsRow};
 
-/// Colours of the best direct shot, of the best bank shot, and of the first row's shot.
+/// Colours of the best direct shot, and of the best bank shot.
 const DIRECT_COLOUR: &str = "#0072b2";
 const BANK_COLOUR: &str = "#d55e00";
 /// Width of the drawing, left edge and width of the scale, top of the first row and height of a
@@ -17,7 +17,8 @@ const ROW: f64 = 24.0;
 
 /// Draws one row for each physics. `name` is the shooter's.
 #[must_use]
-pub fn draw(name: &str, rows: &[PhysicsRow]) -> Plot {
+pub fn draw(name: &str, comparison: &PhysicsComparison) -> Plot {
+    let rows = &comparison.rows;
     let title = format!("{}: P under each physics", shortened(name, 60));
     let bottom = TOP + ROW * rows.len() as f64;
     let mut svg = Svg::new(WIDTH, bottom + 80.0);
@@ -56,13 +57,16 @@ pub fn draw(name: &str, rows: &[PhysicsRow]) -> Plot {
                 svg.circle(at, 5.0, &format!("fill=\"{colour}\""));
             }
         }
-        if let Some(estimate) = &row.first_shot {
-            mark_first(&mut svg, (x_of(estimate.probability), y));
+        if let Some(estimate) = &row.same_shot {
+            mark_same_shot(&mut svg, (x_of(estimate.probability), y));
         }
     }
     svg.footnote(
         (20.0, bottom + 64.0),
-        "Bar: the best direct shot of the first row, released the same way under each physics.",
+        &format!(
+            "Bar: {}, released the same way under each physics.",
+            comparison.same_shot.in_words()
+        ),
     );
     Plot {
         name: "physics".to_owned(),
@@ -75,8 +79,8 @@ pub fn draw(name: &str, rows: &[PhysicsRow]) -> Plot {
 fn range_of(rows: &[PhysicsRow]) -> (f64, f64) {
     let best = rows.iter().flat_map(|row| [&row.direct, &row.bank]);
     let best = best.flatten().map(|shot| shot.estimate.probability);
-    let first = rows.iter().filter_map(|row| row.first_shot.as_ref());
-    let all = best.chain(first.map(|estimate| estimate.probability));
+    let same_shot = rows.iter().filter_map(|row| row.same_shot.as_ref());
+    let all = best.chain(same_shot.map(|estimate| estimate.probability));
     let (low, high) = all.fold((1.0_f64, 0.0_f64), |(low, high), p| {
         (low.min(p), high.max(p))
     });
@@ -86,7 +90,7 @@ fn range_of(rows: &[PhysicsRow]) -> (f64, f64) {
     )
 }
 
-fn mark_first(svg: &mut Svg, (x, y): (f64, f64)) {
+fn mark_same_shot(svg: &mut Svg, (x, y): (f64, f64)) {
     let style = format!("stroke=\"{INK}\" stroke-width=\"2\" fill=\"none\"");
     svg.polyline([(x, y - 7.0), (x, y + 7.0)], &style);
 }
@@ -96,11 +100,11 @@ fn draw_key(svg: &mut Svg) {
     let entries = [
         (LEFT, "best direct shot"),
         (LEFT + 160.0, "best bank shot"),
-        (LEFT + 310.0, "the first row's shot, released the same way"),
+        (LEFT + 310.0, "one shot, released the same way"),
     ];
     svg.circle((entries[0].0, y), 5.0, &format!("fill=\"{DIRECT_COLOUR}\""));
     svg.circle((entries[1].0, y), 5.0, &format!("fill=\"{BANK_COLOUR}\""));
-    mark_first(svg, (entries[2].0, y));
+    mark_same_shot(svg, (entries[2].0, y));
     for (x, text) in entries {
         svg.text((x + 12.0, y + 4.0), 12.0, Anchor::Start, text);
     }

@@ -137,6 +137,16 @@ impl Svg {
         self.styled_text(at, size, anchor, text, " font-weight=\"bold\"");
     }
 
+    /// Writes a number that stays readable where lines of the drawing cross it: a pale border covers
+    /// them.
+    pub fn number_over_lines(&mut self, at: (f64, f64), size: f64, text: &str, is_bold: bool) {
+        let weight = if is_bold { " font-weight=\"bold\"" } else { "" };
+        let style = format!(
+            "{weight} stroke=\"#fff\" stroke-width=\"4\" stroke-opacity=\"0.75\" stroke-linejoin=\"round\" paint-order=\"stroke\""
+        );
+        self.styled_text(at, size, Anchor::Middle, text, &style);
+    }
+
     /// Writes a small line below a plot, such as where the plot comes from.
     pub fn footnote(&mut self, at: (f64, f64), text: &str) {
         self.text(at, 11.0, Anchor::Start, text);

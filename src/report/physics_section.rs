@@ -1,12 +1,12 @@
 //! The table of a page that says how much of the answer rests on the physics.
 
 use super::html_table::{HtmlTable, format_cell};
-use crate::best_shot::PhysicsRow;
+use crate::best_shot::{PhysicsComparison, PhysicsRow};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
-/// The best shots under each physics.
+/// The best shots under each physics, and one shot under all of them.
 #[must_use]
-pub fn physics_table(rows: &[PhysicsRow], units: UnitSystem) -> HtmlTable {
+pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlTable {
     let (long, metre) = units.length();
     let (short, short_m) = units.short_length();
     let columns = [
@@ -16,7 +16,7 @@ pub fn physics_table(rows: &[PhysicsRow], units: UnitSystem) -> HtmlTable {
         "pitch deg".to_owned(),
         format!("{short} past centre"),
         "bank P".to_owned(),
-        "P of first row's shot".to_owned(),
+        "same shot P".to_owned(),
     ];
     let cells = |row: &PhysicsRow| {
         let number = |value: Option<f64>, decimals: usize| {
@@ -31,13 +31,20 @@ pub fn physics_table(rows: &[PhysicsRow], units: UnitSystem) -> HtmlTable {
             number(direct.map(|shot| shot.nominal.pitch_rad / DEGREE_RAD), 1),
             number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
             number(bank.map(|shot| shot.estimate.probability), 3),
-            number(row.first_shot.as_ref().map(|p| p.probability), 3),
+            number(row.same_shot.as_ref().map(|p| p.probability), 3),
         ]
     };
     HtmlTable {
-        caption: "How much rests on the physics".to_owned(),
+        caption: format!(
+            "How much rests on the physics. Same shot: {}, released the same way everywhere",
+            comparison.same_shot.in_words()
+        ),
         columns: columns.to_vec(),
-        rows: rows.iter().map(|row| (None, cells(row))).collect(),
+        rows: comparison
+            .rows
+            .iter()
+            .map(|row| (None, cells(row)))
+            .collect(),
         is_detail: false,
     }
 }

@@ -51,13 +51,18 @@ impl LocationError {
 }
 
 impl Location {
-    /// The place in words, such as `12 ft from the hoop, 45 deg to the right` (facing the board).
+    /// The place in words, such as `12 ft from the hoop, 45 deg to the right` (facing the board, 0
+    /// deg being straight in front).
     #[must_use]
     pub fn in_words(&self, units: UnitSystem) -> String {
         let (long, metre) = units.length();
         let angle_deg = self.angle_rad / DEGREE_RAD;
         let side = match angle_deg {
             angle if angle.abs() < 0.5 => "straight in front".to_owned(),
+            angle if (angle.abs() - 90.0).abs() < 0.5 => {
+                let side = if angle > 0.0 { "right" } else { "left" };
+                format!("level with the hoop on the {side}")
+            }
             angle if angle > 0.0 => format!("{angle:.0} deg to the right"),
             angle => format!("{:.0} deg to the left", -angle),
         };

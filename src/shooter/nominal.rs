@@ -66,6 +66,20 @@ pub struct NominalOverrides {
 }
 
 impl NominalOverrides {
+    /// The whole shot, if speed and pitch angle are fixed: aimed `towards_rad` and without spin
+    /// where no other value is.
+    #[must_use]
+    pub fn whole_shot(&self, towards_rad: f64) -> Option<Nominal> {
+        Some(Nominal {
+            speed_m_s: self.speed_m_s?,
+            pitch_rad: self.pitch_rad?,
+            polar_rad: self.polar_rad.unwrap_or(towards_rad),
+            backspin_rad_s: self.backspin_rad_s.unwrap_or(0.0),
+            rifle_spin_rad_s: self.rifle_spin_rad_s.unwrap_or(0.0),
+            side_spin_rad_s: self.side_spin_rad_s.unwrap_or(0.0),
+        })
+    }
+
     /// The value of a variable, if it is fixed, SI units.
     #[must_use]
     pub fn get(&self, variable: NominalVariable) -> Option<f64> {

@@ -29,6 +29,15 @@ impl ShotKind {
         }
     }
 
+    /// Bank for direct, direct for bank.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Direct => Self::Bank,
+            Self::Bank => Self::Direct,
+        }
+    }
+
     /// The kind of a nominal shot.
     #[must_use]
     pub fn of(profile: &Profile, nominal: &Nominal) -> Self {

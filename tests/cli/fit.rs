@@ -244,7 +244,7 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     fit(path.to_str().unwrap(), &one, &["--shooter", "Cy"])
         .exits(2)
         .says("has no shooter \"Cy\"; it has Ann, Bob");
-    // The same shots as two sessions: nothing is decided.
+    // Two players as two sessions: P differs by no more than luck, one angle by more.
     let sessions = fs::read_to_string(&path)
         .unwrap()
         .replacen("shooter", "session", 1);
@@ -252,7 +252,9 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     let compared = Answer::of(bankshot().arg("compare-sessions").arg(&path).arg("--quiet"));
     let text = compared.exits(0).stdout().to_owned();
     assert!(
-        text.contains("before  Ann (30 shots)") && text.contains("would decide"),
+        text.contains("before  Ann (30 shots)")
+            && text.starts_with("Whether the chance of a shot changed is not known: it ")
+            && text.contains("Changed, each at the 95 % level: pitch_mean fell by 0.82 deg."),
         "{text}"
     );
 }
@@ -285,6 +287,26 @@ fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
     let p = &of_files["changes"][0];
     let grew = p["probability_of_growth"].as_f64().unwrap();
     assert!(p["name"] == "P" && (0.0..=1.0).contains(&grew), "{p}");
+    // What only a file has a use for is refused beside the folder of a fit.
+    let mut advise = bankshot();
+    advise.arg("advise").arg(&folders[0]);
+    Answer::of(advise.args(["--distance", "20 ft"]))
+        .exits(2)
+        .says("is a fit already; fit the shots again with it");
+    compare(&folders[0], &folders[1], &["--distance", "20 ft"])
+        .exits(2)
+        .says("--distance: ");
+    // A test is designed for the tracker of the fit.
+    let mut design = bankshot();
+    design.arg("design").arg(&folders[0]);
+    let design = design.args(["--shots", "25", "--repetitions", "4", "--json", "--quiet"]);
+    assert_eq!(Answer::of(design).exits(0).json()["tracker"], "lab");
+    // The profile of a fit has its usual shot.
+    let mut probability = bankshot();
+    probability
+        .arg("probability")
+        .arg(folders[0].join("profile.toml"));
+    Answer::of(probability.args(["--json", "--quiet"])).exits(0);
     let of_nba = folder.path().join("nba");
     fit(paths[1].to_str().unwrap(), &of_nba, &["--physics", "nba"]).exits(0);
     compare(&folders[0], &of_nba, &[])

@@ -94,6 +94,25 @@ fn contract_two_players_of_one_name_are_refused_and_a_court_with_a_shooter_is_no
         .exits(2)
         .says("two players have the name");
     assert_eq!(file_names(folder.path()).len(), 4);
+    // A sweep names players, or stands among them: both say what to write.
+    let run = |arguments: &[&str]| {
+        let mut command = bankshot();
+        command.current_dir(folder.path());
+        Answer::of(command.args(arguments).arg("--quiet"))
+    };
+    run(&["team", "ann.toml", "court.toml"])
+        .exits(2)
+        .says("this is a sweep, not a player; name the players alone, and the sweep with --sweep court.toml");
+    let unwritten = COURT.replace("ann.toml", "not_written.toml");
+    write_file(&folder, "unwritten.toml", unwritten);
+    run(&["plan", "unwritten.toml"])
+        .exits(2)
+        .says("there is no such file; write one: bankshot new player not_written.toml");
+    // A team needs no such file.
+    run(&["team", "ann.toml", "--sweep", "unwritten.toml", "--plan"])
+        .exits(0)
+        .prints("1 player: about ");
+    fs::remove_file(folder.path().join("unwritten.toml")).unwrap();
     // A sweep with a shooter of its own serves as well.
     write_file(
         &folder,
@@ -108,6 +127,6 @@ fn contract_two_players_of_one_name_are_refused_and_a_court_with_a_shooter_is_no
         .prints("Bo: ");
     let csv = fs::read_to_string(folder.path().join("out/team.csv")).unwrap();
     assert!(csv.starts_with(
-        "place,name,x_ft,y_ft,distance_ft,court_angle_deg,best_player,\"college guard direct\""
+        "place,name,x_ft,y_ft,distance_ft,court_angle_deg,best_players,\"college guard direct\""
     ));
 }

@@ -2,8 +2,9 @@
 
 use crate::common::{at, grid, load};
 use bankshot::best_shot::{self, ShotKind};
+use bankshot::model::{Physics, Preset};
 use bankshot::probability::{NominalTable, Sampler, Silent};
-use bankshot::search_space::TablePlan;
+use bankshot::search_space::{TablePlan, sample_wide};
 use bankshot::shooter::SearchSettings;
 use bankshot::units::FOOT_M;
 
@@ -76,4 +77,55 @@ fn campaign_best_is_within_three_thousandths_of_a_brute_force_search() {
             assert!(p > brute - 0.003, "{name} {kind:?}: {p} {brute}");
         }
     }
+}
+
+/// Shots that were made from outside the range that a search simulates, out of `shots` drawn in a
+/// wider one, at places from under the hoop to 60 ft away.
+fn made_outside_the_range(physics: &Physics, shots: u64) -> u64 {
+    let mut made = 0;
+    for distance_ft in [1.0, 3.0, 6.0, 13.75, 25.0, 40.0, 60.0] {
+        for angle_deg in [0.0, 50.0, 88.0] {
+            let profile = at(&load("free_throw"), distance_ft * FOOT_M, angle_deg)
+                .with(|settings| settings.physics = physics.clone())
+                .unwrap();
+            let plan = TablePlan::for_search(&profile).unwrap();
+            let sample = sample_wide(&profile, &plan, shots);
+            assert!(sample.outside > shots / 10, "{distance_ft} {angle_deg}");
+            made += sample.made_outside;
+        }
+    }
+    made
+}
+
+/// The physics whose flights differ most: a vacuum, air, and air with lift.
+fn physics_with_and_without_air() -> [(&'static str, Physics); 3] {
+    let named = |name: &str| Preset::named(name).unwrap().physics();
+    let mut lift = named("ncaa");
+    lift.air.lift_slope = 1.0;
+    [
+        ("paper", named("paper")),
+        ("ncaa", named("ncaa")),
+        ("ncaa with lift", lift),
+    ]
+}
+
+/// Authority: brute force. Of the releases outside, at least one in 1,500 could be made and be
+/// missed here with a probability of at most e^-10 (21 places, 2,000 draws each, a third outside).
+#[test]
+fn val_no_made_shot_lies_outside_the_range_of_a_search() {
+    for (name, physics) in physics_with_and_without_air() {
+        assert_eq!(made_outside_the_range(&physics, 2000), 0, "{name}");
+    }
+}
+
+#[test]
+#[ignore = "a quarter of an hour: cargo test --test validation campaign_no_made_shot -- --ignored --nocapture"]
+fn campaign_no_made_shot_lies_outside_the_range_of_a_search() {
+    let mut found = 0;
+    for (name, physics) in physics_with_and_without_air() {
+        let made = made_outside_the_range(&physics, 200_000);
+        println!("{name}: 21 places, 4.2 million releases; {made} made outside the range");
+        found += made;
+    }
+    assert_eq!(found, 0);
 }

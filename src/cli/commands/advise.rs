@@ -32,9 +32,7 @@ pub(crate) struct AdviseOptions {
 
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
-        if options.measured.physics.physics.is_some() {
-            return Err(fit_folder::other_physics(&options.shots));
-        }
+        fit_folder::refuse_options_of_files(&options.shots, &options.measured)?;
         let fit = fit_folder::read(&options.shots)?;
         answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;
         print_warnings(&fit.warnings);

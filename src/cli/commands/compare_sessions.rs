@@ -12,6 +12,7 @@ use crate::fitting::{
 use crate::measured_shots::read::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::fit_files::parameters::value_units;
+use crate::output::fit_files::session_changes_text::{SessionChange, session_changes_text};
 use crate::output::json_object::{number, object};
 use crate::shooter::Profile;
 use clap::Args;
@@ -60,6 +61,10 @@ impl Session {
 }
 
 pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
+    let after_is_file = options.after.as_ref().is_some_and(|after| !after.is_dir());
+    if options.before.is_dir() && !after_is_file {
+        fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
+    }
     let sessions = match &options.after {
         Some(after) => [read(&options.before, options)?, read(after, options)?],
         None if options.before.is_dir() => {
@@ -74,7 +79,10 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
     if options.json {
         print_answer(&format!("{:#}\n", json(&sessions, &changes)))?;
     } else {
-        print_prose(&text(&sessions, &changes))?;
+        let named = sessions
+            .each_ref()
+            .map(|session| (session.name.as_str(), session.posterior.shots));
+        print_prose(&session_changes_text(named, &changes))?;
     }
     Ok(code::DONE)
 }
@@ -83,9 +91,6 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
 fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failure> {
     let name = path.display().to_string();
     if path.is_dir() {
-        if options.measured.physics.physics.is_some() {
-            return Err(fit_folder::other_physics(path));
-        }
         let fit = fit_folder::read(path)?;
         return Ok(Session {
             name,
@@ -167,21 +172,12 @@ fn fit_by_session(file: &MeasuredFile) -> Result<[Session; 2], Failure> {
     Ok([fit(first)?, fit(second)?])
 }
 
-/// What changed in one quantity.
-struct Change {
-    name: String,
-    unit: &'static str,
-    /// Its size in SI units.
-    size: f64,
-    comparison: SessionComparison,
-}
-
 /// P, and mean and standard deviation of each value.
-fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Change> {
+fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<SessionChange> {
     let [before, after] = sessions;
     let posteriors = [&before.posterior, &after.posterior];
     let shots = posteriors.map(|posterior| posterior.shots);
-    let mut changes = vec![Change {
+    let mut changes = vec![SessionChange {
         name: "P".to_owned(),
         unit: "%",
         size: 0.01,
@@ -196,7 +192,7 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Cha
             continue;
         }
         let mut add = |what: &str, comparison: SessionComparison| {
-            changes.push(Change {
+            changes.push(SessionChange {
                 name: format!("{}_{what}", VALUE_NAMES[i]),
                 unit,
                 size,
@@ -212,61 +208,7 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Cha
     changes
 }
 
-/// More shots than this are not advised.
-const MOST_SHOTS: f64 = 100_000.0;
-
-fn text([before, after]: &[Session; 2], changes: &[Change]) -> String {
-    let mut text = format!(
-        "before  {} ({} shots)\nafter   {} ({} shots)\n\n{:<13} {:>7} {:>7} {:>7} {:>17} {:<5} {:<10} {:>7}\n",
-        before.name,
-        before.posterior.shots,
-        after.name,
-        after.posterior.shots,
-        "",
-        "before",
-        "after",
-        "change",
-        "95 %",
-        "unit",
-        "certainty",
-        "decide"
-    );
-    for Change {
-        name,
-        unit,
-        size,
-        comparison,
-    } in changes
-    {
-        let change = comparison.change.scaled(1.0 / size);
-        let direction = if comparison.grew >= 0.5 {
-            "grew"
-        } else {
-            "fell"
-        };
-        let certainty = 100.0 * comparison.grew.max(1.0 - comparison.grew);
-        let needed = match comparison.shots_to_decide {
-            None => String::new(),
-            Some(needed) if needed > MOST_SHOTS => "-".to_owned(),
-            Some(needed) => format!("{:.0}", needed.ceil()),
-        };
-        let line = format!(
-            "{name:<13} {:>7.3} {:>7.3} {:>+7.3} {:>7.3} to {:>6.3} {unit:<5} {direction} {certainty:>3.0} % {needed:>7}",
-            comparison.before.mean / size,
-            comparison.after.mean / size,
-            change.mean,
-            change.low,
-            change.high
-        );
-        text += &format!("{}\n", line.trim_end());
-    }
-    text += &format!(
-        "\ndecide: shots a session that would decide such a change (-: over {MOST_SHOTS})\n"
-    );
-    text
-}
-
-fn json([before, after]: &[Session; 2], changes: &[Change]) -> Value {
+fn json([before, after]: &[Session; 2], changes: &[SessionChange]) -> Value {
     let session =
         |session: &Session| json!({ "name": session.name, "shots": session.posterior.shots });
     let listed = changes.iter().map(|change| {

@@ -34,9 +34,9 @@ pub(crate) struct DesignOptions {
     /// The sizes of the tests.
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "25,50,100,200", value_parser = clap::value_parser!(u32).range(10..=5000))]
     pub(crate) shots: Vec<u32>,
-    /// The tracker: lab, noah, optical_25hz or optical_60hz.
-    #[arg(long, value_name = "NAME", default_value = "lab")]
-    pub(crate) tracker: String,
+    /// The tracker: lab, noah, optical_25hz or optical_60hz [default: that of the fit, else lab].
+    #[arg(long, value_name = "NAME")]
+    pub(crate) tracker: Option<String>,
     /// Also ask how many shots make P known to this many points (one standard deviation).
     #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
     pub(crate) target: Option<f64>,
@@ -49,20 +49,20 @@ pub(crate) struct DesignOptions {
 }
 
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
-    let (profile, nominal) = if options.profile.is_dir() {
+    let (profile, nominal, own_tracker) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let usual = nominal_of(&fit.posterior.typical().means[0]);
-        (fit.profiles[0].clone(), usual)
+        (fit.profiles[0].clone(), usual, fit.tracker)
     } else {
         let profile = load_profile(&options.profile, &options.physics, quiet)?;
         let nominal = options.nominal.resolve(&profile)?;
-        (profile, nominal)
+        (profile, nominal, "lab".to_owned())
     };
-    let tracker = Tracker::named(&options.tracker).ok_or_else(|| {
+    let tracker_name = options.tracker.as_ref().unwrap_or(&own_tracker);
+    let tracker = Tracker::named(tracker_name).ok_or_else(|| {
         let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
         Failure::usage(format!(
-            "--tracker {}: must be one of {}",
-            options.tracker,
+            "--tracker {tracker_name}: must be one of {}",
             names.join(", ")
         ))
     })?;

@@ -1,6 +1,8 @@
 //! `bankshot physics`: how much of the answer rests on the physics.
 
-use crate::best_shot::{BestShot, NoShot, PhysicsRow, compare_physics, physics_variants};
+use crate::best_shot::{
+    BestShot, NoShot, PhysicsComparison, PhysicsRow, compare_physics, physics_variants,
+};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
 use crate::cli::plot_files::{self, PlotType};
@@ -41,22 +43,23 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         PlotType::of(path)?;
     }
     let variants = physics_variants(profile.physics());
-    let rows = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+    let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
     if let Some(path) = &options.plot {
-        let plot = physics_probabilities::draw(&profile.shooter().name, &rows);
+        let plot = physics_probabilities::draw(&profile.shooter().name, &comparison);
         plot_files::write_one(path, &plot)?;
         if !quiet {
             print_remark(&format!("plot written to {}", path.display()));
         }
     }
     if options.json {
-        print_answer(&format!("{:#}\n", rows_json(&rows)))
+        print_answer(&format!("{:#}\n", rows_json(&comparison.rows)))
     } else {
-        print_prose(&rows_text(&profile, &rows))
+        print_prose(&comparison_text(&profile, &comparison))
     }
 }
 
-fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
+fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String {
+    let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let units = profile.output().units;
     let (long, metre) = units.length();
     let (short, short_m) = match units {
@@ -70,9 +73,9 @@ fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
         "direct\nP".to_owned(),
         format!("speed\n{long}/s"),
         "pitch\ndeg".to_owned(),
-        format!("{short} past\ncentre"),
+        format!("past\n{short}"),
         "bank\nP".to_owned(),
-        "P of first\nrow's shot".to_owned(),
+        "same\nshot P".to_owned(),
     ]);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -81,7 +84,7 @@ fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
         Ok(shot) => format!("{:.3}", shot.estimate.probability),
         Err(_) => "none".to_owned(),
     };
-    for row in rows {
+    for row in &comparison.rows {
         let nominal = row.direct.as_ref().ok().map(|shot| shot.nominal);
         let number = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
@@ -93,11 +96,14 @@ fn rows_text(profile: &Profile, rows: &[PhysicsRow]) -> String {
             number(nominal.map(|shot| shot.pitch_rad / DEGREE_RAD), 1),
             number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
             p(&row.bank),
-            number(row.first_shot.as_ref().map(|p| p.probability), 3),
+            number(row.same_shot.as_ref().map(|p| p.probability), 3),
         ]);
     }
     format!(
-        "{table}\nThe first row is the profile's own physics; \"with\" changes one thing of it. Its best direct shot, released the same way everywhere, has the P of the last column.\n"
+        "{table}\nThe first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere.\n",
+        if has_air { "with" } else { "ncaa," },
+        if has_air { "it" } else { "ncaa" },
+        comparison.same_shot.in_words()
     )
 }
 
@@ -120,7 +126,7 @@ fn rows_json(rows: &[PhysicsRow]) -> Value {
                 "direct": shot(&row.direct),
                 "bank": shot(&row.bank),
                 "aim_past_centre_m": row.aim_past_centre_m,
-                "first_shot_probability": row.first_shot.as_ref().map(|p| p.probability),
+                "same_shot_probability": row.same_shot.as_ref().map(|p| p.probability),
             })
         })
         .collect()

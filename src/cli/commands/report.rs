@@ -132,11 +132,12 @@ fn report_best_shots(folder: &Path, with_physics: bool, quiet: bool) -> Result<u
         let path = folder.join(PROFILE_FILE);
         let profile = load_profile(&path, &PhysicsArg::default(), true)?;
         let variants = physics_variants(profile.physics());
-        let rows = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+        let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
         page.tables
-            .push(physics_table(&rows, profile.output().units));
+            .push(physics_table(&comparison, profile.output().units));
         let name = &profile.shooter().name;
-        page.plots.push(physics_probabilities::draw(name, &rows));
+        page.plots
+            .push(physics_probabilities::draw(name, &comparison));
     }
     let against = folder.join(AGAINST_FOLDER);
     if against.join(BEST_SHOTS_FILE).exists() {

@@ -8,9 +8,9 @@ use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
 use crate::output::shot_table_files::source_code::{Language, source_code};
-use crate::output::shot_table_files::table_text::{check_text, table_csv, table_json, table_text};
+use crate::output::shot_table_files::table_text::{notes, table_csv, table_json, table_text};
 use crate::shooter::{NominalVariable, Profile};
-use crate::units::{self, DEGREE_RAD, Dimension, UnitSystem};
+use crate::units::{self, Dimension, REV_RAD};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
-interpolated. Where that costs more than --max-loss in P, nodes are added halfway. The table says what is left.
+interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
+interpolated P errs by more, nodes are added halfway. The table says what is left.
 
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --pitch '60 deg' --backspin '2 rev/s'
@@ -47,7 +48,8 @@ pub(crate) struct TableOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// The most that interpolation may cost in P; 1 adds no nodes.
+    /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds no
+    /// nodes.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
     /// The form of the table [default: by the end of the output's name, else text].
@@ -129,6 +131,13 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         if let Some(text) = text {
             let value = units::parse(text, variable.dimension())
                 .map_err(|error| Failure::usage(format!("--{}: {error}", variable.name())))?;
+            let most = profile.shooter().max_backspin_rad_s;
+            if variable == NominalVariable::Backspin && value > most {
+                return Err(Failure::usage(format!(
+                    "--backspin: \"{text}\" is more than shooter.max_backspin ({:.3} rev/s)",
+                    most / REV_RAD
+                )));
+            }
             fixed.push((variable, value));
         }
     }
@@ -150,15 +159,8 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
                 ShotTableError::Search(error) => Failure::from(error),
             }
         })?;
-    let origin = format!(
-        "of {}",
-        profile
-            .shooter()
-            .name
-            .replace(|c: char| c.is_control() || c == '\\', " ")
-    );
     let text_of = |output: &Output| {
-        let source = |language| source_code(&table, (language, &output.class), units, &origin);
+        let source = |language| source_code(&table, (language, &output.class), (&profile, units));
         match output.format {
             TableFormat::Text => table_text(&table, units),
             TableFormat::Csv => table_csv(&table, units),
@@ -187,29 +189,12 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             .iter()
             .all(|output| output.format != TableFormat::Text)
         {
-            print_remark(check_text(&table, units).trim_end());
+            for note in notes(&table, units) {
+                print_remark(&note);
+            }
         }
-        if let Some(added) = added_nodes(&table, &request, units) {
-            print_remark(&added);
-        }
-        if table
-            .greatest_loss()
-            .is_some_and(|loss| loss > request.max_loss)
-        {
+        if table.worst().is_some_and(|worst| worst > request.max_loss) {
             print_remark(&great_loss_warning(&profile, &request));
-        }
-        let bouncing = table.shots.iter().flatten();
-        let bouncing = bouncing.filter(|shot| !table.is_clean(shot)).count();
-        if bouncing > 0 {
-            print_remark(&format!(
-                "note: the best shot goes in off the ring or the board even without an error at {bouncing} of {} places; \
-                 compare --kind {} there, or another --pitch",
-                table.shots.len(),
-                match table.kind {
-                    ShotKind::Direct => "bank",
-                    ShotKind::Bank => "direct",
-                }
-            ));
         }
     }
     let has_every_shot = table.shots.iter().all(Option::is_some);
@@ -287,32 +272,6 @@ fn share(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Which distances and angles were added to those that were asked for.
-fn added_nodes(table: &ShotTable, request: &ShotTableRequest, units: UnitSystem) -> Option<String> {
-    let (long, metre) = units.length();
-    let added = |all: &[f64], asked: &[f64], unit: f64, name: &str| {
-        let new = all.iter().filter(|value| !asked.contains(value));
-        let texts: Vec<String> = new.map(|value| format!("{:.4}", value / unit)).collect();
-        let texts: Vec<&str> = texts
-            .iter()
-            .map(|text| text.trim_end_matches('0').trim_end_matches('.'))
-            .collect();
-        (!texts.is_empty()).then(|| format!("{} {name}", texts.join(", ")))
-    };
-    let parts = [
-        added(&table.distances_m, &request.distances_m, metre, long),
-        added(&table.angles_rad, &request.angles_rad, DEGREE_RAD, "deg"),
-    ];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
-    (!parts.is_empty()).then(|| {
-        format!(
-            "added, because interpolation would cost more than {} in P: {}",
-            request.max_loss,
-            parts.join(" and ")
-        )
-    })
-}
-
 /// What to do where interpolation costs much: neighbours are then shots of different sorts, unless
 /// what they differ in is fixed.
 fn great_loss_warning(profile: &Profile, request: &ShotTableRequest) -> String {
@@ -331,7 +290,7 @@ fn great_loss_warning(profile: &Profile, request: &ShotTableRequest) -> String {
         format!(", or fix {}", free.join(" and "))
     };
     format!(
-        "warning: between some places interpolation costs more than {} in P; take a smaller step{fix}",
+        "warning: between some places interpolation costs or errs by more than {} in P; take a smaller step{fix}",
         request.max_loss
     )
 }

@@ -4,12 +4,12 @@ use super::plan_sweep_time_and_memory::forecast_s;
 use super::sweep::{compute, run_options};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
 use crate::best_shot::{ShotKind, find_kinds};
-use crate::cli::config_files::{load_profile, load_sweep, read_text};
+use crate::cli::config_files::{load_profile, read_sweep_without_shooter, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
 use crate::plots::svg::shortened;
@@ -21,7 +21,7 @@ use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 use crate::sweep::result_row::ResultRow;
-use crate::sweep::sweep_toml::parse_sweep;
+use crate::sweep::sweep_toml::{is_sweep, parse_sweep};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use comfy_table::{Table, presets};
@@ -38,6 +38,7 @@ the same command continues.
 
 Examples:
   bankshot team ann.toml bo.toml cy.toml
+  bankshot team ann.toml bo.toml cy.toml --sweep configs/half_court_3ft.toml --plan
   bankshot team ann.toml bo.toml cy.toml --sweep configs/half_court_3ft.toml --out team")]
 pub(crate) struct TeamOptions {
     /// The players' profiles.
@@ -49,6 +50,9 @@ pub(crate) struct TeamOptions {
     /// Folder of the results of --sweep.
     #[arg(long, value_name = "DIR", default_value = "results/team")]
     pub(crate) out: PathBuf,
+    /// With --sweep: say how long it takes, and stop.
+    #[arg(long, requires = "sweep")]
+    pub(crate) plan: bool,
 }
 
 pub(crate) fn run(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
@@ -74,6 +78,12 @@ fn table_of(header: Vec<String>) -> Table {
 fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<Profile>, Failure> {
     let mut players: Vec<Profile> = Vec::new();
     for path in paths {
+        if is_sweep(&read_text(path)?) {
+            return Err(Failure::usage(format!(
+                "{path}: this is a sweep, not a player; name the players alone, and the sweep with --sweep {path}",
+                path = path.display()
+            )));
+        }
         let player = load_profile(path, &PhysicsArg::default(), quiet)?;
         let name = &player.shooter().name;
         let folder = run_folder::safe_name(name);
@@ -91,27 +101,15 @@ fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<Profile>, Failure>
     Ok(players)
 }
 
-/// The text of a sweep without a shooter of its own: what belongs to the shooter is left out, and
-/// a file is named in its place.
-fn with_named_shooter(text: &str) -> String {
-    let Ok(mut root) = text.parse::<toml::Table>() else {
-        return text.to_owned();
-    };
-    for table in ["shooter", "physics", "nominal"] {
-        root.remove(table);
-    }
-    if let Some(toml::Value::Table(sweep)) = root.get_mut("sweep") {
-        sweep.insert("shooter".to_owned(), "player.toml".into());
-    }
-    root.to_string()
-}
-
 fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
     let profiles = load_players(&options.players, quiet)?;
     let header = ["player", "place", "direct", "bank", "shoot it"];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     let bars = ProgressBars::new(quiet);
     let mut any_either = false;
+    let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
+    let mut names_by_preference: [(Preference, Vec<String>); 3] =
+        [Preference::Bank, Preference::Direct, Preference::Either].map(|kind| (kind, Vec::new()));
     for profile in &profiles {
         let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
         let p: Vec<Option<Difference>> = shots
@@ -138,8 +136,15 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         let advice = preference.map_or("no clean shot", Preference::name);
         let (long, metre) = profile.output().units.length();
         let location = profile.location();
-        table.add_row(vec![
-            shortened(&profile.shooter().name, LONGEST_NAME),
+        let name = shortened(&profile.shooter().name, LONGEST_NAME);
+        for (kind, names) in &mut names_by_preference {
+            if preference == Some(*kind) {
+                names.push(name.clone());
+            }
+        }
+        let best = p.iter().flatten().map(|p| p.value).fold(0.0, f64::max);
+        let row = vec![
+            name,
             format!(
                 "{:.2} {long}, {:.0} deg",
                 location.distance_m / metre,
@@ -148,13 +153,32 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
             text(p[0]),
             text(p[1]),
             advice.to_owned(),
-        ]);
+        ];
+        rows.push((best, row));
     }
-    let mut text = format!("makes in 100 shots\n{}\n", table.trim_fmt());
+    rows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, row) in rows {
+        table.add_row(row);
+    }
+    let mut text = String::new();
+    for (kind, names) in names_by_preference {
+        let words = match kind {
+            Preference::Bank => "Bank it",
+            Preference::Direct => "Shoot it direct",
+            Preference::Either => "Either is as good",
+        };
+        if !names.is_empty() {
+            text += &format!("{words}: {}.\n", names.join(", "));
+        }
+    }
+    text += &format!(
+        "\nmakes in 100 shots, the surest player first\n{}\n",
+        table.trim_fmt()
+    );
     if any_either {
         text += "either: the two differ by less than twice the error of their difference\n";
     }
-    print_answer(&text)
+    print_prose(&text)
 }
 
 /// Longest name of a player in the tables, in characters.
@@ -183,9 +207,7 @@ impl PlayerSweep {
 }
 
 fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8, Failure> {
-    let (config, mut texts) = load_sweep(sweep)?;
-    let units = config.settings.output.units;
-    texts.sweep = with_named_shooter(&texts.sweep);
+    let texts = read_sweep_without_shooter(sweep)?;
     // Every profile is read before anything is computed.
     let mut sweeps = Vec::new();
     let mut folders: Vec<PathBuf> = Vec::new();
@@ -198,10 +220,19 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         folders.push(options.out.join(run_folder::safe_name(&name)));
         sweeps.push((name, config, texts));
     }
+    if options.plan {
+        return print_answer(&match forecast_in_words(sweeps.len(), &sweeps[0].1) {
+            Some(words) => format!("{words}\n"),
+            None => "nothing can be made from any place\n".to_owned(),
+        });
+    }
+    let units = sweeps[0].1.settings.output.units;
     let mut players = Vec::new();
     let count = sweeps.len();
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
-        print_forecast(count, &sweeps[0].1);
+        forecast_in_words(count, &sweeps[0].1)
+            .iter()
+            .for_each(|words| print_remark(words));
     }
     for (number, ((name, config, texts), folder)) in sweeps.into_iter().zip(&folders).enumerate() {
         if !quiet {
@@ -234,17 +265,18 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
 }
 
 /// What all players take, from the first one's sweep.
-fn print_forecast(players: usize, first: &SweepConfig) {
-    let Some(seconds) = forecast_s(first, true) else {
-        return;
-    };
-    let seconds = seconds * players as f64;
+fn forecast_in_words(players: usize, first: &SweepConfig) -> Option<String> {
+    let seconds = forecast_s(first, true)? * players as f64;
     let time = if seconds < 90.0 {
         format!("{seconds:.0} s")
     } else {
         format!("{:.0} min", seconds / 60.0)
     };
-    print_remark(&format!("{players} players: about {time} in all"));
+    let players = match players {
+        1 => "1 player".to_owned(),
+        more => format!("{more} players"),
+    };
+    Some(format!("{players}: about {time} in all"))
 }
 
 /// A player's map and poster.
@@ -266,15 +298,25 @@ fn write_pictures(
     plot_files::write(folder, &plots)
 }
 
-/// The player with the greatest P at each place.
-fn best_players(players: &[PlayerSweep]) -> Vec<Option<usize>> {
+/// The players with the greatest P at each place: those who are not surely worse than the best one,
+/// by twice the error of the difference.
+fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
     (0..players[0].places.len())
         .map(|place| {
-            let found = players.iter().enumerate();
-            let found =
-                found.filter_map(|(i, player)| Some((i, player.places[place].best()?.value)));
-            let best = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-            Some(best.0)
+            let found: Vec<(usize, Difference)> = players
+                .iter()
+                .enumerate()
+                .filter_map(|(i, player)| Some((i, player.places[place].best()?)))
+                .collect();
+            let best = found.iter().map(|(_, p)| *p);
+            let Some(best) = best.reduce(|a, b| if b.value > a.value { b } else { a }) else {
+                return Vec::new();
+            };
+            let is_level = |(_, p): &&(usize, Difference)| {
+                let error = libm::hypot(p.standard_error, best.standard_error);
+                best.value - p.value <= 2.0 * error
+            };
+            found.iter().filter(is_level).map(|(i, _)| *i).collect()
         })
         .collect()
 }
@@ -283,7 +325,7 @@ fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
     let (unit, metre) = units.length();
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
     let mut text =
-        format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_player");
+        format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_players");
     for player in players {
         for column in ["direct", "direct error", "bank", "bank error", "shoot"] {
             text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
@@ -301,7 +343,13 @@ fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             known.place.y_m / metre,
             location.distance_m / metre,
             location.angle_rad / DEGREE_RAD,
-            best.map_or(String::new(), |i| quoted(&players[i].name))
+            match &best[..] {
+                [] => String::new(),
+                best => {
+                    let names: Vec<&str> = best.iter().map(|i| players[*i].name.as_str()).collect();
+                    quoted(&names.join("; "))
+                }
+            }
         );
         for player in players {
             let chances = &player.places[place];
@@ -325,14 +373,19 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
         "player",
         "mean of\nall places",
         "banks at",
-        "best of the\nteam at",
+        "alone the\nbest at",
     ];
     let mut table = table_of(header.map(str::to_owned).to_vec());
-    for (number, player) in players.iter().enumerate() {
+    let mean = |player: &PlayerSweep| {
         let found = player.places.iter().filter_map(PlaceProbabilities::best);
         let found: Vec<f64> = found.map(|p| p.value).collect();
-        let mean = found.iter().sum::<f64>() / found.len().max(1) as f64;
-        let own = best.iter().filter(|of| **of == Some(number)).count();
+        found.iter().sum::<f64>() / found.len().max(1) as f64
+    };
+    let mut order: Vec<(usize, f64)> = players.iter().map(mean).enumerate().collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    for &(number, mean) in &order {
+        let player = &players[number];
+        let own = best.iter().filter(|of| of[..] == [number]).count();
         table.add_row(vec![
             shortened(&player.name, LONGEST_NAME),
             in_hundred(mean),
@@ -344,8 +397,18 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
             format!("{own} of {} places", best.len()),
         ]);
     }
-    let mut text = format!("makes in 100 shots\n{}\n", table.trim_fmt());
-    for player in players {
+    let mut text = format!(
+        "makes in 100 shots, the surest player first\n{}\n",
+        table.trim_fmt()
+    );
+    let level = best.iter().filter(|of| of.len() > 1).count();
+    if level > 0 {
+        text += &format!(
+            "At {level} of {} places two or more are level (team.csv names them).\n",
+            best.len()
+        );
+    }
+    for player in order.iter().map(|(number, _)| &players[*number]) {
         let bank = player.bank_places();
         text += &format!("{}: ", shortened(&player.name, LONGEST_NAME));
         if bank.is_empty() {

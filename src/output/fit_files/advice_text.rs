@@ -48,6 +48,11 @@ fn change_in_words(
     }
 }
 
+/// What a shooter changes.
+fn cause_in_words(cause: Cause) -> &'static str {
+    ["the speed", "the release angle", "the aim", "the backspin"][cause.0]
+}
+
 /// What a shooter scatters in.
 fn scatter_in_words(cause: Cause) -> &'static str {
     ["speed", "release angle", "left and right", "backspin"][cause.0]
@@ -73,8 +78,8 @@ pub fn advice_text(
             format!("; {made} of {shots} went in")
         });
     let mut text = format!(
-        "{name}: now {} of such shots go in (95 %: {:.0} to {:.0} %{seen}).\n",
-        percent(p.mean),
+        "{name}: now {:.0} % of such shots go in (95 %: {:.0} to {:.0} %{seen}).\n",
+        100.0 * p.mean,
         100.0 * p.low,
         100.0 * p.high
     );
@@ -85,17 +90,20 @@ pub fn advice_text(
                 cause.gain.low > 0.0
                     && !(cause.cause.name() == "backspin" && advice.backspin_is_assumed)
             };
+            let changes: Vec<String> = advice
+                .causes
+                .iter()
+                .map(|cause| change_in_words(cause.cause, cause.values, units, court_angle_rad))
+                .collect();
             text += &format!(
-                "With the same scatter you can make {} if you change the shot: ",
-                percent(p.mean + gain.mean)
+                "With the same scatter you can make {:.0} %: {}. {}\n",
+                100.0 * (p.mean + gain.mean),
+                changes.join(", "),
+                match advice.causes.iter().find(is_advice) {
+                    Some(first) => format!("Most of it is {}.", cause_in_words(first.cause)),
+                    None => "No single one of these is sure to help.".to_owned(),
+                }
             );
-            text += &match advice.causes.iter().find(is_advice) {
-                Some(first) => format!(
-                    "most of it if you {}.\n",
-                    change_in_words(first.cause, first.values, units, court_angle_rad)
-                ),
-                None => "no single change is sure to help.\n".to_owned(),
-            };
         }
         Some(gain) if gain.mean > 0.005 => {
             text += &format!(

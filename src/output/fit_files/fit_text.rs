@@ -2,7 +2,7 @@
 
 use super::fit_json::FitSource;
 use super::parameters::{parameters, value_units};
-use crate::fitting::{DrawProbabilities, ShooterFit, VALUE_NAMES};
+use crate::fitting::{CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
 /// A probability as a percentage.
@@ -38,6 +38,13 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         "{name}: {} {}, tracker {} ({}), physics {}\n",
         posterior.shots, source.kind, source.tracker.0, source.tracker.1, source.physics
     );
+    if source.kind == "landings" {
+        let (unit, size) = units.short_length();
+        text += &format!(
+            "depth   counted from the front of the ring: {:.1} {unit} is its centre\n",
+            CENTRE_DEPTH_M / size
+        );
+    }
     for (index, (place, p)) in fit.places.iter().zip(&fit.probabilities).enumerate() {
         let number = if fit.places.len() > 1 {
             format!("place {}, ", index + 1)
@@ -56,7 +63,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     if makes.labelled > 0 {
         let share = &makes.share;
         text += &format!(
-            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected of these very shots: {:.1} ± {:.1}\n",
+            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected of these very shots: {:.1} ± {:.1} makes\n",
             makes.made,
             makes.labelled,
             percent(share.share),

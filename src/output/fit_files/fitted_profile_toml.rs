@@ -1,7 +1,7 @@
 //! `profile.toml`: the fitted profile, each value with what is known of it.
 
 use super::fit_json::FitSource;
-use super::parameters::parameters;
+use super::parameters::{parameters, value_units};
 use crate::fitting::{ShooterFit, SpinSource, VALUE_NAMES};
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 
@@ -109,9 +109,17 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
         place.location.angle_rad / DEGREE_RAD
     ));
     line(String::new());
-    line("# The usual shot:".to_owned());
-    for name in VALUE_NAMES {
-        line(comment(&format!("{name}_mean")));
+    line("# The usual shot. A search for the best shot does not look at it.".to_owned());
+    line("[nominal]".to_owned());
+    let units_of = value_units(UnitSystem::Imperial);
+    for (i, name) in VALUE_NAMES.iter().enumerate() {
+        let (unit, size) = units_of[i];
+        let value = fit.typical.means[0][i];
+        line(format!(
+            "{name} = \"{:.4} {unit}\"  {}",
+            value / size,
+            comment(&format!("{name}_mean"))
+        ));
     }
     line(String::new());
     line(physics.trim().to_owned());

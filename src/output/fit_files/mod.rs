@@ -6,4 +6,5 @@ pub mod fit_json;
 pub mod fit_text;
 pub mod fitted_profile_toml;
 pub mod parameters;
+pub mod session_changes_text;
 pub mod shots_table;

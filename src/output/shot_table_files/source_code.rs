@@ -1,10 +1,12 @@
 //! A table of best shots as source that looks a shot up: Java, C++ and Python.
 //!
 //! Each has one function of distance and court angle, linear between the nodes. It gives NaN
-//! outside the table and beside a place without a clean shot.
+//! outside the table and beside a place without a shot. Time and entry angle are NaN beside a shot
+//! that is not clean: between different bounces they jump.
 
-use super::table_text::check_text;
+use super::table_text::{notes, shooter_note};
 use crate::best_shot::{ShotTable, TableShot};
+use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// A programming language.
@@ -40,14 +42,17 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 7] {
     ]
 }
 
-/// The source in a language (Java: with the name of the class); `origin` says where the table comes
-/// from.
+/// Whether a value is given for clean shots alone.
+fn needs_clean(name: &str) -> bool {
+    matches!(name, "time_s" | "entry_deg")
+}
+
+/// The source in a language (Java: with the name of the class).
 #[must_use]
 pub fn source_code(
     table: &ShotTable,
     (language, class): (Language, &str),
-    units: UnitSystem,
-    origin: &str,
+    (profile, units): (&Profile, UnitSystem),
 ) -> String {
     let (long, metre) = units.length();
     let list = |values: &[f64], size: f64| {
@@ -75,7 +80,8 @@ pub fn source_code(
         .map(|shot| {
             let cells: Vec<String> = values
                 .iter()
-                .map(|(_, value, size)| match shot {
+                .map(|(name, value, size)| match shot {
+                    Some(shot) if needs_clean(name) && !table.is_clean(shot) => nan.to_owned(),
                     Some(shot) if value(shot).is_finite() => format!("{:.6}", value(shot) / size),
                     _ => nan.to_owned(),
                 })
@@ -84,12 +90,14 @@ pub fn source_code(
         })
         .collect();
     let names: Vec<&str> = values.iter().map(|(name, ..)| name.as_str()).collect();
-    let about = [
+    let mut about = vec![
         format!(
-            "Best {} shots {origin}, by bankshot {}.",
+            "Best {} shots, by bankshot {} (configuration {}).",
             table.kind.name(),
-            env!("CARGO_PKG_VERSION")
+            env!("CARGO_PKG_VERSION"),
+            profile.hash(),
         ),
+        shooter_note(table, profile, units),
         format!(
             "{}(distance_{long}, court_angle_deg) gives {}.",
             if language == Language::Java {
@@ -100,14 +108,17 @@ pub fn source_code(
             names.join(", ")
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
-        format!(
-            "NaN outside the table. {}",
-            check_text(table, units).trim().replace('\n', " ")
-        ),
+        "NaN outside the table, and beside a place without a shot. Time and entry angle are NaN \
+         also beside a shot that touches the ring, or the board twice, on its way in."
+            .to_owned(),
     ];
+    about.extend(notes(table, units));
     let comment = |prefix: &str| {
-        let lines = about.iter().map(|line| format!("{prefix} {line}\n"));
-        lines.collect::<String>()
+        let options = textwrap::Options::new(100 - prefix.len() - 1);
+        let lines = about.iter().flat_map(|line| textwrap::wrap(line, &options));
+        lines
+            .map(|line| format!("{prefix} {line}\n"))
+            .collect::<String>()
     };
     let template = match language {
         Language::Java => JAVA,

@@ -1,15 +1,15 @@
 //! A table of best shots as text, CSV and JSON.
 
-use crate::best_shot::{ShotTable, TableShot};
+use crate::best_shot::{InterpolationCheck, ShotKind, ShotTable, TableShot};
 use crate::output::json_object::{number, object, provenance};
-use crate::shooter::Profile;
+use crate::shooter::{Location, Profile, ReleaseVariable};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;
 
 /// A column: its name with its unit, its decimals for people, and its value.
 type TableColumn = (String, usize, fn(&TableShot) -> f64, f64);
 
-fn columns(units: UnitSystem) -> Vec<TableColumn> {
+fn columns(kind: ShotKind, units: UnitSystem) -> Vec<TableColumn> {
     let (long, metre) = units.length();
     let in_unit = |name: &str, unit: &str| {
         if unit.is_empty() {
@@ -55,22 +55,35 @@ fn columns(units: UnitSystem) -> Vec<TableColumn> {
             |s| s.tolerances[1],
             DEGREE_RAD,
         ),
+        (
+            in_unit(&format!("{}_probability", kind.other().name()), ""),
+            3,
+            |s| s.other_kind.unwrap_or(f64::NAN),
+            1.0,
+        ),
     ]
 }
 
-/// The nodes with their distance and court angle in units of the results.
-fn nodes(
-    table: &ShotTable,
-    units: UnitSystem,
-) -> impl Iterator<Item = (f64, f64, Option<&TableShot>)> {
+/// A node.
+struct TableNode<'a> {
+    /// In units of the results.
+    distance: f64,
+    /// Court angle, deg.
+    angle: f64,
+    is_added: bool,
+    shot: Option<&'a TableShot>,
+}
+
+/// The nodes, angle by angle.
+fn nodes(table: &ShotTable, units: UnitSystem) -> impl Iterator<Item = TableNode<'_>> {
     let metre = units.length().1;
     (0..table.angles_rad.len()).flat_map(move |a| {
-        (0..table.distances_m.len()).map(move |d| {
-            (
-                without_rounding(table.distances_m[d] / metre),
-                without_rounding(table.angles_rad[a] / DEGREE_RAD),
-                table.at(a, d),
-            )
+        (0..table.distances_m.len()).map(move |d| TableNode {
+            distance: without_rounding(table.distances_m[d] / metre),
+            angle: without_rounding(table.angles_rad[a] / DEGREE_RAD),
+            is_added: table.added_distances_m.contains(&table.distances_m[d])
+                || table.added_angles_rad.contains(&table.angles_rad[a]),
+            shot: table.at(a, d),
         })
     })
 }
@@ -106,14 +119,15 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
         ],
     ];
     let mut text = format!(
-        "Best {} shots. P: the chance of each. range: by how much the speed and the\n\
-         pitch of an otherwise exact shot may vary. time, entry: until it falls through.\n",
+        "Best {} shots. P: the chance of each. range: the width of the range of speed,\n\
+         and of pitch, in which an otherwise exact shot goes in. time, entry: until it\n\
+         falls through.\n",
         table.kind.name()
     );
     for cells in header {
         text += &line(&cells.map(str::to_owned));
     }
-    let columns = columns(units);
+    let columns = columns(table.kind, units);
     let cell = |shot: &TableShot, i: usize| {
         let (_, decimals, value, size) = &columns[i];
         let value = value(shot) / size;
@@ -127,10 +141,16 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
             if is_zero { text[1..].to_owned() } else { text }
         }
     };
-    for (distance, angle, shot) in nodes(table, units) {
+    for TableNode {
+        distance,
+        angle,
+        shot,
+        ..
+    } in nodes(table, units)
+    {
         text += &match shot {
             Some(shot) => line(&[
-                format!("{distance:.2}"),
+                short(distance),
                 format!("{angle:.1}"),
                 cell(shot, 0),
                 cell(shot, 1),
@@ -142,15 +162,16 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
                 format!("{}, {}", cell(shot, 8), cell(shot, 9)),
                 shot.outcome.name().to_owned(),
             ]),
-            None => format!("{distance:>5.2} {angle:>5.1} no clean shot\n"),
+            None => format!("{:>6} {angle:>5.1} no clean shot\n", short(distance)),
         };
     }
-    text + &check_text(table, units)
+    let notes = notes(table, units);
+    text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
 }
 
 /// A line of the table for people.
 fn line(cells: &[String; 11]) -> String {
-    const WIDTHS: [usize; 10] = [5, 5, 6, 5, 6, 5, 5, 5, 6, 11];
+    const WIDTHS: [usize; 10] = [6, 5, 6, 5, 6, 5, 5, 5, 6, 11];
     let mut line = String::new();
     for (cell, width) in cells.iter().zip(WIDTHS) {
         line += &format!("{cell:>width$} ");
@@ -160,34 +181,190 @@ fn line(cells: &[String; 11]) -> String {
     line + "\n"
 }
 
-/// What interpolation costs, in words.
+/// What a reader of the table must know: what interpolation costs, which nodes were added, where
+/// shots are not clean, and where the other kind is better.
 #[must_use]
-pub fn check_text(table: &ShotTable, units: UnitSystem) -> String {
+pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
+    let notes = [
+        Some(check_note(table, units)),
+        added_note(table, units),
+        jump_note(table, units),
+        bounce_note(table),
+        other_kind_note(table, units),
+    ];
+    notes.into_iter().flatten().collect()
+}
+
+/// The lines of a text, each of at most 80 columns.
+fn wrapped(text: &str) -> String {
+    textwrap::fill(text, 80) + "\n"
+}
+
+/// Whose shots these are: name, release height and the standard deviations at the first place.
+#[must_use]
+pub fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> String {
     let (long, metre) = units.length();
-    match table.costliest() {
-        Some(check) => format!(
-            "Halfway between the places, interpolation costs at most {:.4} in P\n\
-             ({} checked; most at {:.2} {long}, {:.1} deg). Elsewhere it may cost more.\n",
-            check.loss().max(0.0),
-            table.checks.len(),
-            check.location.distance_m / metre,
-            check.location.angle_rad / DEGREE_RAD,
-        ),
-        None => "No place between could be checked.\n".to_owned(),
+    let shooter = profile.shooter();
+    let is_allowed = |c: char| !c.is_control() && c != '\\';
+    let name: String = shooter.name.chars().filter(|c| is_allowed(*c)).collect();
+    let mut note = format!(
+        "Shooter: {name}, released at {} {long}",
+        short(shooter.release_height_m / metre)
+    );
+    let first = table.shots.iter().position(Option::is_some);
+    if let Some((index, shot)) = first.and_then(|i| Some((i, table.shots[i].as_ref()?))) {
+        let sd = |variable| shooter.dispersion.sigma(variable, &shot.nominal);
+        let distance_m = table.distances_m[index % table.distances_m.len()];
+        note += &format!(
+            ", with standard deviations (at {} {long}) of {} {long}/s, {} deg up, {} deg sideways, {} rev/s",
+            short(distance_m / metre),
+            short(sd(ReleaseVariable::Speed) / metre),
+            short(sd(ReleaseVariable::Pitch) / DEGREE_RAD),
+            short(sd(ReleaseVariable::Polar) / DEGREE_RAD),
+            short(sd(ReleaseVariable::Backspin) / REV_RAD),
+        );
+    }
+    note + "."
+}
+
+/// What interpolation costs, and by how much the interpolated P errs.
+fn check_note(table: &ShotTable, units: UnitSystem) -> String {
+    let (Some(costliest), Some(most_wrong)) = (table.costliest(), table.most_wrong()) else {
+        return "No place between could be checked.".to_owned();
+    };
+    format!(
+        "Checked at {} places, the quarters between the table's: interpolated shots lose at most \
+         {:.4} in P (at {}), and their interpolated P errs by at most {:.4} (at {}).",
+        table.checks.len(),
+        costliest.loss().max(0.0),
+        place_text(table, &costliest.location, units),
+        most_wrong.error().abs(),
+        place_text(table, &most_wrong.location, units),
+    )
+}
+
+/// A place; without its angle where the table has one alone.
+fn place_text(table: &ShotTable, place: &Location, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let distance = short(place.distance_m / metre);
+    if table.angles_rad.len() == 1 {
+        format!("{distance} {long}")
+    } else {
+        format!(
+            "{distance} {long}, {} deg",
+            short(place.angle_rad / DEGREE_RAD)
+        )
     }
 }
+
+/// At most four decimals, without zeros at the end.
+fn short(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Which distances and angles were added to those that were asked for.
+fn added_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let (long, metre) = units.length();
+    let list = |values: &[f64], unit: f64, name: &str| {
+        let texts: Vec<String> = values.iter().map(|value| short(value / unit)).collect();
+        (!texts.is_empty()).then(|| format!("{} {name}", texts.join(", ")))
+    };
+    let parts = [
+        list(&table.added_distances_m, metre, long),
+        list(&table.added_angles_rad, DEGREE_RAD, "deg"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("Added for the interpolation: {}.", parts.join(" and ")))
+}
+
+/// Where the best shot jumps.
+fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let (long, metre) = units.length();
+    let jumps: Vec<String> = table
+        .jumps_m()
+        .map(|jump_m| short(jump_m / metre))
+        .collect();
+    (!jumps.is_empty()).then(|| {
+        format!(
+            "At {} {long} the best shot jumps: of two rows the first holds below, the second from \
+             there on.",
+            jumps.join(", ")
+        )
+    })
+}
+
+/// How many shots touch more than they should.
+fn bounce_note(table: &ShotTable) -> Option<String> {
+    let shots = table.shots.iter().flatten();
+    let bouncing = shots.filter(|shot| !table.is_clean(shot)).count();
+    (bouncing > 0).then(|| {
+        format!(
+            "At {bouncing} of {} places the best shot goes in off the ring or the board even \
+             without an error.",
+            table.shots.len()
+        )
+    })
+}
+
+/// Where the best shot of the other kind has the higher P.
+fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let other = table.kind.other().name();
+    let mut places = Vec::new();
+    let mut most: Option<(f64, String)> = None;
+    for (a, angle_rad) in table.angles_rad.iter().enumerate() {
+        for (d, distance_m) in table.distances_m.iter().enumerate() {
+            let place = Location {
+                distance_m: *distance_m,
+                angle_rad: *angle_rad,
+            };
+            let Some(shot) = table.at(a, d) else { continue };
+            let Some(gain) = shot.other_kind.map(|p| p - shot.probability) else {
+                continue;
+            };
+            if gain <= LEAST_GAIN {
+                continue;
+            }
+            let place = place_text(table, &place, units);
+            if most.as_ref().is_none_or(|(greatest, _)| gain > *greatest) {
+                most = Some((gain, place.clone()));
+            }
+            places.push(place);
+        }
+    }
+    let (gain, place) = most?;
+    let most = format!("most at {place} (P {gain:.3} higher)");
+    if places.len() == table.shots.len() {
+        return Some(format!("A {other} shot is better at every place, {most}."));
+    }
+    let (count, all) = (places.len(), table.shots.len());
+    places.dedup();
+    Some(format!(
+        "A {other} shot is better at {count} of {all} places, {most}: {}.",
+        places.join("; "),
+    ))
+}
+
+/// Least gain in P for which the other kind is named.
+const LEAST_GAIN: f64 = 0.005;
 
 /// The table as CSV; empty values where there is no clean shot.
 #[must_use]
 pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
     let (long, _) = units.length();
-    let columns = columns(units);
+    let columns = columns(table.kind, units);
     let names: Vec<&str> = columns.iter().map(|(name, ..)| name.as_str()).collect();
     let mut text = format!(
         "kind,distance_{long},court_angle_deg,outcome,{}\n",
         names.join(",")
     );
-    for (distance, angle, shot) in nodes(table, units) {
+    for TableNode {
+        distance,
+        angle,
+        shot,
+        ..
+    } in nodes(table, units)
+    {
         let cells: Vec<String> = columns
             .iter()
             .map(|(_, _, value, size)| match shot.map(value) {
@@ -209,9 +386,15 @@ pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
 #[must_use]
 pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Value {
     let (long, metre) = units.length();
-    let columns = columns(units);
+    let columns = columns(table.kind, units);
     let named = |name: &str, value: Value| (name.to_owned(), value);
-    let shots = nodes(table, units).map(|(distance, angle, shot)| {
+    let shots = nodes(table, units).map(|node| {
+        let TableNode {
+            distance,
+            angle,
+            is_added,
+            shot,
+        } = node;
         let mut record = vec![
             named(&format!("distance_{long}"), number(distance)),
             named("court_angle_deg", number(angle)),
@@ -220,6 +403,7 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
                 shot.is_some_and(|shot| table.is_clean(shot)).into(),
             ),
             named("outcome", shot.map(|shot| shot.outcome.name()).into()),
+            named("is_added", is_added.into()),
         ];
         record.extend(columns.iter().map(|(name, _, value, size)| {
             let value = shot
@@ -240,18 +424,26 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
                 number(check.location.angle_rad / DEGREE_RAD),
             ),
             named("interpolated_probability", number(check.interpolated)),
-            named("best_probability", number(check.best)),
+            named("looked_up_probability", number(check.looked_up)),
+            named("best_probability", check.best.map_or(Value::Null, number)),
         ])
     });
+    let greatest = |value: Option<f64>| value.map_or(Value::Null, number);
     let mut record = provenance(profile.hash());
     record.extend([
+        named("shooter", shooter_note(table, profile, units).into()),
         named("kind", table.kind.name().into()),
         named("shots", shots.collect()),
         named("checks", checks.collect()),
         named(
             "greatest_loss",
-            table.greatest_loss().map_or(Value::Null, number),
+            greatest(table.costliest().map(InterpolationCheck::loss)),
         ),
+        named(
+            "greatest_error",
+            greatest(table.most_wrong().map(|check| check.error().abs())),
+        ),
+        named("notes", notes(table, units).into()),
     ]);
     object(record)
 }

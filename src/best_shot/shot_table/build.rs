@@ -1,0 +1,395 @@
+//! How a table of best shots is made: the best shot at each node, checks between them, and more
+//! nodes where interpolation costs too much.
+
+use super::cells::{Cell, grid};
+use super::interpolation_check::{
+    BestKnown, CheckError, InterpolationCheck, PlacedShot, check, moved,
+};
+use super::{ShotTable, TableShot};
+use crate::analysis::sensitivity::{self, SensitivityTopics};
+use crate::best_shot::search::{BestShotError, climb_from_shots, find_beside_other_kind};
+use crate::dynamics::Outcome;
+use crate::probability::{Estimate, Progress, Sampler, Silent};
+use crate::search_space::PlanError;
+use crate::shooter::{
+    Location, Nominal, NominalVariable, Profile, ProfileError, SearchChoice, ShotKind,
+};
+use std::collections::HashMap;
+
+const WINDOWS: SensitivityTopics = SensitivityTopics {
+    windows: true,
+    ..SensitivityTopics::NONE
+};
+
+/// What a table is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShotTableRequest {
+    /// The kind of all shots.
+    pub kind: ShotKind,
+    /// Distances, ascending, m.
+    pub distances_m: Vec<f64>,
+    /// Court angles, ascending, rad.
+    pub angles_rad: Vec<f64>,
+    /// Values that the shooter cannot change.
+    pub fixed: Vec<(NominalVariable, f64)>,
+    /// The most that interpolation may cost in P, and the most by which the interpolated P may err.
+    /// Where a check finds more, nodes are added halfway, at most [`MOST_HALVINGS`] times and up to
+    /// [`MOST_NODES`] nodes; 1 adds none.
+    pub max_loss: f64,
+}
+
+/// Most nodes of a table.
+pub const MOST_NODES: usize = 2000;
+/// Most times that a step between two nodes is halved.
+pub const MOST_HALVINGS: usize = 4;
+
+/// The best shots of places; `None` where there is no clean one.
+#[derive(Default)]
+struct ShotsOfPlaces(HashMap<[u64; 2], Option<TableShot>>);
+
+impl ShotsOfPlaces {
+    fn key(place: &Location) -> [u64; 2] {
+        [place.distance_m.to_bits(), place.angle_rad.to_bits()]
+    }
+
+    fn at(&self, place: &Location) -> Option<&TableShot> {
+        self.0.get(&Self::key(place))?.as_ref()
+    }
+
+    /// Finds the shots of those places that have none yet.
+    fn find<'a>(
+        &mut self,
+        (profile, kind): (&Profile, ShotKind),
+        places: impl Iterator<Item = &'a Location>,
+        progress: &dyn Progress,
+    ) -> Result<(), ShotTableError> {
+        let is_new = |place: &&Location| !self.0.contains_key(&Self::key(place));
+        let new: Vec<&Location> = places.filter(is_new).collect();
+        progress.begin("finding shots", new.len() as u64);
+        for place in new {
+            let shot = best(&profile.moved_to(*place)?, kind)?;
+            self.0.insert(Self::key(place), shot);
+            progress.advance(1);
+        }
+        progress.end();
+        Ok(())
+    }
+}
+
+/// Why there is no table.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ShotTableError {
+    /// A value or a place is not possible.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+    /// The search is too large.
+    #[error(transparent)]
+    Search(#[from] BestShotError),
+}
+
+impl From<CheckError> for ShotTableError {
+    fn from(error: CheckError) -> Self {
+        match error {
+            CheckError::Profile(error) => Self::Profile(error),
+            CheckError::Search(error) => Self::Search(error),
+        }
+    }
+}
+
+impl ShotTable {
+    /// Computes a table, with checks between all nodes. Where interpolation costs or errs by more
+    /// than the request allows, nodes are added halfway, and jumps of the best shot at last.
+    ///
+    /// # Errors
+    /// A fixed value or a place is not possible, or the search is too large.
+    pub fn compute(
+        profile: &Profile,
+        request: &ShotTableRequest,
+        progress: &dyn Progress,
+    ) -> Result<Self, ShotTableError> {
+        let profile = with_fixed(profile, &request.fixed)?;
+        let mut shots = ShotsOfPlaces::default();
+        let mut checks = ChecksOfCells::default();
+        let mut table = Self {
+            kind: request.kind,
+            distances_m: request.distances_m.clone(),
+            angles_rad: request.angles_rad.clone(),
+            shots: Vec::new(),
+            added_distances_m: Vec::new(),
+            added_angles_rad: Vec::new(),
+            checks: Vec::new(),
+        };
+        for halving in 0..=MOST_HALVINGS {
+            let nodes = grid(&table.distances_m, &table.angles_rad);
+            let cells = table.cells();
+            let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
+            let places = nodes.iter().chain(&middles);
+            shots.find((&profile, request.kind), places, progress)?;
+            table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
+            checks.find((&profile, &table), &cells, &shots, progress)?;
+            table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
+            let [distances_m, angles_rad] = table.finer(&cells, &checks, request.max_loss);
+            let is_fine = distances_m.len() == table.distances_m.len()
+                && angles_rad.len() == table.angles_rad.len();
+            let too_many = distances_m.len() * angles_rad.len() > MOST_NODES;
+            if is_fine || too_many || halving == MOST_HALVINGS {
+                break;
+            }
+            (table.distances_m, table.angles_rad) = (distances_m, angles_rad);
+        }
+        if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
+            let costly = |cell: &Cell| {
+                checks
+                    .of(cell)
+                    .any(|check| check.worse() > request.max_loss)
+            };
+            let costly: Vec<bool> = table.cells().iter().map(costly).collect();
+            table.split_at_jumps(&profile, &costly, request.max_loss, &shots)?;
+            let cells = table.cells();
+            let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
+            shots.find((&profile, request.kind), middles.iter(), progress)?;
+            checks.find((&profile, &table), &cells, &shots, progress)?;
+            table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
+        }
+        let added = |all: &[f64], asked: &[f64]| {
+            let is_new = |value: &&f64| !asked.contains(value);
+            all.iter().filter(is_new).copied().collect()
+        };
+        table.added_distances_m = added(&table.distances_m, &request.distances_m);
+        table.added_distances_m.dedup();
+        table.added_angles_rad = added(&table.angles_rad, &request.angles_rad);
+        Ok(table)
+    }
+
+    /// The cells between the nodes. One angle alone makes cells of no width, one distance alone
+    /// none, and a jump none.
+    fn cells(&self) -> Vec<Cell> {
+        let pairs = |values: &[f64]| -> Vec<[f64; 2]> {
+            let pairs = values.windows(2).map(|pair| [pair[0], pair[1]]);
+            pairs.filter(|[low, high]| low < high).collect()
+        };
+        let angles = match self.angles_rad[..] {
+            [angle] => vec![[angle, angle]],
+            _ => pairs(&self.angles_rad),
+        };
+        let distances = pairs(&self.distances_m);
+        let line = |&angle_rad: &[f64; 2]| {
+            distances.iter().map(move |&distance_m| Cell {
+                distance_m,
+                angle_rad,
+            })
+        };
+        angles.iter().flat_map(line).collect()
+    }
+
+    /// Distances and angles, with the middles of those cells where a check found more than
+    /// `max_loss`.
+    fn finer(&self, cells: &[Cell], checks: &ChecksOfCells, max_loss: f64) -> [Vec<f64>; 2] {
+        let mut distances = self.distances_m.clone();
+        let mut angles = self.angles_rad.clone();
+        for cell in cells {
+            if checks.of(cell).any(|check| check.worse() > max_loss) {
+                distances.push(cell.middle().distance_m);
+                angles.push(cell.middle().angle_rad);
+            }
+        }
+        for values in [&mut distances, &mut angles] {
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+        }
+        [distances, angles]
+    }
+
+    /// Splits those cells of a table with one angle that halving did not help: between two optima
+    /// of the same P lie shots of a lower one. Where the best shots of both sides lead to different
+    /// optima, a jump from one to the other is put in the middle; elsewhere one node.
+    fn split_at_jumps(
+        &mut self,
+        profile: &Profile,
+        costly: &[bool],
+        max_loss: f64,
+        shots: &ShotsOfPlaces,
+    ) -> Result<(), ShotTableError> {
+        let cells = self.cells();
+        for (index, cell) in cells.iter().enumerate().rev() {
+            if !costly[index] || self.distances_m.len() + 2 > MOST_NODES {
+                continue;
+            }
+            let middle = cell.middle();
+            let Some(best) = shots.at(&middle) else {
+                continue;
+            };
+            let mut branches = Vec::new();
+            for (node, distance_m) in [(index, cell.distance_m[0]), (index + 1, cell.distance_m[1])]
+            {
+                let Some(shot) = self.at(0, node) else {
+                    continue;
+                };
+                let location = Location {
+                    distance_m,
+                    ..middle
+                };
+                let placed = PlacedShot {
+                    location,
+                    nominal: shot.nominal,
+                };
+                let branch = continued(profile, self.kind, &placed, middle)?;
+                branches.extend(branch.map(|shot| TableShot {
+                    other_kind: best.other_kind,
+                    ..shot
+                }));
+            }
+            let new = match &branches[..] {
+                [near, far]
+                    if is_jump(&profile.moved_to(middle)?, [near, far], 0.25 * max_loss) =>
+                {
+                    branches
+                }
+                _ => vec![best.clone()],
+            };
+            let at = index + 1;
+            for shot in new.into_iter().rev() {
+                self.distances_m.insert(at, middle.distance_m);
+                self.shots.insert(at, Some(shot));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The profile with values that the search leaves as they are.
+fn with_fixed(
+    profile: &Profile,
+    fixed: &[(NominalVariable, f64)],
+) -> Result<Profile, ProfileError> {
+    profile.with(|settings| {
+        let chosen: Vec<NominalVariable> = settings
+            .search
+            .choice
+            .iter()
+            .filter(|chosen| fixed.iter().all(|(variable, _)| variable != chosen))
+            .collect();
+        settings.search.choice = SearchChoice::only(&chosen);
+        for &(variable, value) in fixed {
+            settings.nominal.set(variable, value);
+        }
+    })
+}
+
+/// The checks of cells.
+#[derive(Default)]
+struct ChecksOfCells(HashMap<[u64; 4], Vec<InterpolationCheck>>);
+
+impl ChecksOfCells {
+    fn of(&self, cell: &Cell) -> impl Iterator<Item = InterpolationCheck> + '_ {
+        self.0.get(&cell.key()).into_iter().flatten().copied()
+    }
+
+    /// Checks those cells that have no check yet.
+    fn find(
+        &mut self,
+        (profile, table): (&Profile, &ShotTable),
+        cells: &[Cell],
+        shots: &ShotsOfPlaces,
+        progress: &dyn Progress,
+    ) -> Result<(), ShotTableError> {
+        let is_new = |cell: &&Cell| !self.0.contains_key(&cell.key());
+        let new: Vec<&Cell> = cells.iter().filter(is_new).collect();
+        let places: usize = new.iter().map(|cell| cell.checked_places().len()).sum();
+        progress.begin("checking between", places as u64);
+        for cell in new {
+            let around: Vec<PlacedShot> = cell
+                .corners()
+                .into_iter()
+                .filter_map(|location| {
+                    let nominal = shots.at(&location)?.nominal;
+                    Some(PlacedShot { location, nominal })
+                })
+                .collect();
+            let mut checks = Vec::new();
+            for location in cell.checked_places() {
+                if let Some((nominal, looked_up)) = table.interpolated(location) {
+                    let best = if location == cell.middle() {
+                        BestKnown::Searched(shots.at(&location).map(|shot| shot.probability))
+                    } else {
+                        BestKnown::Climbed(&around)
+                    };
+                    let shot = PlacedShot { location, nominal };
+                    checks.push(check(profile, table.kind, (shot, looked_up), best)?);
+                }
+                progress.advance(1);
+            }
+            self.0.insert(cell.key(), checks);
+        }
+        progress.end();
+        Ok(())
+    }
+}
+
+/// The best shot of a kind, if there is a clean one.
+fn best(profile: &Profile, kind: ShotKind) -> Result<Option<TableShot>, BestShotError> {
+    let (shot, other) = match find_beside_other_kind(profile, kind, &Silent) {
+        Ok(found) => found,
+        Err(BestShotError::Plan(PlanError::OutOfReach)) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    Ok(shot.ok().map(|shot| TableShot {
+        other_kind: other.map(|estimate| estimate.probability),
+        ..table_shot(profile, &shot.nominal, &shot.estimate, &shot.outcome)
+    }))
+}
+
+/// A shot of a table, without P of the other kind.
+fn table_shot(
+    here: &Profile,
+    nominal: &Nominal,
+    estimate: &Estimate,
+    outcome: &Outcome,
+) -> TableShot {
+    let windows = sensitivity::analyse(here, nominal, WINDOWS, &Silent).windows;
+    TableShot {
+        nominal: *nominal,
+        aim_rad: nominal.polar_rad - here.location().angle_rad,
+        probability: estimate.probability,
+        standard_error: estimate.standard_error,
+        outcome: outcome.kind,
+        time_s: outcome.verdict.time_s,
+        entry_rad: outcome.entry.map(|entry| entry.angle_rad),
+        tolerances: [0, 1].map(|i| windows[i].width()),
+        other_kind: None,
+    }
+}
+
+/// The shot of a neighbour, moved to a place and climbed there; `None` if it leads to nothing that
+/// goes in without an error.
+fn continued(
+    profile: &Profile,
+    kind: ShotKind,
+    shot: &PlacedShot,
+    place: Location,
+) -> Result<Option<TableShot>, ShotTableError> {
+    let here = profile.moved_to(place)?;
+    let start = moved(profile, &here, shot)?;
+    let Some((nominal, estimate)) = climb_from_shots(&here, kind, &[start])? else {
+        return Ok(None);
+    };
+    let outcome = here.simulator().outcome(here.release(&nominal).state());
+    let shot = outcome
+        .verdict
+        .made
+        .then(|| table_shot(&here, &nominal, &estimate, &outcome));
+    Ok(shot)
+}
+
+/// Whether P is lower between two shots from one place than their mean, by more than `depth`. About
+/// one optimum it is higher: P is concave there.
+fn is_jump(here: &Profile, [a, b]: [&TableShot; 2], depth: f64) -> bool {
+    let mut between = Nominal::default();
+    for variable in NominalVariable::ALL {
+        *between.get_mut(variable) = 0.5 * (a.nominal.get(variable) + b.nominal.get(variable));
+    }
+    let search = here.search();
+    let estimate =
+        Sampler::new(here).estimate(&between, search.standard_error, search.seed, &Silent);
+    estimate.probability < 0.5 * (a.probability + b.probability) - depth
+}

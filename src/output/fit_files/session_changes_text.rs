@@ -1,0 +1,144 @@
+//! What changed between two sessions of a shooter, as text.
+
+use crate::fitting::SessionComparison;
+
+/// What changed in one quantity.
+pub struct SessionChange {
+    /// Such as `P`, `polar_mean`.
+    pub name: String,
+    /// The unit that it is printed in.
+    pub unit: &'static str,
+    /// The size of the unit in SI units.
+    pub size: f64,
+    /// Before and after.
+    pub comparison: SessionComparison,
+}
+
+impl SessionChange {
+    /// The words for a growing and a falling value.
+    fn directions(&self) -> [&'static str; 2] {
+        match self.name.as_str() {
+            // Positive to the shooter's left.
+            "polar_mean" => ["left", "right"],
+            _ => ["rose", "fell"],
+        }
+    }
+
+    /// The direction of the change, and the probability of this direction.
+    fn direction(&self) -> (&'static str, f64) {
+        let [grew, fell] = self.directions();
+        let probability = self.comparison.grew;
+        if probability >= 0.5 {
+            (grew, probability)
+        } else {
+            (fell, 1.0 - probability)
+        }
+    }
+
+    fn is_decided(&self) -> bool {
+        let change = &self.comparison.change;
+        change.low > 0.0 || change.high < 0.0
+    }
+
+    /// Decimals that show two digits of the change's uncertainty, at most three.
+    fn decimals(&self) -> usize {
+        let sd = self.comparison.change.sd / self.size;
+        if sd > 0.0 {
+            (1.0 - libm::floor(libm::log10(sd))).clamp(0.0, 3.0) as usize
+        } else {
+            3
+        }
+    }
+}
+
+/// The verdict in words, then the table. `sessions` are names and numbers of shots, before and
+/// after.
+#[must_use]
+pub fn session_changes_text(sessions: [(&str, usize); 2], changes: &[SessionChange]) -> String {
+    let [before, after] = sessions.map(|(name, shots)| format!("{name} ({shots} shots)"));
+    let mut text = verdict(changes);
+    text += &format!(
+        "\nbefore  {before}\nafter   {after}\n\n{:<13} {:>7} {:>7} {:>7} {:>17} {:<5} {:<10} {:>7}\n",
+        "", "before", "after", "change", "95 %", "unit", "direction", "decide"
+    );
+    for change in changes {
+        text += &line(change);
+    }
+    text += "\n\
+        direction: the chance that it changed this way at all. 50 % says nothing; the\n\
+        \x20 95 % interval leaves out zero from 97.5 % on.\n\
+        decide: about how many shots a session would decide a change of this size. yes:\n\
+        \x20 decided now. -: less than its own uncertainty, so that its size says nothing.\n";
+    text
+}
+
+/// Two or three sentences: what became of P, and what has changed for certain.
+fn verdict(changes: &[SessionChange]) -> String {
+    let mut text = String::new();
+    if let Some(p) = changes.iter().find(|change| change.name == "P") {
+        let change = p.comparison.change.scaled(1.0 / p.size);
+        let (direction, probability) = p.direction();
+        let points = change.mean.abs();
+        let interval = format!("95 %: {:+.0} to {:+.0}", change.low, change.high);
+        text += &if p.is_decided() {
+            format!("The chance of a shot {direction} by {points:.0} points ({interval}).\n")
+        } else {
+            let sure = 100.0 * probability;
+            format!(
+                "Whether the chance of a shot changed is not known: it {direction} by {points:.0} points \
+                 ({interval}), and the chance that it {direction} at all is {sure:.0} %.\n"
+            )
+        };
+    }
+    let decided: Vec<String> = changes
+        .iter()
+        .filter(|change| change.name != "P" && change.is_decided())
+        .map(|change| {
+            let by = change.comparison.change.scaled(1.0 / change.size);
+            let (direction, _) = change.direction();
+            let decimals = change.decimals();
+            let (name, unit) = (&change.name, change.unit);
+            format!("{name} {direction} by {:.decimals$} {unit}", by.mean.abs())
+        })
+        .collect();
+    text += &if decided.is_empty() {
+        "No other value has an interval that leaves out zero.\n".to_owned()
+    } else {
+        format!(
+            "Changed, each at the 95 % level: {}. (Of {} values that stay the same, one in twenty seems to change.)\n",
+            decided.join(", "),
+            changes.len() - 1
+        )
+    };
+    text
+}
+
+fn line(change: &SessionChange) -> String {
+    let (direction, probability) = change.direction();
+    let comparison = &change.comparison;
+    let decide = match comparison.shots_to_decide {
+        _ if change.is_decided() => "yes".to_owned(),
+        Some(needed) => two_digits(needed),
+        None => "-".to_owned(),
+    };
+    let decimals = change.decimals();
+    let by = comparison.change.scaled(1.0 / change.size);
+    let line = format!(
+        "{:<13} {:>7.decimals$} {:>7.decimals$} {:>+7.decimals$} {:>7.decimals$} to {:>6.decimals$} {:<5} {direction:<5} {:>2.0} % {decide:>7}",
+        change.name,
+        comparison.before.mean / change.size,
+        comparison.after.mean / change.size,
+        by.mean,
+        by.low,
+        by.high,
+        change.unit,
+        (100.0 * probability).min(99.0),
+    );
+    format!("{}\n", line.trim_end())
+}
+
+/// A number of shots with two digits: it is as noisy as the change that it rests on.
+fn two_digits(shots: f64) -> String {
+    let unit = libm::exp10(libm::floor(libm::log10(shots.max(1.0))) - 1.0).max(1.0);
+    format!("{:.0}", (shots / unit).ceil() * unit)
+}
