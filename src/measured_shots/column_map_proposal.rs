@@ -29,6 +29,14 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
     ("time", &["time"]),
 ];
 
+/// Names that are too short to be looked for within others.
+const SHORT_NAMES: [(&str, &str); 4] = [
+    ("left_right", "lr"),
+    ("left_right", "side"),
+    ("shot", "releaseid"),
+    ("shot", "id"),
+];
+
 /// Units as others write them, longest first, and their suffixes here.
 const OTHER_UNITS: [(&str, &str); 22] = [
     ("degrees", "deg"),
@@ -84,8 +92,11 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         });
     }
     let mut text = format!("\nits columns are {}", columns.names().join(", "));
+    let known = columns.names().len() - unused.len();
     if maps.is_empty() {
-        text += "; name them with --map 'speed=ReleaseSpeed:mph'";
+        if known == 0 {
+            text += "; name them with --map 'speed=ReleaseSpeed:mph'";
+        }
         return text;
     }
     text += &format!("\nperhaps: {}", maps.join(" "));
@@ -126,7 +137,13 @@ fn target_of(name: &str, taken: &[&str]) -> Option<&'static str> {
         .collect();
     let found = OTHER_NAMES
         .iter()
-        .find(|(_, parts)| parts.iter().any(|part| letters.contains(part)))?;
+        .find(|(_, parts)| parts.iter().any(|part| letters.contains(part)))
+        .or_else(|| {
+            let short = SHORT_NAMES.iter().find(|(_, short)| *short == letters);
+            OTHER_NAMES
+                .iter()
+                .find(|(target, _)| short.is_some_and(|(short, _)| short == target))
+        })?;
     (!taken.contains(&found.0)).then_some(found.0)
 }
 

@@ -69,12 +69,37 @@ impl Source {
         {
             return Ok(Self::Releases);
         }
+        if let Some(missing) = one_missing(columns) {
+            return Err(format!("{missing}{}", map_proposal(columns)));
+        }
         Err(format!(
             "needs the columns of releases (speed, pitch and polar or aim), of landings (entry_angle, depth, left_right) or of \
              trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s{}",
             map_proposal(columns)
         ))
     }
+}
+
+/// What is missing where a file has all columns but one of a source.
+fn one_missing(columns: &Columns) -> Option<String> {
+    let landings = [Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight];
+    let trajectories = [Quantity::Time, Quantity::X, Quantity::Y, Quantity::Z];
+    let releases = [Quantity::Speed, Quantity::Pitch, Quantity::Aim];
+    let sources: [(&str, &[Quantity]); 3] = [
+        ("landings", &landings),
+        ("trajectories", &trajectories),
+        ("releases", &releases),
+    ];
+    sources.into_iter().find_map(|(source, needed)| {
+        let is_missing = |quantity: &&Quantity| columns.quantity(**quantity).is_none();
+        let missing: Vec<&Quantity> = needed.iter().filter(is_missing).collect();
+        let [missing] = missing[..] else { return None };
+        Some(format!(
+            "has the columns of {source} but for {}; name its column with --map '{}=COLUMN:UNIT'",
+            missing.name(),
+            missing.name()
+        ))
+    })
 }
 
 /// What the file does not say.

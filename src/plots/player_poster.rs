@@ -118,13 +118,13 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         .iter()
         .reduce(|a, b| if gain(b) > gain(a) { b } else { a });
     let Some(most) = most else {
-        return "Shoot direct: no place is surely better off the board.".to_owned();
+        return "Shoot direct: off the board no place is better by 1 of 100.".to_owned();
     };
     let in_hundred = |p: Option<Difference>| p.map(|p| format!("{:.0}", 100.0 * p.value));
     let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));
     let aim = most.board_aim_in_words(units);
     format!(
-        "Bank the ball where the map has an outline; it helps most {}: {} of 100 go in{direct}. Aim {}.",
+        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}: {} of 100 go in{direct}. Aim {}.",
         most.in_words(units),
         in_hundred(most.bank).unwrap_or_default(),
         aim.unwrap_or_else(|| "at the board".to_owned())

@@ -137,8 +137,8 @@ impl Svg {
         self.styled_text(at, size, anchor, text, " font-weight=\"bold\"");
     }
 
-    /// Writes a number that stays readable where lines of the drawing cross it: a pale border covers
-    /// them.
+    /// Writes a number that stays readable where lines of the drawing cross it: a pale border
+    /// covers them.
     pub fn number_over_lines(&mut self, at: (f64, f64), size: f64, text: &str, is_bold: bool) {
         let weight = if is_bold { " font-weight=\"bold\"" } else { "" };
         let style = format!(

@@ -9,12 +9,14 @@ use super::sweep_results::{PlaceResults, SweepResults};
 use crate::best_shot::ShotKind;
 use crate::shooter::ReleaseVariable;
 use crate::sweep::columns::{self, RealColumn};
+use crate::sweep::probability_by_place::Preference;
 use crate::units::{DEGREE_RAD, REV_RAD};
 
 /// Colours of the kinds of shots.
-const KIND_COLOURS: [(ShotKind, Rgb); 2] = [
-    (ShotKind::Direct, OKABE_ITO[4]),
-    (ShotKind::Bank, OKABE_ITO[0]),
+const KIND_COLOURS: [(Preference, Rgb); 3] = [
+    (Preference::Direct, OKABE_ITO[4]),
+    (Preference::Bank, OKABE_ITO[0]),
+    (Preference::Either, [225, 225, 225]),
 ];
 
 /// The texts of a map.
@@ -129,8 +131,9 @@ fn draw_kind(results: &SweepResults<'_>) -> Option<Plot> {
     };
     let names = KIND_COLOURS.map(|(kind, colour)| (kind.name().to_owned(), colour));
     draw_map(results, &texts, &ColourKey::Legend(&names), &|place| {
-        let kind = place.best()?.text(columns::KIND)?;
-        let found = KIND_COLOURS.iter().find(|(known, _)| known.name() == kind);
+        let [direct, bank] = ShotKind::ALL.map(|kind| results.probability(place, kind));
+        let preference = Preference::of(direct, bank)?;
+        let found = KIND_COLOURS.iter().find(|(known, _)| *known == preference);
         found.map(|(_, colour)| *colour)
     })
 }

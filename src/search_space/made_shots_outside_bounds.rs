@@ -20,8 +20,11 @@ pub struct WideSample {
     pub drawn: u64,
     /// Those outside the bracket. All of them were simulated.
     pub outside: u64,
-    /// Those of them that were made: 0 if the bracket misses no makes.
+    /// Those of them that were made and are no faster than the search allows: 0 if the bracket
+    /// misses no makes.
     pub made_outside: u64,
+    /// Those that were made and are faster than the search allows: high lobs from near the hoop.
+    pub made_too_fast: u64,
 }
 
 /// Draws `shots` uniformly: speeds from half to 1.3 times those of the bracket, all its pitch
@@ -38,7 +41,7 @@ pub fn sample_wide(profile: &Profile, plan: &TablePlan, shots: u64) -> WideSampl
         let mut random = ChaCha12Rng::seed_from_u64(profile.search().seed);
         random.set_stream(block);
         let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
-        let (mut outside, mut made) = (0, 0);
+        let (mut outside, mut made, mut too_fast) = (0, 0, 0);
         for _ in 0..BLOCK.min(shots - block * BLOCK) {
             let nominal = Nominal {
                 speed_m_s: between(speeds.0, speeds.1),
@@ -50,18 +53,25 @@ pub fn sample_wide(profile: &Profile, plan: &TablePlan, shots: u64) -> WideSampl
             if !plan.bracket.contains(&nominal) {
                 outside += 1;
                 let start = profile.release(&nominal).state();
-                made += u64::from(profile.simulator().verdict(start).made);
+                if profile.simulator().verdict(start).made {
+                    if nominal.speed_m_s > plan.bracket.speed_max_m_s {
+                        too_fast += 1;
+                    } else {
+                        made += 1;
+                    }
+                }
             }
         }
-        (outside, made)
+        (outside, made, too_fast)
     };
-    let (outside, made_outside) = (0..shots.div_ceil(BLOCK))
+    let (outside, made_outside, made_too_fast) = (0..shots.div_ceil(BLOCK))
         .into_par_iter()
         .map(sample_block)
-        .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        .reduce(|| (0, 0, 0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
     WideSample {
         drawn: shots,
         outside,
         made_outside,
+        made_too_fast,
     }
 }

@@ -12,7 +12,10 @@ use crate::shooter::ShotKind;
 use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 
-/// Which kind of shot is better, by the rule of
+/// Least difference in P for which a shooter is told to prefer one kind: one shot in 100.
+pub const LEAST_ADVISED_GAIN: f64 = 0.01;
+
+/// Which kind of shot is better: by [`LEAST_ADVISED_GAIN`] and more, and by the rule of
 /// [`SIGNIFICANT_SIGMAS`](super::bank_direct_difference::SIGNIFICANT_SIGMAS).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preference {
@@ -20,7 +23,7 @@ pub enum Preference {
     Direct,
     /// The bank shot, or there is no direct shot.
     Bank,
-    /// The difference is within the error of both.
+    /// The difference is less than a shot in 100, or within the error of both.
     Either,
 }
 
@@ -34,7 +37,9 @@ impl Preference {
             (None, Some(_)) => Self::Bank,
             (Some(direct), Some(bank)) => {
                 let gain = difference(bank, direct);
-                match (is_significant(gain), gain.value > 0.0) {
+                let is_advised =
+                    is_significant(gain) && libm::fabs(gain.value) >= LEAST_ADVISED_GAIN;
+                match (is_advised, gain.value > 0.0) {
                     (false, _) => Self::Either,
                     (true, true) => Self::Bank,
                     (true, false) => Self::Direct,

@@ -252,8 +252,8 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     let compared = Answer::of(bankshot().arg("compare-sessions").arg(&path).arg("--quiet"));
     let text = compared.exits(0).stdout().to_owned();
     assert!(
-        text.contains("before  Ann (30 shots)")
-            && text.starts_with("Whether the chance of a shot changed is not known: it ")
+        text.contains("before  Ann (30 shots, ")
+            && text.starts_with("These shots do not show that the chance of a shot changed: it ")
             && text.contains("Changed, each at the 95 % level: pitch_mean fell by 0.82 deg."),
         "{text}"
     );

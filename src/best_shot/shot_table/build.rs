@@ -5,7 +5,7 @@ use super::cells::{Cell, grid};
 use super::interpolation_check::{
     BestKnown, CheckError, InterpolationCheck, PlacedShot, check, moved,
 };
-use super::{ShotTable, TableShot};
+use super::lookup::{ShotTable, TableShot};
 use crate::analysis::sensitivity::{self, SensitivityTopics};
 use crate::best_shot::search::{BestShotError, climb_from_shots, find_beside_other_kind};
 use crate::dynamics::Outcome;
@@ -40,6 +40,9 @@ pub struct ShotTableRequest {
 
 /// Most nodes of a table.
 pub const MOST_NODES: usize = 2000;
+/// Part of the allowed loss above which nodes are added: between the checked places it can be
+/// greater.
+const MARGIN: f64 = 0.75;
 /// Most times that a step between two nodes is halved.
 pub const MOST_HALVINGS: usize = 4;
 
@@ -141,7 +144,7 @@ impl ShotTable {
             let costly = |cell: &Cell| {
                 checks
                     .of(cell)
-                    .any(|check| check.worse() > request.max_loss)
+                    .any(|check| check.worse() > MARGIN * request.max_loss)
             };
             let costly: Vec<bool> = table.cells().iter().map(costly).collect();
             table.split_at_jumps(&profile, &costly, request.max_loss, &shots)?;
@@ -183,12 +186,15 @@ impl ShotTable {
     }
 
     /// Distances and angles, with the middles of those cells where a check found more than
-    /// `max_loss`.
+    /// [`MARGIN`] of `max_loss`.
     fn finer(&self, cells: &[Cell], checks: &ChecksOfCells, max_loss: f64) -> [Vec<f64>; 2] {
         let mut distances = self.distances_m.clone();
         let mut angles = self.angles_rad.clone();
         for cell in cells {
-            if checks.of(cell).any(|check| check.worse() > max_loss) {
+            if checks
+                .of(cell)
+                .any(|check| check.worse() > MARGIN * max_loss)
+            {
                 distances.push(cell.middle().distance_m);
                 angles.push(cell.middle().angle_rad);
             }

@@ -6,7 +6,7 @@ use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::best_shot_json::best_shots_json;
 use crate::output::best_shot_text::{
@@ -85,7 +85,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         for (kind, shot) in best.by_kind() {
             if let Ok(shot) = shot {
                 let text = fit_folder::text_over_draws(fit, &profile, &shot.nominal)?;
-                print_answer(&format!("{}, {text}", kind.name()))?;
+                print_prose(&format!("{}, {text}", kind.name()))?;
             }
         }
     }

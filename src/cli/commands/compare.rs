@@ -8,7 +8,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
 use crate::plots::shot_with_probability::PlottedShot;
@@ -192,7 +192,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
         run_folder::prepare(&against_folder)?;
         run_folder::write_best_shots(&against_folder, other_text, &other, &best)?;
     }
-    print_answer(&text)?;
+    print_prose(&text)?;
     plot_files::print_captions(&folder, &plots, quiet)?;
     Ok(exit)
 }

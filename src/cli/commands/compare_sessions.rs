@@ -12,7 +12,9 @@ use crate::fitting::{
 use crate::measured_shots::read::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::fit_files::parameters::value_units;
-use crate::output::fit_files::session_changes_text::{SessionChange, session_changes_text};
+use crate::output::fit_files::session_changes_text::{
+    SessionChange, SessionSummary, session_changes_text,
+};
 use crate::output::json_object::{number, object};
 use crate::shooter::Profile;
 use clap::Args;
@@ -43,6 +45,8 @@ pub(crate) struct CompareSessionsOptions {
 struct Session {
     name: String,
     posterior: Posterior,
+    /// Made, and all with a result.
+    makes: (usize, usize),
     /// P of the usual shot at the first place.
     probabilities: DrawProbabilities,
     /// The profile at the first place.
@@ -54,6 +58,7 @@ impl Session {
         Self {
             name,
             posterior: fit.posterior,
+            makes: (fit.makes.made, fit.makes.labelled),
             probabilities: fit.probabilities.swap_remove(0),
             profile: fit.profiles.swap_remove(0),
         }
@@ -79,10 +84,12 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
     if options.json {
         print_answer(&format!("{:#}\n", json(&sessions, &changes)))?;
     } else {
-        let named = sessions
-            .each_ref()
-            .map(|session| (session.name.as_str(), session.posterior.shots));
-        print_prose(&session_changes_text(named, &changes))?;
+        let summaries = sessions.each_ref().map(|session| SessionSummary {
+            name: &session.name,
+            shots: session.posterior.shots,
+            makes: session.makes,
+        });
+        print_prose(&session_changes_text(summaries, &changes))?;
     }
     Ok(code::DONE)
 }
@@ -96,6 +103,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
             name,
             probabilities: fit.usual_probabilities(),
             posterior: fit.posterior,
+            makes: fit.observed,
             profile: fit.profiles[0].clone(),
         });
     }
@@ -209,8 +217,15 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
 }
 
 fn json([before, after]: &[Session; 2], changes: &[SessionChange]) -> Value {
-    let session =
-        |session: &Session| json!({ "name": session.name, "shots": session.posterior.shots });
+    let session = |session: &Session| {
+        let (made, labelled) = session.makes;
+        json!({
+            "name": session.name,
+            "shots": session.posterior.shots,
+            "made": made,
+            "with_result": labelled,
+        })
+    };
     let listed = changes.iter().map(|change| {
         let comparison = &change.comparison;
         let interval = |interval: &crate::fitting::Interval| {

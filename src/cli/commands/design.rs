@@ -101,7 +101,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         return print_answer(&format!("{:#}\n", json(name, &tracker, &rows, needed)));
     }
     let mut text = format!(
-        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation\n\n{:>6}  {:^29}  {:^26}\n{:>6} {:>9} {:>9} {:>9}  {:>12} {:>12}\n",
+        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^26}\n{:>6} {:>9} {:>9} {:>9}  {:>12} {:>12}\n",
         profile.shooter().name,
         tracker.name,
         tracker.source,
@@ -139,10 +139,23 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 "\nAbout {shots} shots make P known to {points} points (one standard deviation).\n"
             ),
         };
+        // The same with the interval that `fit` prints.
+        text += &match shots_for(&rows, points / 100.0 / TWO_SIDED_95) {
+            MOST_SHOTS.. => {
+                format!(
+                    "More than {MOST_SHOTS} make its 95 % interval reach {points} points to each side.\n"
+                )
+            }
+            shots => format!(
+                "About {shots} make its 95 % interval reach {points} points to each side.\n"
+            ),
+        };
     }
     print_prose(&text)
 }
 
+/// Standard deviations on each side of a normal 95 % interval.
+const TWO_SIDED_95: f64 = 1.96;
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
 

@@ -167,6 +167,14 @@ fn text(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> String {
             "range       of {} shots from a wider range, {} lie outside the search range; {} of those were made\n",
             sample.drawn, sample.outside, sample.made_outside
         ));
+        if sample.made_too_fast > 0 {
+            let (long, metre) = profile.output().units.length();
+            text.push_str(&format!(
+                "            {} were made faster than the search looks, {:.1} {long}/s ([search] speed_max)\n",
+                sample.made_too_fast,
+                plan.bracket.speed_max_m_s / metre
+            ));
+        }
     }
     text
 }

@@ -6,7 +6,7 @@ use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
 use crate::plots::sweep_results::SweepResults;
@@ -186,7 +186,7 @@ fn write(folder: &Path, page: &Page, quiet: bool) -> Result<u8, Failure> {
     let html = page.html()?;
     atomic_file::write_unlinked(&target, html.as_bytes())
         .map_err(|error| Failure::io(target.display(), &error))?;
-    print_answer(&format!("{}\n", page.answer))?;
+    print_prose(&format!("{}\n", page.answer))?;
     if !quiet {
         print_remark(&format!(
             "written to {} ({:.2} MB)",

@@ -48,8 +48,8 @@ pub(crate) struct TableOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds no
-    /// nodes.
+    /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds
+    /// no nodes.
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
     /// The form of the table [default: by the end of the output's name, else text].

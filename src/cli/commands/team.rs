@@ -176,7 +176,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         table.trim_fmt()
     );
     if any_either {
-        text += "either: the two differ by less than twice the error of their difference\n";
+        text += "either: the two differ by less than 1 in 100, or by less than twice the error of their difference\n";
     }
     print_prose(&text)
 }
@@ -260,6 +260,13 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
             "written: {}, and in each player's folder bank_and_direct.svg and poster.html",
             file.display()
         ));
+        if let [first, second, ..] = &folders[..] {
+            print_remark(&format!(
+                "next, where one beats the other: bankshot compare {} --against {}",
+                first.display(),
+                second.display()
+            ));
+        }
     }
     Ok(code::DONE)
 }
@@ -367,6 +374,31 @@ fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
     text
 }
 
+/// A place in words; with its mirror image, where the player should bank there too.
+fn in_words_with_mirror(
+    chances: &PlaceProbabilities,
+    bank: &[&PlaceProbabilities],
+    units: UnitSystem,
+) -> String {
+    let words = chances.in_words(units);
+    let (x_m, y_m) = (chances.place.x_m, chances.place.y_m);
+    let is_mirror = |other: &&&PlaceProbabilities| {
+        let (dx_m, dy_m) = (other.place.x_m - x_m, other.place.y_m + y_m);
+        libm::hypot(dx_m, dy_m) < SAME_PLACE_M
+    };
+    if libm::fabs(y_m) < SAME_PLACE_M || !bank.iter().any(|other| is_mirror(&other)) {
+        return words;
+    }
+    words
+        .replace("to the left", "to either side")
+        .replace("to the right", "to either side")
+        .replace("on the left", "on either side")
+        .replace("on the right", "on either side")
+}
+
+/// Places nearer than this are the same, m.
+const SAME_PLACE_M: f64 = 0.01;
+
 fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     let best = best_players(players);
     let header = [
@@ -412,22 +444,32 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
         let bank = player.bank_places();
         text += &format!("{}: ", shortened(&player.name, LONGEST_NAME));
         if bank.is_empty() {
-            text += "no place where a bank shot is surely better.\n";
+            text += "no place where a bank shot is better by 1 in 100.\n";
             continue;
         }
         text += "bank it from\n";
-        for chances in bank.iter().take(MOST_BANK_PLACES) {
+        let words = |chances: &PlaceProbabilities| in_words_with_mirror(chances, &bank, units);
+        let mut listed: Vec<String> = Vec::new();
+        for chances in &bank {
+            if listed.contains(&words(chances)) {
+                continue;
+            }
+            listed.push(words(chances));
+            if listed.len() > MOST_BANK_PLACES {
+                continue;
+            }
             let points =
                 |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
             text += &format!(
                 "  {}: {} (direct {})\n",
-                shortened(&chances.in_words(units), 50),
+                shortened(&words(chances), 54),
                 points(chances.bank),
                 points(chances.direct)
             );
         }
-        if bank.len() > MOST_BANK_PLACES {
-            text += &format!("  and {} more: team.csv\n", bank.len() - MOST_BANK_PLACES);
+        if listed.len() > MOST_BANK_PLACES {
+            let more = listed.len() - MOST_BANK_PLACES;
+            text += &format!("  and {more} more: team.csv\n");
         }
     }
     text

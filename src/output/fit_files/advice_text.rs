@@ -252,7 +252,8 @@ pub fn advice_json(
         named("shooter", name.into()),
         named(
             &format!("distance_{long}"),
-            number(location.distance_m / metre),
+            // Converted to SI units and back: without what that cost in the last digits.
+            number((location.distance_m / metre * 1e9).round() / 1e9),
         ),
         named("court_angle_deg", number(location.angle_rad / DEGREE_RAD)),
         named("kind", advice.kind.name().into()),

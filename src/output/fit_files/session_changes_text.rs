@@ -51,11 +51,32 @@ impl SessionChange {
     }
 }
 
-/// The verdict in words, then the table. `sessions` are names and numbers of shots, before and
-/// after.
+/// A session.
+pub struct SessionSummary<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its shots.
+    pub shots: usize,
+    /// Made, and all with a result.
+    pub makes: (usize, usize),
+}
+
+/// The verdict in words, then the table. The sessions are before and after.
 #[must_use]
-pub fn session_changes_text(sessions: [(&str, usize); 2], changes: &[SessionChange]) -> String {
-    let [before, after] = sessions.map(|(name, shots)| format!("{name} ({shots} shots)"));
+pub fn session_changes_text(
+    sessions: [SessionSummary<'_>; 2],
+    changes: &[SessionChange],
+) -> String {
+    let [before, after] = sessions.map(|session| {
+        let makes = match session.makes {
+            (_, 0) => String::new(),
+            (made, of) => {
+                let percent = 100.0 * made as f64 / of as f64;
+                format!(", {made} of {of} made: {percent:.0} %")
+            }
+        };
+        format!("{} ({} shots{makes})", session.name, session.shots)
+    });
     let mut text = verdict(changes);
     text += &format!(
         "\nbefore  {before}\nafter   {after}\n\n{:<13} {:>7} {:>7} {:>7} {:>17} {:<5} {:<10} {:>7}\n",
@@ -85,8 +106,8 @@ fn verdict(changes: &[SessionChange]) -> String {
         } else {
             let sure = 100.0 * probability;
             format!(
-                "Whether the chance of a shot changed is not known: it {direction} by {points:.0} points \
-                 ({interval}), and the chance that it {direction} at all is {sure:.0} %.\n"
+                "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} points \
+                 ({interval}), and {sure:.0} % is the chance that it {direction} at all.\n"
             )
         };
     }
@@ -105,9 +126,8 @@ fn verdict(changes: &[SessionChange]) -> String {
         "No other value has an interval that leaves out zero.\n".to_owned()
     } else {
         format!(
-            "Changed, each at the 95 % level: {}. (Of {} values that stay the same, one in twenty seems to change.)\n",
-            decided.join(", "),
-            changes.len() - 1
+            "Changed, each at the 95 % level: {}. (Even where nothing changes, one value in twenty seems to.)\n",
+            decided.join(", ")
         )
     };
     text
