@@ -58,10 +58,16 @@ impl Linspace {
         Self::new(value, value, 1)
     }
 
+    /// Distance between two points; 0 of a single one.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        (self.high - self.low) / self.count.saturating_sub(1).max(1) as f64
+    }
+
     /// The points in order.
     pub fn values(&self) -> impl Iterator<Item = f64> + Clone + use<> {
-        let Self { low, high, count } = *self;
-        let step = (high - low) / count.saturating_sub(1).max(1) as f64;
+        let Self { low, count, .. } = *self;
+        let step = self.step();
         (0..count).map(move |i| low + i as f64 * step)
     }
 }

@@ -5,8 +5,8 @@
 //! the normal density in the cell, times the width of the cell.
 
 use super::gaussian_cell_weights::{
-    Gaussian, WeightMatrix, add_weighted, polar_shift, speed_shift, spin_shift, weight,
-    weight_matrix,
+    Gaussian, WeightMatrix, add_weighted, add_weights, polar_shift, speed_shift, spin_shift,
+    weight, weight_matrix,
 };
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed, Verdict};
@@ -112,10 +112,12 @@ impl NominalTable {
     pub fn simulate(profile: &Profile, plan: &TablePlan, progress: &dyn Progress) -> Self {
         let dispersion = &profile.shooter().dispersion;
         let nominal = &plan.nominal;
+        let speeds = gaussians(nominal.speed.values(), |v| dispersion.speed_m_s(v));
         let simulation = TableSimulation {
             profile,
             plan,
-            speeds: gaussians(nominal.speed.values(), |v| dispersion.speed_m_s(v)),
+            even_speeds: even(&speeds, nominal.speed.step()),
+            speeds,
             spins: gaussians(nominal.backspin.values(), |w| dispersion.backspin_rad_s(w)),
         };
         let cell_values = simulation.speeds.len() * simulation.spins.len();
@@ -187,6 +189,14 @@ fn gaussians(means: impl Iterator<Item = f64>, sigma: impl Fn(f64) -> f64) -> Ve
         .collect()
 }
 
+/// The first of some evenly spaced nominal values and their spacing, if they have one standard
+/// deviation.
+fn even(nominals: &[Gaussian], spacing: f64) -> Option<(Gaussian, f64)> {
+    let first = *nominals.first()?;
+    let same = |nominal: &Gaussian| nominal.sigma == first.sigma;
+    (spacing > 0.0 && nominals.iter().all(same)).then_some((first, spacing))
+}
+
 /// A (pitch, polar) cell of a table.
 type Cell = (usize, usize);
 
@@ -207,6 +217,8 @@ struct TableSimulation<'a> {
     plan: &'a TablePlan,
     /// Nominal speeds, m/s.
     speeds: Vec<Gaussian>,
+    /// The first of them and their spacing, if their errors do not grow with the speed.
+    even_speeds: Option<(Gaussian, f64)>,
     /// Nominal backspins, rad/s.
     spins: Vec<Gaussian>,
 }
@@ -240,9 +252,7 @@ impl TableSimulation<'_> {
                 for (verdict, &speed) in shots.by_ref().take(line.count) {
                     if verdict.made {
                         any_made = true;
-                        for (sum, &nominal) in memory.sums.iter_mut().zip(&self.speeds) {
-                            *sum += weight(speed, nominal, line.step());
-                        }
+                        self.add_speed_weights(&mut memory.sums, speed, line.step());
                     }
                 }
                 if any_made {
@@ -251,6 +261,18 @@ impl TableSimulation<'_> {
                         let weight = weight(spin_rad_s, nominal, self.plan.backspin.step());
                         add_weighted(row, weight, &memory.sums);
                     }
+                }
+            }
+        }
+    }
+
+    /// Adds the weights of a speed under every nominal speed to `sums`.
+    fn add_speed_weights(&self, sums: &mut [f64], speed: f64, step: f64) {
+        match self.even_speeds {
+            Some((first, spacing)) => add_weights(sums, speed, first, spacing, step),
+            None => {
+                for (sum, &nominal) in sums.iter_mut().zip(&self.speeds) {
+                    *sum += weight(speed, nominal, step);
                 }
             }
         }

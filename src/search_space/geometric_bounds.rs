@@ -1,11 +1,11 @@
 //! The releases that can go in, from geometry alone.
 //!
 //! A shot that goes in must come within reach of the ring (a circle of radius R_H + R about the
-//! hoop's axis) at or above `z = -R`, and its centre must not pass over the top of the board. Both
-//! bound the speed for each pitch angle. Its direction must lead within reach of the ring, or to a
-//! point on the board from which a bounce can. A bounce keeps between about half and all of its
-//! sideways velocity (3/5 for a rigid ball that rolls at the end), and the restitution's share of
-//! the velocity towards the board.
+//! hoop's axis) at or above `z = -R`, and must pass neither above the ring from its near to its far
+//! side nor over the board. Both bound the speed for each pitch angle. Its direction must lead within
+//! reach of the ring, or to a point on the board from which a bounce can. A bounce does not reverse
+//! the velocity along the board. The velocity away from the board can have any size: off an edge, and
+//! off the paper's board that a rising ball leaves at the top while it is still compressed.
 //!
 //! With air the speeds are those of the paths under drag. A faster path in the same direction lies
 //! above a slower one all along, with drag too; and the path in a vacuum lies above both. Lift
@@ -22,8 +22,6 @@ use std::f64::consts::FRAC_PI_2;
 const PATH_POINTS: u32 = 24;
 /// Spacing of the tested polar angles, rad.
 const POLAR_STEP_RAD: f64 = 0.000_5;
-/// Share of the sideways velocity that a bounce off the board keeps, with a margin on both sides.
-const SIDEWAYS_KEPT: (f64, f64) = (0.4, 1.1);
 /// Default of the greatest speed, as a multiple of the least speed that reaches the hoop.
 const MAX_SPEED_FACTOR: f64 = 2.0;
 
@@ -45,7 +43,12 @@ pub struct Bracket {
     #[serde(skip)]
     air: Option<(Simulator, [f64; 2])>,
     face_x_m: f64,
+    /// The plane that the centre of a ball in play does not pass: the face or, with round edges, one
+    /// edge radius behind it.
+    last_plane_x_m: f64,
+    /// Greatest height of the centre of a ball that touches the board, m.
     board_top_m: f64,
+    /// Greatest distance of such a centre from the board's middle to either side, m.
     board_half_width_m: f64,
 }
 
@@ -60,7 +63,7 @@ impl Bracket {
         let drag = physics.drag_per_m() * location.distance_m;
         let least =
             least_speed_m_s(location.distance_m, -start_height_m, gravity_m_s2) * (1.0 + drag);
-        // A ball that rolls over the edge of the board can still come back.
+        // A ball can touch a round edge from above and from beside the board.
         let over_edge_m = match physics.board_edge {
             BoardEdge::None => 0.0,
             BoardEdge::Rounded { .. } => physics.ball_radius_m,
@@ -80,16 +83,16 @@ impl Bracket {
             gravity_m_s2,
             air: paths_in_air(profile),
             face_x_m: -physics.board_distance_m,
+            last_plane_x_m: -physics.board_distance_m - physics.board_edge.radius_m(),
             board_top_m: physics.board_centre_z_m() + 0.5 * physics.board_height_m + over_edge_m,
-            board_half_width_m: 0.5 * physics.board_width_m,
+            board_half_width_m: 0.5 * physics.board_width_m + over_edge_m,
         };
-        let restitution = physics.restitution();
         let tries = (2.0 * FRAC_PI_2 / POLAR_STEP_RAD) as i64;
         let mut low = f64::INFINITY;
         let mut high = f64::NEG_INFINITY;
         for i in -tries / 2..=tries / 2 {
             let polar = location.angle_rad + i as f64 * POLAR_STEP_RAD;
-            if bracket.passes_ring(polar) || bracket.banks_to_ring(polar, restitution) {
+            if bracket.passes_ring(polar) || bracket.banks_to_ring(polar) {
                 low = low.min(polar - POLAR_STEP_RAD);
                 high = high.max(polar + POLAR_STEP_RAD);
             }
@@ -116,37 +119,33 @@ impl Bracket {
     }
 
     /// Whether the horizontal path meets the board where a bounce can lead within reach of the
-    /// ring.
-    fn banks_to_ring(&self, polar: f64, restitution: f64) -> bool {
+    /// ring: in front of the hoop, or on the side that the path comes from.
+    fn banks_to_ring(&self, polar: f64) -> bool {
         let (sin, cos) = libm::sincos(polar);
         if cos <= 1e-6 {
             return false;
         }
         let (x, y) = self.start();
-        let plane = self.face_x_m + self.ball_radius_m;
-        let across = y - (x - plane) * sin / cos;
-        if across.abs() > self.board_half_width_m {
-            return false;
-        }
-        let (least, most) = SIDEWAYS_KEPT;
-        (0..=20).any(|i| {
-            let kept = least + (most - least) * f64::from(i) / 20.0;
-            let slope = -sin * kept / (cos * restitution.max(0.05));
-            // Distance of the hoop's axis from the line (plane, across) + t (1, slope), t >= 0.
-            let along = -(plane + across * slope) / (1.0 + slope * slope);
-            let (dx, dy) = (plane + along.max(0.0), across + slope * along.max(0.0));
-            dx * dx + dy * dy < self.reach_m * self.reach_m
-        })
+        // Distances to the side where the ball can first and last touch the board, positive on the
+        // side that the path comes from.
+        let side = 1.0_f64.copysign(sin);
+        let across = |plane: f64| side * (y - (x - plane) * sin / cos);
+        let first = across(self.face_x_m + self.ball_radius_m);
+        let last = across(self.last_plane_x_m);
+        last <= self.board_half_width_m && first > -self.reach_m
     }
 
-    /// Length of the horizontal path to the plane of the board's face, if it comes near the board.
-    fn path_to_board(&self, polar: f64) -> Option<f64> {
+    /// Lengths of the horizontal path to where the ball can first touch the board's face, and to the
+    /// last plane, if it comes near the board.
+    fn path_to_board(&self, polar: f64) -> Option<(f64, f64)> {
         let (sin, cos) = libm::sincos(polar);
         let (x, y) = self.start();
-        let length = (x - self.face_x_m) / cos;
-        let across = y - length * sin;
+        let length_to = |plane: f64| (x - plane) / cos;
+        let last = length_to(self.last_plane_x_m);
+        let across = y - last * sin;
         let near = self.board_half_width_m + self.reach_m;
-        (cos > 1e-6 && across.abs() < near).then_some(length)
+        let first = length_to(self.face_x_m + self.ball_radius_m);
+        (cos > 1e-6 && across.abs() < near).then_some((first, last))
     }
 
     /// Least and greatest speed with which a shot in this direction can go in, m/s; `None` if there
@@ -155,20 +154,22 @@ impl Bracket {
     pub fn speeds_m_s(&self, pitch_rad: f64, polar_rad: f64) -> Option<(f64, f64)> {
         let near = (self.location.distance_m - self.reach_m).max(1e-3);
         let far = self.location.distance_m + self.reach_m;
-        let end = self.path_to_board(polar_rad).unwrap_or(far).max(near);
+        let board = self.path_to_board(polar_rad);
+        let end = board.map_or(far, |(_, last)| last).max(near);
         // A slower shot is below the ring's reach all the way from `near` to `end`.
         let lengths =
             (0..=PATH_POINTS).map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS));
         let least = self.least_speed_through(lengths, -self.contact_m, pitch_rad);
-        // A faster shot passes above the far side of the ring, and above the board both where the
-        // ball would touch it (on the way up) and at its face (on the way down).
-        let over_ring = self.speed_through(far, self.contact_m, pitch_rad);
-        let over_board = self.path_to_board(polar_rad).map_or(0.0, |face| {
-            let touch = face - self.ball_radius_m / libm::cos(polar_rad);
-            [touch, face]
-                .map(|s| self.speed_through(s.max(1e-3), self.board_top_m, pitch_rad))
-                .into_iter()
-                .fold(0.0, f64::max)
+        // A faster shot passes above the ring on both sides, and above the board both where the ball
+        // would touch it (on the way up) and at the last plane (on the way down). The speed through
+        // a height has one minimum along the path, so it is greatest at an end.
+        let greatest = |lengths: [f64; 2], z: f64| {
+            let speeds = lengths.map(|s| self.speed_through(s.max(1e-3), z, pitch_rad));
+            speeds[0].max(speeds[1])
+        };
+        let over_ring = greatest([near, far], self.contact_m);
+        let over_board = board.map_or(0.0, |(first, last)| {
+            greatest([first, last], self.board_top_m)
         });
         let most = over_ring.max(over_board).min(self.speed_max_m_s);
         (least < most).then_some((least, most))
