@@ -81,10 +81,16 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         _ => own.clone(),
     };
     let with = if has_air { "with" } else { "ncaa," };
-    let changes: [(&str, fn(&mut Physics)); 8] = [
+    let changes: [(&str, fn(&mut Physics)); 10] = [
         ("no air", |physics| physics.air = Air::NONE),
         ("air of 5280 ft", |physics| physics.air.density_kg_m3 = 0.98),
-        ("lift_slope 1", |physics| physics.air.lift_slope = 1.0),
+        ("drag_coefficient 0.41", |physics| {
+            physics.air.drag_coefficient = 0.41;
+        }),
+        ("drag_coefficient 0.50", |physics| {
+            physics.air.drag_coefficient = 0.50;
+        }),
+        ("lift_slope 0.1", |physics| physics.air.lift_slope = 0.1),
         ("a ring of no thickness", |physics| {
             physics.ring_tube_diameter_m = 0.0;
         }),

@@ -3,6 +3,7 @@
 use super::config_files::{load_profile, read_text};
 use super::failure::{Failure, code};
 use super::measured_shots_flags::MeasuredShotsOptions;
+use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::fitting::{
     Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile,
@@ -168,7 +169,16 @@ pub(crate) fn text_over_draws(
     profile: &Profile,
     nominal: &Nominal,
 ) -> Result<String, Failure> {
-    let draws = &read(folder)?.posterior.draws;
+    let fit = read(folder)?;
+    let shooter = &fit.profiles[0].shooter().name;
+    if *shooter != profile.shooter().name {
+        print_remark(&format!(
+            "warning: the draws in {} are those of {shooter}, and the profile is that of {}",
+            folder.display(),
+            profile.shooter().name
+        ));
+    }
+    let draws = &fit.posterior.draws;
     let p = probability_over_draws(draws, profile, nominal, SHOTS)?;
     Ok(format!(
         "over {} draws of the scatter in {}: {}\n",

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use crate::shooter::{Nominal, NominalVariable, Profile};
 use crate::units::{self, DEGREE_RAD};
 use clap::Args;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Greatest speed of a release, m/s.
 const MAX_SPEED_M_S: f64 = 1000.0;
@@ -68,6 +69,16 @@ impl NominalOptions {
         }
     }
 
+    /// Whether a flag or the profile gives the speed or the pitch angle.
+    pub(crate) fn is_given(&self, profile: &Profile) -> bool {
+        [NominalVariable::Speed, NominalVariable::Pitch]
+            .into_iter()
+            .any(|variable| {
+                self.flag(variable).1.is_some()
+                    || profile.nominal_overrides().get(variable).is_some()
+            })
+    }
+
     /// A warning if the error-free shot touches nothing and misses: such a shot is seldom meant.
     pub(crate) fn warning(profile: &Profile, nominal: &Nominal) -> Option<String> {
         let outcome = profile
@@ -101,7 +112,7 @@ impl NominalOptions {
                 .map_err(|error| format!("--{flag}: {error}"))?;
             return match allowed(variable, value) {
                 None => Ok(value),
-                Some(allowed) => Err(format!("--{flag}: must be {allowed}")),
+                Some(allowed) => Err(format!("--{flag}: must be {allowed}, not '{text}'")),
             };
         }
         let default = match variable {
@@ -116,7 +127,9 @@ impl NominalOptions {
             .get(variable)
             .or(default)
             .ok_or_else(|| {
-                format!("--{flag} is missing; give it, or {flag} in the profile's [nominal] table")
+                format!(
+                    "--{flag} is missing; give it, or {flag} in the profile's [nominal] table (`bankshot best` finds a shot)"
+                )
             })
     }
 }
@@ -127,7 +140,8 @@ fn allowed(variable: NominalVariable, value: f64) -> Option<&'static str> {
         NominalVariable::Speed => {
             (!(0.0..=MAX_SPEED_M_S).contains(&value)).then_some("from 0 to 1000 m/s")
         }
-        NominalVariable::Pitch | NominalVariable::Polar => None,
+        NominalVariable::Pitch => (!(value.abs() <= FRAC_PI_2)).then_some("from -90 to 90 deg"),
+        NominalVariable::Polar => (!(value.abs() <= TAU)).then_some("from -360 to 360 deg"),
         NominalVariable::Backspin | NominalVariable::RifleSpin | NominalVariable::SideSpin => {
             (!(value.abs() <= MAX_SPIN_RAD_S)).then_some("within 10000 rad/s")
         }

@@ -1,5 +1,6 @@
 //! What a shooter should change, and how sure that is.
 
+use super::advice_steps::{AdviceSteps, Cause, Shooting};
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
 use super::measured_release::{VALUE_NAMES, Values, nominal_of, values_of};
@@ -7,43 +8,14 @@ use super::posterior::{Draw, Posterior, SpinSource};
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::{BestShot, BestShotError, find_kinds};
 use crate::probability::Progress;
-use crate::shooter::{Profile, ShotKind};
-use rayon::prelude::*;
+use crate::shooter::{NominalVariable, Profile, SearchChoice, ShotKind};
 
 /// Draws that advice is computed for, at most.
 const DRAWS: usize = 400;
-/// Shots of each sample: for the shots that are compared, and for the mixtures of usual and best
-/// shot.
+/// Shots of each sample.
 const SHOTS: usize = 32_768;
-const MIXTURE_SHOTS: usize = 8_192;
 /// The factor on a standard deviation for "10 % less scatter".
 const TRAINED: f64 = 0.9;
-/// The combinations of four causes.
-const COMBINATIONS: usize = 16;
-
-/// A part of the release that a shooter can change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cause(pub usize);
-
-impl Cause {
-    /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        ["speed", "pitch", "aim", "backspin"][self.0]
-    }
-}
-
-/// How much of the gap between usual and best shot one cause makes.
-#[derive(Clone, Debug)]
-pub struct CauseOfGap {
-    /// The cause.
-    pub cause: Cause,
-    /// The usual value (mean over the draws) and the best one, SI units.
-    pub values: (f64, f64),
-    /// Its share of the gap in P: the mean over all orders in which the causes can be removed
-    /// (Shapley's value).
-    pub gain: Interval,
-}
 
 /// What 10 % less scatter of one value gains.
 #[derive(Clone, Debug)]
@@ -86,13 +58,16 @@ pub struct Advice {
     pub gain: Option<Interval>,
     /// The share of the draws in which the best shot is better.
     pub gain_is_positive: f64,
-    /// The gap by cause, largest first.
-    pub causes: Vec<CauseOfGap>,
+    /// What to change, if there is a best shot.
+    pub steps: Option<AdviceSteps>,
     /// What to train, largest gain first.
     pub training: Vec<TrainingGain>,
     /// Bank or direct, where both can be made.
     pub kinds: Option<KindComparison>,
 }
+
+/// Shots of the sample that P of the usual shot is told with, in a fit and in advice.
+pub(super) const USUAL_SHOTS: usize = 65_536;
 
 /// P of the usual shot at a place for each draw.
 #[must_use]
@@ -136,23 +111,34 @@ pub fn advise(
     let step = posterior.draws.len().div_ceil(DRAWS);
     let draws: Vec<Draw> = posterior.draws.iter().step_by(step).cloned().collect();
     let seed = profile.search().seed;
-    let simulate = |means: &[Values], shots: usize| {
-        WeightedShots::simulate(profile, (&draws, place), means, shots, seed)
-    };
+    let simulate =
+        |means: &[Values]| WeightedShots::simulate(profile, (&draws, place), means, SHOTS, seed);
     let factor = |draw: &Draw| draw.factors[place];
     let usual_means: Vec<Values> = draws.iter().map(|draw| draw.means[place]).collect();
-    let usual_shots = simulate(&usual_means, SHOTS);
+    let usual_shots = simulate(&usual_means);
     let usual_p = usual_shots.probabilities(&draws, |draw| draw.means[place], factor);
-    let of_draw = |draw: &Draw| draw.means[place];
     let training = training_gains(&usual_shots, &usual_p, &draws, place);
 
     let usual = typical.means[place];
     let kind = ShotKind::of(profile, &nominal_of(&usual));
-    let (_, found) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, progress)?;
+    let backspin_is_assumed = posterior.spin == SpinSource::Assumed;
+    let searched = if backspin_is_assumed {
+        &with_backspin_kept(profile, usual[3])
+    } else {
+        profile
+    };
+    let (_, found) = find_kinds(searched, &ShotKind::ALL, SensitivityTopics::NONE, progress)?;
     let best_of = |kind: ShotKind| found[kind as usize].as_ref().ok();
     let fixed = |best: &BestShot| {
-        let values = values_of(&best.nominal);
-        simulate(&[values], SHOTS).probabilities(&draws, |_| values, factor)
+        let of_draw = |draw: &Draw| {
+            let mut values = values_of(&best.nominal);
+            if backspin_is_assumed {
+                values[3] = draw.means[place][3];
+            }
+            values
+        };
+        let means: Vec<Values> = draws.iter().map(of_draw).collect();
+        simulate(&means).probabilities(&draws, of_draw, factor)
     };
     let by_kind: Vec<Option<DrawProbabilities>> = ShotKind::ALL
         .into_iter()
@@ -171,31 +157,28 @@ pub fn advise(
     };
     let best = best_of(kind);
     let gain = by_kind[kind as usize].as_ref().map(|p| p.minus(&usual_p));
-    let causes = best.map_or_else(Vec::new, |best| {
-        let target = values_of(&best.nominal);
-        let mixtures: Vec<DrawProbabilities> = (0..COMBINATIONS)
-            .into_par_iter()
-            .map(|changed| {
-                let mixed = |draw: &Draw| mixture(&of_draw(draw), &target, changed);
-                let means: Vec<Values> = draws.iter().map(mixed).collect();
-                simulate(&means, MIXTURE_SHOTS).probabilities(&draws, mixed, factor)
-            })
-            .collect();
-        causes_of_gap(&mixtures, &usual, &target)
-    });
+    let shooting = Shooting {
+        profile,
+        draws: &draws,
+        typical: &typical,
+        place,
+    };
+    let steps =
+        best.map(|best| shooting.steps(&usual, &values_of(&best.nominal), !backspin_is_assumed));
+    let told = usual_probabilities(profile, posterior, place, USUAL_SHOTS);
     Ok(Advice {
         kind,
         usual,
-        backspin_is_assumed: posterior.spin == SpinSource::Assumed,
-        usual_probability: usual_p.interval(),
-        numerical_standard_error: usual_p.numerical_standard_error(),
+        backspin_is_assumed,
+        usual_probability: told.interval(),
+        numerical_standard_error: told.numerical_standard_error(),
         best_probability: by_kind[kind as usize]
             .as_ref()
             .map(DrawProbabilities::interval),
         gain_is_positive: gain.as_ref().map_or(0.0, share_positive),
         gain: gain.as_ref().map(DrawProbabilities::interval),
         best: best.cloned(),
-        causes,
+        steps,
         training,
         kinds,
     })
@@ -206,38 +189,15 @@ fn share_positive(differences: &DrawProbabilities) -> f64 {
     positive as f64 / differences.of_draws.len() as f64
 }
 
-/// The usual values with those of the bits of `changed` replaced by the best ones.
-fn mixture(usual: &Values, best: &Values, changed: usize) -> Values {
-    std::array::from_fn(|i| {
-        if changed >> i & 1 == 1 {
-            best[i]
-        } else {
-            usual[i]
-        }
-    })
-}
-
-/// Shapley's values of the four causes.
-fn causes_of_gap(mixtures: &[DrawProbabilities], usual: &Values, best: &Values) -> Vec<CauseOfGap> {
-    // |S|! (3 - |S|)! / 4! for a set S of other causes.
-    const WEIGHTS: [f64; 4] = [0.25, 1.0 / 12.0, 1.0 / 12.0, 0.25];
-    let mut causes: Vec<CauseOfGap> = (0..VALUE_NAMES.len())
-        .map(|i| {
-            let mut terms = Vec::new();
-            for others in (0..COMBINATIONS).filter(|set| set >> i & 1 == 0) {
-                let weight = WEIGHTS[others.count_ones() as usize];
-                terms.push((weight, &mixtures[others | 1 << i]));
-                terms.push((-weight, &mixtures[others]));
-            }
-            CauseOfGap {
-                cause: Cause(i),
-                values: (usual[i], best[i]),
-                gain: DrawProbabilities::combination(&terms).interval(),
-            }
+/// A profile whose search does not change the backspin.
+fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
+    use NominalVariable::{Pitch, Polar, Speed};
+    profile
+        .with(|settings| {
+            settings.search.choice = SearchChoice::only(&[Speed, Pitch, Polar]);
+            settings.nominal.backspin_rad_s = Some(backspin_rad_s);
         })
-        .collect();
-    causes.sort_by(|a, b| b.gain.mean.total_cmp(&a.gain.mean));
-    causes
+        .unwrap_or_else(|_| profile.clone())
 }
 
 fn training_gains(

@@ -98,26 +98,6 @@ impl DrawProbabilities {
             replicate_means: subtract(&self.replicate_means, &other.replicate_means),
         }
     }
-
-    /// The sum of multiples of probabilities of the same draws.
-    #[must_use]
-    pub fn combination(terms: &[(f64, &Self)]) -> Self {
-        let sum = |values: &dyn Fn(&Self) -> &[f64]| {
-            let length = values(terms[0].1).len();
-            (0..length)
-                .map(|k| {
-                    terms
-                        .iter()
-                        .map(|(factor, term)| factor * values(term)[k])
-                        .sum()
-                })
-                .collect()
-        };
-        Self {
-            of_draws: sum(&|term| &term.of_draws),
-            replicate_means: sum(&|term| &term.replicate_means),
-        }
-    }
 }
 
 impl WeightedShots {

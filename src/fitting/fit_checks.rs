@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 pub enum TestError {
     /// Fewer shots than unknowns.
     #[error(
-        "has {shots} usable shots at {places} places; the fit has {unknowns} unknowns and needs at least {needed} shots"
+        "has {shots} usable shots; with the places that they are from ({places}) the fit has {unknowns} unknowns and needs at least {needed} shots"
     )]
     TooFewShots {
         /// Usable shots.
@@ -31,7 +31,7 @@ pub enum TestError {
     NoSpread(&'static str),
     /// Speeds in another unit.
     #[error(
-        "speed: {given:.1} {unit} (the median) cannot be a shot from there, which needs about {needed:.1} {unit}; the column looks like {likely}"
+        "speed: {given:.1} {unit} (the median) cannot be a shot from there, which needs about {needed:.1} {unit} or more; the column looks like {likely}: --map 'speed=COLUMN:{suffix}'"
     )]
     WrongUnit {
         /// The median.
@@ -40,8 +40,10 @@ pub enum TestError {
         unit: &'static str,
         /// A speed that reaches the hoop.
         needed: f64,
-        /// What it looks like.
+        /// What it looks like, and the suffix of that unit.
         likely: &'static str,
+        /// See `likely`.
+        suffix: &'static str,
     },
 }
 
@@ -110,7 +112,7 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::OtherMakes(made, expected, sd) => write!(
                 out,
-                "{made} shots went in where {expected:.1} give or take {sd:.1} were expected of the measured releases; look at the column made, the physics (this ring may be softer or harder) and the tracker"
+                "{made} shots went in where {expected:.1} \u{b1} {sd:.1} were expected of the measured releases; look at the columns (units, left and right, what depth is counted from, made), the physics (this ring may be softer or harder) and the tracker"
             ),
             Self::Drift(name, p) => write!(out, "{name} drifts over the session (p = {p:.4})"),
             Self::SerialCorrelation(name, p) => write!(
@@ -196,27 +198,29 @@ pub fn check_speed_unit(
         let speed = median(of_place().map(|shot| shot.values[0]).collect());
         let least = least_speed_m_s(physics, place);
         if speed < 0.9 * least || speed > 2.5 * least {
-            const UNITS: [(&str, f64); 4] = [
-                ("m/s", 1.0),
-                ("ft/s", 0.3048),
-                ("mph", 0.447_04),
-                ("km/h", 1.0 / 3.6),
+            const UNITS: [(&str, &str, f64); 4] = [
+                ("m/s", "m_s", 1.0),
+                ("ft/s", "ft_s", 0.3048),
+                ("mph", "mph", 0.447_04),
+                ("km/h", "km_h", 1.0 / 3.6),
             ];
             let (unit, size) = speed_unit;
             let typical = 1.08 * least;
             let likely = UNITS
                 .iter()
-                .filter(|(name, _)| *name != unit)
+                .filter(|(name, ..)| *name != unit)
                 .min_by(|a, b| {
-                    let miss =
-                        |(_, other): &&(&str, f64)| libm::log(speed / size * other / typical).abs();
+                    let miss = |(.., other): &&(&str, &str, f64)| {
+                        libm::log(speed / size * other / typical).abs()
+                    };
                     miss(a).total_cmp(&miss(b))
                 });
             return Err(TestError::WrongUnit {
                 given: speed / size,
                 unit,
                 needed: typical / size,
-                likely: likely.map_or("another quantity", |(name, _)| name),
+                likely: likely.map_or("another quantity", |(name, ..)| name),
+                suffix: likely.map_or("UNIT", |(_, suffix, _)| suffix),
             });
         }
     }

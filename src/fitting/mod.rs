@@ -10,6 +10,7 @@
 //! ([`Values`]). `docs/fitting.md` has the model, its prior and how it was checked.
 
 mod advice;
+mod advice_steps;
 mod chain_diagnostics;
 mod dispersion_posterior;
 mod draw_probabilities;
@@ -29,9 +30,8 @@ mod test_design;
 mod tracker_noise;
 mod unmeasured_parameter_likelihood;
 
-pub use advice::{
-    Advice, Cause, CauseOfGap, KindComparison, TrainingGain, advise, usual_probabilities,
-};
+pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabilities};
+pub use advice_steps::{AdviceStep, AdviceSteps, Cause};
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{

@@ -1,6 +1,6 @@
 //! Everything that is fitted to one shooter's shots.
 
-use super::advice::usual_probabilities;
+use super::advice::{USUAL_SHOTS, usual_probabilities};
 use super::draw_probabilities::DrawProbabilities;
 use super::expected_makes::{ExpectedMakes, expected_makes};
 use super::fit_checks::{FitWarning, TestError, check_releases, noise_warning, warnings};
@@ -9,9 +9,6 @@ use super::measured_release::{MeasuredRelease, Place};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
 use crate::model::Physics;
 use crate::shooter::{Profile, ProfileError};
-
-/// Shots of the sample that P is computed with.
-const SHOTS: usize = 65_536;
 
 /// Makes farther from what is expected, in standard deviations, are worth a word.
 const FAR_MAKES: f64 = 3.0;
@@ -90,7 +87,7 @@ pub fn fit_shooter(
         .map(|place| fitted_profile(test.name, physics, &typical, place))
         .collect::<Result<Vec<_>, _>>()?;
     let probabilities = (0..test.places.len())
-        .map(|place| usual_probabilities(&profiles[place], &posterior, place, SHOTS))
+        .map(|place| usual_probabilities(&profiles[place], &posterior, place, USUAL_SHOTS))
         .collect();
     let is_measured = options.spin == SpinSource::Measured;
     let makes = expected_makes(&profiles, test.shots, &typical, is_measured);

@@ -108,7 +108,8 @@ impl Quantity {
         self.units().iter().map(|(name, _)| *name).collect()
     }
 
-    fn units(self) -> &'static [Unit] {
+    /// Its units.
+    pub(super) fn units(self) -> &'static [Unit] {
         match self {
             Self::Speed => SPEED_UNITS,
             Self::Pitch | Self::Polar | Self::Aim | Self::CourtAngle | Self::EntryAngle => {

@@ -4,5 +4,6 @@
 mod column_map_proposal;
 pub mod columns;
 pub mod court_frame;
+mod implausible_columns;
 pub mod read;
 pub mod table;

@@ -3,6 +3,7 @@
 use super::column_map_proposal::map_proposal;
 use super::columns::{Columns, Label, Quantity, QuantityColumn, parse_made};
 use super::court_frame::CourtFrame;
+use super::implausible_columns::implausible_column;
 use super::table::Table;
 use crate::dynamics::Simulator;
 use crate::fitting::{
@@ -11,7 +12,7 @@ use crate::fitting::{
     fit_flight, landing_of, release_of_landing,
 };
 use crate::shooter::Location;
-use crate::units::{FOOT_M, INCH_M, REV_RAD};
+use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -236,6 +237,25 @@ fn check_release_height(height_m: f64) -> Result<(), String> {
     ))
 }
 
+/// Refuses a file of which so many shots are kept out that the rest means nothing.
+fn too_many_kept_out(shooter: &ShooterShots) -> Result<(), String> {
+    /// Fewer than this can be mistakes of single rows, whatever their fraction.
+    const MANY: usize = 10;
+    /// One in so many.
+    const FRACTION: usize = 4;
+    let (kept, out) = (shooter.shots.len(), shooter.rejected.len());
+    let Some((row, reason)) = shooter.rejected.first() else {
+        return Ok(());
+    };
+    if out < MANY || FRACTION * out <= kept + out {
+        return Ok(());
+    }
+    Err(format!(
+        "{out} of {} shots make no sense, too many to leave out: do the columns hold what their names say, in these units? The first is {row}: {reason}",
+        kept + out
+    ))
+}
+
 struct Reader<'a> {
     columns: &'a Columns,
     options: &'a ReadOptions,
@@ -247,6 +267,13 @@ impl Reader<'_> {
     fn label<'c>(&self, cells: &'c [String], label: Label) -> Option<&'c str> {
         let index = self.columns.label(label)?;
         cells.get(index).map(String::as_str)
+    }
+
+    /// The name that a quantity has in the file.
+    fn column_name(&self, quantity: Quantity) -> &str {
+        self.columns
+            .quantity(quantity)
+            .map_or(quantity.name(), |column| self.columns.name(column.index))
     }
 
     /// What is given as an option must not be in the file too.
@@ -371,18 +398,24 @@ impl Reader<'_> {
             };
             if !(DEPTHS_M.0..=DEPTHS_M.1).contains(&landing.depth_m) {
                 return Err(format!(
-                    "depth: {:.1} in is outside the ring by more than it can be (0 in is its front, 18 in its back; -9 to 27 are read)",
+                    "{}: {:.1} in is outside the ring by more than it can be (0 in is its front, 18 in its back; -9 to 27 are read)",
+                    self.column_name(Quantity::Depth),
                     landing.depth_m / INCH_M
                 ));
             }
             if landing.right_m.abs() > FARTHEST_LANDING_M {
                 return Err(format!(
-                    "left and right: {:.1} in is no shot at this hoop",
+                    "{}: {:.1} in is no shot at this hoop",
+                    self.column_name(Quantity::LeftRight),
                     landing.right_m / INCH_M
                 ));
             }
             if !(0.26..1.4).contains(&landing.entry_angle_rad) {
-                return Err("entry angle: must be from 15 to 80 deg".to_owned());
+                return Err(format!(
+                    "{}: {:.1} deg; must be from 15 to 80 deg",
+                    self.column_name(Quantity::EntryAngle),
+                    landing.entry_angle_rad / DEGREE_RAD
+                ));
             }
             return Ok((place, Raw::Landing(landing, backspin)));
         }
@@ -397,10 +430,15 @@ impl Reader<'_> {
             backspin,
         ];
         if !(values[0] > 0.0) {
-            return Err("speed: must be above 0".to_owned());
+            let name = self.column_name(Quantity::Speed);
+            return Err(format!("{name}: must be above 0"));
         }
         if !(values[1].abs() < 1.5) {
-            return Err("pitch: must be within 86 deg".to_owned());
+            return Err(format!(
+                "{}: {:.1} deg; must be within 86 deg",
+                self.column_name(Quantity::Pitch),
+                values[1] / DEGREE_RAD
+            ));
         }
         if (polar - place.location.angle_rad).abs() > 0.6 {
             return Err(
@@ -412,6 +450,11 @@ impl Reader<'_> {
     }
 
     fn shooter(&self, name: String, rows: &[(u64, &[String])]) -> Result<ShooterShots, String> {
+        if self.source != Source::Trajectories
+            && let Some(words) = implausible_column(self.columns, rows)
+        {
+            return Err(words);
+        }
         let mut rejected = Vec::new();
         let raw = match self.source {
             Source::Trajectories => self.tracked_shots(rows, &mut rejected),
@@ -456,6 +499,7 @@ impl Reader<'_> {
                 .map_err(|error| error.to_string())?;
         }
         self.reject_shots(&mut shooter);
+        too_many_kept_out(&shooter)?;
         if self.source == Source::Landings {
             shooter.differences = self.release_differences(rows, &shooter.shots);
         }

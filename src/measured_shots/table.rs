@@ -81,6 +81,24 @@ impl Table {
         if table.header.is_empty() {
             return Err("is empty".to_owned());
         }
+        let is_split_at = |separator: char| {
+            let parts = table
+                .header
+                .iter()
+                .map(|name| name.matches(separator).count());
+            parts.sum::<usize>() >= 2 * table.header.len()
+        };
+        for (separator, name, command) in [
+            (';', "semicolons", "tr ';,' ',.'"),
+            ('\t', "tabs", "tr '\\t' ','"),
+        ] {
+            if is_split_at(separator) {
+                return Err(format!(
+                    "its columns are separated by {name}; save it with commas between columns and points in numbers, or write {command} < {0} > commas.csv",
+                    path.display()
+                ));
+            }
+        }
         Ok(table)
     }
 }

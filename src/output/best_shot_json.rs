@@ -5,7 +5,7 @@ use crate::analysis::bank_aim::closed_form_polar_rad;
 use crate::analysis::sensitivity::{Difference, Variation};
 use crate::best_shot::{BestShot, BestShots, Limit, ShotKind};
 use crate::shooter::{NominalVariable, Profile};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, rounded};
 use serde_json::Value;
 
 /// The names of the limits that a shot lies at, such as `max_backspin`, with spaces between them.
@@ -180,7 +180,7 @@ pub fn best_shots_json(profile: &Profile, best: &BestShots, units: UnitSystem) -
         ),
         (
             format!("release_height_{long}"),
-            number(shooter.release_height_m / metre),
+            number(rounded(shooter.release_height_m / metre)),
         ),
     ];
     for (kind, shot) in best.by_kind() {

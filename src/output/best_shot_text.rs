@@ -267,7 +267,8 @@ fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<S
             ShotKind::Bank => "do not touch the board first",
         };
         notes.push(format!(
-            "{kind}: at the limit of its kind; {:.0} % of its makes {touch}.",
+            "{kind}: nearly a {} shot; {:.0} % of its makes {touch}.",
+            kind_of_shot.other().name(),
             100.0 * of_other_kind
         ));
     }

@@ -55,16 +55,17 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         .map(|(p, place)| (at(place), format!("{:.0}", 100.0 * p), is_bank(place)))
         .collect();
     let units = results.units();
+    let all: Vec<&PlaceProbabilities> = found.iter().map(|(_, place)| *place).collect();
     let sentences = [
         format!(
             "Your surest place is {}: {:.0} of 100 go in.",
-            best.1.in_words(units),
+            best.1.in_words_with_mirror(&all, units),
             100.0 * best.0
         ),
         bank_in_words(&bank, units),
         format!(
             "Your hardest place is {}: {:.0} of 100 go in.",
-            worst.1.in_words(units),
+            worst.1.in_words_with_mirror(&all, units),
             100.0 * worst.0
         ),
     ];
@@ -118,14 +119,14 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         .iter()
         .reduce(|a, b| if gain(b) > gain(a) { b } else { a });
     let Some(most) = most else {
-        return "Shoot direct: off the board no place is better by 1 of 100.".to_owned();
+        return "Shoot direct or off the board as you like it: from no place does the bank shot make 1 of 100 more.".to_owned();
     };
     let in_hundred = |p: Option<Difference>| p.map(|p| format!("{:.0}", 100.0 * p.value));
     let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));
     let aim = most.board_aim_in_words(units);
     format!(
         "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}: {} of 100 go in{direct}. Aim {}.",
-        most.in_words(units),
+        most.in_words_with_mirror(bank, units),
         in_hundred(most.bank).unwrap_or_default(),
         aim.unwrap_or_else(|| "at the board".to_owned())
     )

@@ -8,7 +8,7 @@ use super::sweep_results::{PlaceResults, SweepResults, difference_colour, larges
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::ShotKind;
 use crate::sweep::bank_direct_difference::{
-    BankAdvantage, SIGNIFICANT_SIGMAS, difference, is_significant,
+    BankAdvantage, SIGNIFICANT_SIGMAS, difference, is_advised,
 };
 
 /// Limits of the colour scale of the difference. Larger differences have the colour of the largest
@@ -31,7 +31,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     let bank_places: Vec<(f64, f64)> = results
         .places()
         .iter()
-        .filter(|place| gain(place).is_some_and(|by| is_significant(by) && by.value > 0.0))
+        .filter(|place| gain(place).is_some_and(|by| is_advised(by) && by.value > 0.0))
         .map(|results| (results.place.x_m, results.place.y_m))
         .collect();
     let advantage = BankAdvantage {
@@ -40,7 +40,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     };
     let caption = advantage.to_string();
     let note = format!(
-        "{caption} Outlined: bank is better. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} points.",
+        "{caption} Outlined: there. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} points.",
         100.0 * largest
     );
     let map = results.court_map();

@@ -66,7 +66,7 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
     let makes = &fit.makes;
     let seen = if makes.labelled > 0 {
         format!(
-            " {} of {} went in; {:.1} \u{b1} {:.1} were expected of these very shots.",
+            " {} of {} went in; {:.1} \u{b1} {:.1} were expected from these shots.",
             makes.made, makes.labelled, makes.expected, makes.expected_sd
         )
     } else {

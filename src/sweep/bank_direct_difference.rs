@@ -10,6 +10,9 @@ use std::fmt;
 /// A difference is significant if it exceeds this many of its standard errors.
 pub const SIGNIFICANT_SIGMAS: f64 = 2.0;
 
+/// Least difference in P that is worth a word: one shot in 100.
+pub const LEAST_ADVISED_GAIN: f64 = 0.01;
+
 /// `a` minus `b`, two independent estimates of P.
 #[must_use]
 pub fn difference(a: Difference, b: Difference) -> Difference {
@@ -25,8 +28,15 @@ pub fn is_significant(difference: Difference) -> bool {
     difference.value.abs() > SIGNIFICANT_SIGMAS * difference.standard_error
 }
 
-/// The number of places at which the bank shot is significantly better, of those with a shot of
-/// each kind. Mirrored places count. Its text is one sentence.
+/// Whether a difference, positive or negative, is significant and worth a word. The one rule for what
+/// is better, in texts, tables and outlines.
+#[must_use]
+pub fn is_advised(difference: Difference) -> bool {
+    is_significant(difference) && difference.value.abs() >= LEAST_ADVISED_GAIN
+}
+
+/// The number of places at which the bank shot is better (see [`is_advised`]), of those with a shot
+/// of each kind. Mirrored places count. Its text is one sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BankAdvantage {
     /// Places at which the bank shot is better.
@@ -49,7 +59,7 @@ impl BankAdvantage {
                 Some(difference(at(bank)?, at(direct)?))
             })
             .collect();
-        let is_better = |gain: &&Difference| is_significant(**gain) && gain.value > 0.0;
+        let is_better = |gain: &&Difference| is_advised(**gain) && gain.value > 0.0;
         (!gains.is_empty()).then(|| Self {
             better: gains.iter().filter(is_better).count(),
             compared: gains.len(),
@@ -61,7 +71,7 @@ impl fmt::Display for BankAdvantage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "The bank shot is better at {} of {} places, by more than {SIGNIFICANT_SIGMAS} standard errors.",
+            "The bank shot is better at {} of {} places, by at least 1 in 100.",
             self.better, self.compared
         )
     }

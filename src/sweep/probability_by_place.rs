@@ -1,7 +1,7 @@
 //! What a finished sweep says of one player at each place: P of both kinds of shot, and which of
 //! them to shoot.
 
-use super::bank_direct_difference::{difference, is_significant};
+use super::bank_direct_difference::{difference, is_advised};
 use super::columns;
 use super::court_region::CourtPlace;
 use super::job_list::Jobs;
@@ -12,11 +12,7 @@ use crate::shooter::ShotKind;
 use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 
-/// Least difference in P for which a shooter is told to prefer one kind: one shot in 100.
-pub const LEAST_ADVISED_GAIN: f64 = 0.01;
-
-/// Which kind of shot is better: by [`LEAST_ADVISED_GAIN`] and more, and by the rule of
-/// [`SIGNIFICANT_SIGMAS`](super::bank_direct_difference::SIGNIFICANT_SIGMAS).
+/// Which kind of shot is better, by the rule of [`is_advised`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preference {
     /// The direct shot, or there is no bank shot.
@@ -37,9 +33,7 @@ impl Preference {
             (None, Some(_)) => Self::Bank,
             (Some(direct), Some(bank)) => {
                 let gain = difference(bank, direct);
-                let is_advised =
-                    is_significant(gain) && libm::fabs(gain.value) >= LEAST_ADVISED_GAIN;
-                match (is_advised, gain.value > 0.0) {
+                match (is_advised(gain), gain.value > 0.0) {
                     (false, _) => Self::Either,
                     (true, true) => Self::Bank,
                     (true, false) => Self::Direct,
@@ -58,6 +52,9 @@ impl Preference {
         }
     }
 }
+
+/// Places nearer than this are the same, m.
+const SAME_PLACE_M: f64 = 0.01;
 
 /// A player's chances at one place.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,6 +135,25 @@ impl PlaceProbabilities {
         self.name
             .clone()
             .unwrap_or_else(|| self.place.location().in_words(units))
+    }
+
+    /// The same for a list of places: with the mirror image of the place, where that is in the list
+    /// too.
+    #[must_use]
+    pub fn in_words_with_mirror(&self, listed: &[&Self], units: UnitSystem) -> String {
+        let words = self.in_words(units);
+        let (x_m, y_m) = (self.place.x_m, self.place.y_m);
+        let is_mirror = |other: &&Self| {
+            libm::hypot(other.place.x_m - x_m, other.place.y_m + y_m) < SAME_PLACE_M
+        };
+        if self.name.is_some() || libm::fabs(y_m) < SAME_PLACE_M || !listed.iter().any(is_mirror) {
+            return words;
+        }
+        words
+            .replace("to the left", "to either side")
+            .replace("to the right", "to either side")
+            .replace("on the left", "on either side")
+            .replace("on the right", "on either side")
     }
 
     /// Where on the board the bank shot is aimed, such as `14 in above the ring, 8 in left of the

@@ -95,10 +95,13 @@ impl Dimension {
                 ("foot", "ft"),
                 ("'", "ft"),
                 ("\u{2032}", "ft"),
+                ("\u{2019}", "ft"),
                 ("inches", "in"),
                 ("inch", "in"),
                 ("\"", "in"),
+                ("''", "in"),
                 ("\u{2033}", "in"),
+                ("\u{201d}", "in"),
             ],
             Self::Speed => &[("fps", "ft/s"), ("kph", "km/h")],
             Self::Angle => &[("degrees", "deg"), ("degree", "deg"), ("\u{b0}", "deg")],
@@ -257,12 +260,20 @@ fn feet_and_inches(
     if dimension != Dimension::Length {
         return None;
     }
-    let names = ["feet", "foot", "ft", "'", "\u{2032}"];
+    let names = ["feet", "foot", "ft", "'", "\u{2032}", "\u{2019}"];
     let after = names.into_iter().find_map(|name| rest.strip_prefix(name))?;
-    let after = after.trim_start();
+    let after = after.trim_start_matches(['.', ',']).trim();
     if !after.starts_with(|c: char| c.is_ascii_digit()) {
         return None;
     }
+    // `6'11` and `6 ft 11` can only be inches.
+    let inches;
+    let after = if after.ends_with(|c: char| c.is_ascii_digit()) {
+        inches = format!("{after} in");
+        &inches
+    } else {
+        after.trim_end_matches('.')
+    };
     // A sign before the feet is that of the whole.
     let signed = |inches: f64| feet * FOOT_M + inches.copysign(feet);
     Some(parse(after, dimension).map(signed))
@@ -334,6 +345,13 @@ mod tests {
             "6ft 11in",
             "6 feet 11 inches",
             "6\u{2032}11\u{2033}",
+            "6\u{2019}11\u{201d}",
+            "6'11''",
+            "6' 11\"",
+            "6'11",
+            "6 ft 11",
+            "6ft. 11in.",
+            "6 ft, 11 in",
         ] {
             near(text, length, 83.0 * INCH_M);
         }

@@ -168,7 +168,7 @@ fn contract_two_runs_of_one_name_at_once_take_two_folders() {
     assert_ne!(texts[0], texts[1]);
 }
 
-/// A shooter near the ring whose best direct shot is at the limit of its kind.
+/// A shooter near the ring whose best direct shot is nearly a bank shot.
 const LOW_RELEASE: &str = r#"
 [shooter]
 release_height = "3 ft"
@@ -194,7 +194,7 @@ fn contract_the_sensitivity_of_a_shot_keeps_its_kind() {
     let profile = write_file(&folder, "p.toml", LOW_RELEASE);
     let text = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
     assert!(
-        text.stdout().contains("direct: at the limit of its kind"),
+        text.stdout().contains("direct: nearly a bank shot"),
         "{text:?}"
     );
     let answer = Answer::of(best(&profile, folder.path()).args(["--json", "--quiet"])).json();

@@ -18,6 +18,21 @@ fn prop_no_made_shot_lies_outside_the_bracket() {
     }
 }
 
+/// Beside the hoop a ball can rise into the near side of the ring, and come down from the board's
+/// edges: these shots were outside the bracket once (40 of 200,000 and 34 of 100,000).
+#[test]
+fn regress_no_made_shot_from_beside_the_hoop_lies_outside_the_bracket() {
+    for preset in ["paper", "ncaa"] {
+        let profile = at(&load("free_throw"), 3.0 * FOOT_M, 88.0)
+            .with(|settings| settings.physics = Preset::named(preset).unwrap().physics())
+            .unwrap();
+        let plan = TablePlan::for_search(&profile).unwrap();
+        let wide = sample_wide(&profile, &plan, 200_000);
+        assert!(wide.outside > 50_000, "{wide:?}");
+        assert_eq!(wide.made_outside, 0, "{preset}: {wide:?}");
+    }
+}
+
 #[test]
 fn prop_shares_of_made_and_missed_sum_to_one() {
     let (profile, shot) = (

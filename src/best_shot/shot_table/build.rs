@@ -131,7 +131,7 @@ impl ShotTable {
             table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
             checks.find((&profile, &table), &cells, &shots, progress)?;
             table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
-            let [distances_m, angles_rad] = table.finer(&cells, &checks, request.max_loss);
+            let [distances_m, angles_rad] = table.finer(&cells, &checks, &shots, request.max_loss);
             let is_fine = distances_m.len() == table.distances_m.len()
                 && angles_rad.len() == table.angles_rad.len();
             let too_many = distances_m.len() * angles_rad.len() > MOST_NODES;
@@ -186,15 +186,22 @@ impl ShotTable {
     }
 
     /// Distances and angles, with the middles of those cells where a check found more than
-    /// [`MARGIN`] of `max_loss`.
-    fn finer(&self, cells: &[Cell], checks: &ChecksOfCells, max_loss: f64) -> [Vec<f64>; 2] {
+    /// [`MARGIN`] of `max_loss`. A middle without a shot is left out: nothing could be looked up
+    /// beside it.
+    fn finer(
+        &self,
+        cells: &[Cell],
+        checks: &ChecksOfCells,
+        shots: &ShotsOfPlaces,
+        max_loss: f64,
+    ) -> [Vec<f64>; 2] {
         let mut distances = self.distances_m.clone();
         let mut angles = self.angles_rad.clone();
         for cell in cells {
-            if checks
+            let is_costly = checks
                 .of(cell)
-                .any(|check| check.worse() > MARGIN * max_loss)
-            {
+                .any(|check| check.worse() > MARGIN * max_loss);
+            if is_costly && shots.at(&cell.middle()).is_some() {
                 distances.push(cell.middle().distance_m);
                 angles.push(cell.middle().angle_rad);
             }

@@ -156,8 +156,9 @@ fn fit_by_session(file: &MeasuredFile) -> Result<[Session; 2], Failure> {
     }
     let [first, second] = names[..] else {
         return Err(Failure::usage(format!(
-            "{place}: its column session has {} values; two are compared. Or give two files",
-            names.len()
+            "{place}: its column session has {} different value{}; two are compared. Or give two files",
+            names.len(),
+            if names.len() == 1 { "" } else { "s" }
         )));
     };
     let fit = |session: &String| -> Result<Session, Failure> {
@@ -196,7 +197,8 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
         .enumerate()
     {
         let is_spin = i == VALUE_NAMES.len() - 1;
-        if is_spin && posteriors.iter().all(|p| p.spin == SpinSource::Assumed) {
+        // What was assumed or given of one session did not change by what was measured.
+        if is_spin && posteriors.iter().any(|p| p.spin != SpinSource::Measured) {
             continue;
         }
         let mut add = |what: &str, comparison: SessionComparison| {

@@ -1,17 +1,22 @@
 //! `bankshot design`: what a test of some size will tell, before anyone shoots.
 
+use crate::analysis::sensitivity::SensitivityTopics;
+use crate::best_shot::find_kinds;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{self, PhysicsArg};
 use crate::fitting::{
     Covariance, DesignRow, FitError, Landing, Place, Tracker, design, landing_of, nominal_of,
     release_of_landing, values_of,
 };
+use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
+use crate::shooter::{Nominal, Profile, ShotKind};
+use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -19,7 +24,7 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual \
-shot comes from the flags, then from the profile's [nominal] table; of a fit's folder it is the measured one.
+shot comes from the flags, then from the profile's [nominal] table, else it is the best one; of a fit's folder it is the measured one.
 
 Examples:
   bankshot design results/gym-sensor-fit --tracker noah --target 3
@@ -55,7 +60,11 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         (fit.profiles[0].clone(), usual, fit.tracker)
     } else {
         let profile = load_profile(&options.profile, &options.physics, quiet)?;
-        let nominal = options.nominal.resolve(&profile)?;
+        let nominal = if options.nominal.is_given(&profile) {
+            options.nominal.resolve(&profile)?
+        } else {
+            best_nominal(&profile, quiet)?
+        };
         (profile, nominal, "lab".to_owned())
     };
     let tracker_name = options.tracker.as_ref().unwrap_or(&own_tracker);
@@ -128,6 +137,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             100.0 * row.counting_error
         );
     }
+    text += &format!("\n{}\n", shots_for_a_fall(&rows));
     if let Some((points, shots)) = needed {
         text += &match shots {
             MOST_SHOTS.. => {
@@ -154,10 +164,54 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     print_prose(&text)
 }
 
+/// The best shot, where no shot is named.
+fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
+    let topics = SensitivityTopics::NONE;
+    let bars = ProgressBars::new(quiet);
+    let (_, shots) = find_kinds(profile, &ShotKind::ALL, topics, &bars)?;
+    let best = shots
+        .into_iter()
+        .flatten()
+        .max_by(|a, b| a.estimate.probability.total_cmp(&b.estimate.probability))
+        .ok_or_else(|| {
+            Failure::usage("no clean shot from there; name one with --speed and --pitch")
+        })?;
+    if !quiet {
+        print_remark(&format!(
+            "no shot is named: tests of the best one, {} at {:.2} ft/s and {:.1} deg, {:.1} rev/s",
+            ShotKind::of(profile, &best.nominal).name(),
+            best.nominal.speed_m_s / FOOT_M,
+            best.nominal.pitch_rad / DEGREE_RAD,
+            best.nominal.backspin_rad_s / REV_RAD
+        ));
+    }
+    Ok(best.nominal)
+}
+
 /// Standard deviations on each side of a normal 95 % interval.
 const TWO_SIDED_95: f64 = 1.96;
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
+
+/// How many shots show that a scatter fell from one session to the next.
+fn shots_for_a_fall(rows: &[DesignRow]) -> String {
+    /// The sum of the normal quantiles of 97.5 % and 80 %.
+    const POWER: f64 = 1.96 + 0.8416;
+    // The relative error of a standard deviation falls with the square root of the shots.
+    let of_one_shot = rows.last().map_or(0.0, |row| {
+        let mean = row.sd_errors.iter().sum::<f64>() / row.sd_errors.len() as f64;
+        mean * (row.shots as f64).sqrt()
+    });
+    let shots = [0.1, 0.2, 0.3].map(|fall| {
+        let error = of_one_shot * libm::hypot(1.0, 1.0 - fall);
+        let needed = POWER * error / fall;
+        two_digits(needed * needed)
+    });
+    format!(
+        "To see a scatter fall by 10, 20 or 30 % between two sessions takes about {}, {} or {} shots in each (95 % level, power 80 %).",
+        shots[0], shots[1], shots[2]
+    )
+}
 
 /// Shots that make P known to a standard deviation, which falls with the square root of the shots:
 /// from the row that is nearest to it.
@@ -198,11 +252,7 @@ fn json(name: &str, tracker: &Tracker, rows: &[DesignRow], needed: Option<(f64, 
 }
 
 /// The tracker's errors as errors of the usual release.
-fn noise(
-    tracker: &Tracker,
-    profile: &crate::shooter::Profile,
-    nominal: &crate::shooter::Nominal,
-) -> Result<Covariance, Failure> {
+fn noise(tracker: &Tracker, profile: &Profile, nominal: &Nominal) -> Result<Covariance, Failure> {
     if tracker.name != "noah" {
         return Ok(tracker.noise.release_covariance());
     }

@@ -335,7 +335,7 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
     }
     if shots.rejected.len() > most_named {
         print_remark(&format!(
-            "... and {} more (all are in shots.csv)",
+            "... and {} more; `fit` lists all in its shots.csv",
             shots.rejected.len() - most_named
         ));
     }

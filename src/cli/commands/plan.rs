@@ -73,16 +73,17 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
 }
 
 fn forecast(profile: &Profile, plan: &TablePlan, wide_sample: u64) -> Forecast {
+    let (least_spin, most_spin) = profile.backspin_range_rad_s();
     let middle = Nominal {
         speed_m_s: plan.nominal.speed.low,
-        pitch_rad: 0.5 * (plan.pitch.low + plan.pitch.high),
+        pitch_rad: 0.5 * (profile.search().pitch_min_rad + profile.search().pitch_max_rad),
         polar_rad: profile.location().angle_rad,
-        backspin_rad_s: 0.5 * profile.shooter().max_backspin_rad_s,
+        backspin_rad_s: 0.5 * (least_spin + most_spin),
         ..Nominal::default()
     };
     let edge = Nominal {
         pitch_rad: profile.search().pitch_min_rad,
-        backspin_rad_s: 0.0,
+        backspin_rad_s: least_spin,
         ..middle
     };
     let threads = rayon::current_num_threads();

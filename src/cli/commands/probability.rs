@@ -10,6 +10,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg, sample, standard_error};
 use crate::dynamics::Release;
+use crate::output::best_shot_text::PROFILE_IS_EXACT;
 use crate::output::probability_text_json::{ProbabilityAnswer, answer_json, answer_text};
 use crate::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo};
 use crate::search_space::TablePlan;
@@ -137,7 +138,11 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     if options.json {
         print_answer(&format!("{:#}\n", answer_json(&answer)))?;
     } else {
-        print_prose(&answer_text(&answer))?;
+        let mut text = answer_text(&answer);
+        if options.draws.is_none() {
+            text += PROFILE_IS_EXACT;
+        }
+        print_prose(&text)?;
     }
     if let Some(folder) = &options.draws {
         print_prose(&fit_folder::text_over_draws(folder, &profile, &nominal)?)?;

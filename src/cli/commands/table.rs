@@ -9,8 +9,8 @@ use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
 use crate::output::shot_table_files::source_code::{Language, source_code};
 use crate::output::shot_table_files::table_text::{notes, table_csv, table_json, table_text};
-use crate::shooter::{NominalVariable, Profile};
-use crate::units::{self, Dimension, REV_RAD};
+use crate::shooter::{Location, NominalVariable, Profile};
+use crate::units::{self, DEGREE_RAD, Dimension, REV_RAD};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub(crate) struct TableOptions {
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
     /// Distances from the hoop's centre: '6 ft, 8 ft' or '6 ft to 20 ft by 1 ft'.
-    #[arg(long, value_name = "LIST|RANGE")]
+    #[arg(long, value_name = "LIST|RANGE", allow_hyphen_values = true)]
     pub(crate) distances: String,
     /// Court angles [default: the profile's].
     #[arg(long, value_name = "LIST|RANGE", allow_hyphen_values = true)]
@@ -40,10 +40,10 @@ pub(crate) struct TableOptions {
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     /// Fix the speed.
-    #[arg(long, value_name = "SPEED")]
+    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     pub(crate) speed: Option<String>,
     /// Fix the pitch angle.
-    #[arg(long, value_name = "ANGLE")]
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub(crate) pitch: Option<String>,
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
@@ -97,7 +97,7 @@ impl TableFormat {
             "py" => Ok(Self::Python),
             "txt" | "md" | "" => Ok(Self::Text),
             other => Err(Failure::usage(format!(
-                "--output: no form for \".{other}\"; use .csv, .json, .java, .hpp, .py or .txt, or give --format"
+                "--output: no form for \".{other}\"; use .csv, .json, .java, .hpp (.h, .hh, .cpp), .py or .txt, or give --format"
             ))),
         }
     }
@@ -122,6 +122,15 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         Some(text) => values("angles", text, Dimension::Angle)?,
         None => vec![profile.location().angle_rad],
     };
+    for (k, distance_m) in distances_m.iter().enumerate() {
+        let place = Location {
+            distance_m: *distance_m,
+            angle_rad: angles_rad[0],
+        };
+        place
+            .check(profile.physics())
+            .map_err(|error| Failure::usage(format!("--distances: value {}: {error}", k + 1)))?;
+    }
     let mut fixed = Vec::new();
     for (variable, text) in [
         (NominalVariable::Speed, &options.speed),
@@ -131,6 +140,13 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         if let Some(text) = text {
             let value = units::parse(text, variable.dimension())
                 .map_err(|error| Failure::usage(format!("--{}: {error}", variable.name())))?;
+            if variable == NominalVariable::Pitch
+                && !(DEGREE_RAD..=89.0 * DEGREE_RAD).contains(&value)
+            {
+                return Err(Failure::usage(format!(
+                    "--pitch: must be from 1 to 89 deg, not '{text}'"
+                )));
+            }
             let most = profile.shooter().max_backspin_rad_s;
             if variable == NominalVariable::Backspin && value > most {
                 return Err(Failure::usage(format!(
@@ -197,8 +213,15 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             print_remark(&great_loss_warning(&profile, &request));
         }
     }
-    let has_every_shot = table.shots.iter().all(Option::is_some);
-    Ok(if has_every_shot {
+    let missing = table.shots.iter().filter(|shot| shot.is_none()).count();
+    if missing > 0 && !quiet {
+        print_remark(&format!(
+            "no clean shot at {missing} of {} places (exit code {})",
+            table.shots.len(),
+            code::INCOMPLETE
+        ));
+    }
+    Ok(if missing == 0 {
         code::DONE
     } else {
         code::INCOMPLETE
@@ -233,9 +256,15 @@ fn outputs(options: &TableOptions) -> Result<Vec<Output<'_>>, Failure> {
         .map(|file| {
             Ok(Output {
                 file: Some(file.as_path()),
-                format: match options.format {
-                    Some(format) => format,
-                    None => TableFormat::of_output(file)?,
+                format: match (options.format, TableFormat::of_output(file)) {
+                    (Some(format), Ok(of_name)) if format != of_name => {
+                        return Err(Failure::usage(format!(
+                            "--format: the name {} asks for another form; leave --format out, or name the file otherwise",
+                            file.display()
+                        )));
+                    }
+                    (Some(format), _) => format,
+                    (None, of_name) => of_name?,
                 },
                 class: class_name(file)?,
             })

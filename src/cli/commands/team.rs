@@ -374,36 +374,11 @@ fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
     text
 }
 
-/// A place in words; with its mirror image, where the player should bank there too.
-fn in_words_with_mirror(
-    chances: &PlaceProbabilities,
-    bank: &[&PlaceProbabilities],
-    units: UnitSystem,
-) -> String {
-    let words = chances.in_words(units);
-    let (x_m, y_m) = (chances.place.x_m, chances.place.y_m);
-    let is_mirror = |other: &&&PlaceProbabilities| {
-        let (dx_m, dy_m) = (other.place.x_m - x_m, other.place.y_m + y_m);
-        libm::hypot(dx_m, dy_m) < SAME_PLACE_M
-    };
-    if libm::fabs(y_m) < SAME_PLACE_M || !bank.iter().any(|other| is_mirror(&other)) {
-        return words;
-    }
-    words
-        .replace("to the left", "to either side")
-        .replace("to the right", "to either side")
-        .replace("on the left", "on either side")
-        .replace("on the right", "on either side")
-}
-
-/// Places nearer than this are the same, m.
-const SAME_PLACE_M: f64 = 0.01;
-
 fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     let best = best_players(players);
     let header = [
         "player",
-        "mean of\nall places",
+        "mean of\nall places,\nbest kind",
         "banks at",
         "alone the\nbest at",
     ];
@@ -448,7 +423,7 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
             continue;
         }
         text += "bank it from\n";
-        let words = |chances: &PlaceProbabilities| in_words_with_mirror(chances, &bank, units);
+        let words = |chances: &PlaceProbabilities| chances.in_words_with_mirror(&bank, units);
         let mut listed: Vec<String> = Vec::new();
         for chances in &bank {
             if listed.contains(&words(chances)) {

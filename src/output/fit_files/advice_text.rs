@@ -3,7 +3,9 @@
 use super::fit_json::interval_json;
 use super::fit_text::percent;
 use super::parameters::value_units;
-use crate::fitting::{Advice, Cause, CauseOfGap, Interval, values_of};
+use crate::fitting::{
+    Advice, AdviceStep, AdviceSteps, Cause, Interval, TrainingGain, Values, values_of,
+};
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -19,38 +21,129 @@ fn points(interval: &Interval) -> String {
     )
 }
 
-/// A change in a coach's words.
-fn change_in_words(
-    cause: Cause,
-    (from, to): (f64, f64),
+/// Words for the change of one value.
+struct ChangeWords {
     units: UnitSystem,
     court_angle_rad: f64,
-) -> String {
-    let (unit, size) = value_units(units)[cause.0];
-    let (from, to) = if cause.name() == "aim" {
-        (from - court_angle_rad, to - court_angle_rad)
-    } else {
-        (from, to)
-    };
-    let difference = ((to - from) / size).abs();
-    let decimals = if cause.0 == 0 || cause.0 == 3 { 2 } else { 1 };
-    let amount = format!("{difference:.decimals$} {unit}");
-    match (cause.name(), to > from) {
-        ("speed", true) => format!("throw {amount} harder"),
-        ("speed", false) => format!("throw {amount} softer"),
-        ("pitch", true) => format!("release {amount} steeper"),
-        ("pitch", false) => format!("release {amount} flatter"),
-        // The polar angle is that of the way back: a greater one points to the shooter's left.
-        ("aim", true) => format!("aim {amount} more to the left"),
-        ("aim", false) => format!("aim {amount} more to the right"),
-        (_, true) => format!("give {amount} more backspin"),
-        (_, false) => format!("give {amount} less backspin"),
+}
+
+impl ChangeWords {
+    /// A change of one value in a coach's words.
+    fn of_value(&self, cause: Cause, from: f64, to: f64) -> String {
+        let (unit, size) = value_units(self.units)[cause.0];
+        let difference = ((to - from) / size).abs();
+        let decimals = match cause {
+            Cause::SPEED => 2,
+            Cause::PITCH | Cause::AIM => 1,
+            _ => 2,
+        };
+        let amount = format!("{difference:.decimals$} {unit}");
+        let grows = to > from;
+        match cause {
+            Cause::SPEED if grows => format!("throw {amount} harder"),
+            Cause::SPEED => format!("throw {amount} softer"),
+            Cause::PITCH if grows => format!("release {amount} steeper"),
+            Cause::PITCH => format!("release {amount} flatter"),
+            // The polar angle is that of the way back: a greater one points to the shooter's left.
+            Cause::AIM if grows => format!("aim {amount} more to the left"),
+            Cause::AIM => format!("aim {amount} more to the right"),
+            _ if grows => format!("give {amount} more backspin"),
+            _ => format!("give {amount} less backspin"),
+        }
+    }
+
+    /// A step in a coach's words: the angle with the speed that goes with it.
+    fn of_step(&self, step: &AdviceStep, from: &Values) -> String {
+        let i = step.cause.0;
+        let mut text = self.of_value(step.cause, from[i], step.release[i]);
+        if step.cause == Cause::PITCH {
+            let speed = self.of_value(Cause::SPEED, from[0], step.release[0]);
+            text += &format!(", {}", speed.trim_start_matches("throw "));
+        }
+        text
+    }
+
+    /// All differences between two releases, the two that belong together first.
+    fn of_releases(&self, from: &Values, to: &Values) -> String {
+        let changes: Vec<String> = [Cause::PITCH, Cause::SPEED, Cause::AIM, Cause::BACKSPIN]
+            .into_iter()
+            .filter(|cause| from[cause.0] != to[cause.0])
+            .map(|cause| self.of_value(cause, from[cause.0], to[cause.0]))
+            .collect();
+        match changes.split_last() {
+            Some((last, [])) => last.clone(),
+            Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
+            None => String::new(),
+        }
+    }
+
+    /// A release as a line of the answer.
+    fn release(&self, title: &str, values: &Values) -> String {
+        let units = value_units(self.units);
+        let aim = (values[2] - self.court_angle_rad) / units[2].1;
+        format!(
+            "{title:<12} speed {:.2} {}, pitch {:.1} deg, aim {:+.1} deg, backspin {:.2} rev/s\n",
+            values[0] / units[0].1,
+            units[0].0,
+            values[1] / units[1].1,
+            aim,
+            values[3] / units[3].1
+        )
     }
 }
 
-/// What a shooter changes.
-fn cause_in_words(cause: Cause) -> &'static str {
-    ["the speed", "the release angle", "the aim", "the backspin"][cause.0]
+/// What to change, in one or two sentences.
+fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -> String {
+    let p = advice.usual_probability.mean;
+    let changes = words.of_releases(&advice.usual, &steps.advised);
+    let mut text = format!(
+        "With the same scatter you can make {:.0} %: {changes}.",
+        100.0 * (p + steps.gain.mean)
+    );
+    if !steps.steps.iter().any(AdviceStep::is_sure) {
+        text += " No single one of these is sure to help.";
+    }
+    if let Some([speed, pitch]) = &steps.alone {
+        let worse = |alone: &Interval| alone.mean < p;
+        if worse(speed) || worse(pitch) {
+            text += &format!(
+                " Change speed and angle together: the new speed alone makes {:.0} %, the new angle alone {:.0} %.",
+                100.0 * speed.mean,
+                100.0 * pitch.mean
+            );
+        }
+    }
+    text + "\n"
+}
+
+/// What to train, in a sentence: the scatter that costs most, and what costs about as much.
+fn training_in_words(training: &[TrainingGain]) -> String {
+    /// What gains this fraction of the largest gain is about as good.
+    const AS_GOOD: f64 = 0.85;
+    let Some(first) = training.first() else {
+        return String::new();
+    };
+    let as_good: Vec<&TrainingGain> = training
+        .iter()
+        .filter(|other| other.gain.mean >= AS_GOOD * first.gain.mean)
+        .collect();
+    let names: Vec<&str> = as_good.iter().map(|t| scatter_in_words(t.cause)).collect();
+    let gains: Vec<String> = as_good
+        .iter()
+        .map(|t| format!("{:.1}", 100.0 * t.gain.mean))
+        .collect();
+    if names.len() == 1 {
+        format!(
+            "What to train: {}. 10 % less scatter there gains {} points.\n",
+            names[0], gains[0]
+        )
+    } else {
+        format!(
+            "What to train: {}; it hardly matters which. 10 % less scatter in one gains {} points.\n",
+            names.join(", or "),
+            gains.join(" or ")
+        )
+    }
 }
 
 /// What a shooter scatters in.
@@ -83,44 +176,24 @@ pub fn advice_text(
         100.0 * p.low,
         100.0 * p.high
     );
-    match &advice.gain {
-        Some(gain) if gain.low > 0.0 && gain.mean > 0.005 => {
-            // A change of what was not measured is no advice.
-            let is_advice = |cause: &&CauseOfGap| {
-                cause.gain.low > 0.0
-                    && !(cause.cause.name() == "backspin" && advice.backspin_is_assumed)
-            };
-            let changes: Vec<String> = advice
-                .causes
-                .iter()
-                .map(|cause| change_in_words(cause.cause, cause.values, units, court_angle_rad))
-                .collect();
-            text += &format!(
-                "With the same scatter you can make {:.0} %: {}. {}\n",
-                100.0 * (p.mean + gain.mean),
-                changes.join(", "),
-                match advice.causes.iter().find(is_advice) {
-                    Some(first) => format!("Most of it is {}.", cause_in_words(first.cause)),
-                    None => "No single one of these is sure to help.".to_owned(),
-                }
-            );
+    let words = ChangeWords {
+        units,
+        court_angle_rad,
+    };
+    match (&advice.gain, &advice.steps) {
+        (Some(gain), Some(steps)) if gain.low > 0.0 && steps.gain.mean > 0.005 => {
+            text += &advised_in_words(&words, advice, steps);
         }
-        Some(gain) if gain.mean > 0.005 => {
+        (Some(gain), _) if gain.mean > 0.005 => {
             text += &format!(
                 "Another release may gain {:.1} points, but these shots cannot tell it from luck: measure more before you change anything.\n",
                 100.0 * gain.mean
             );
         }
-        Some(_) => text += "Keep your release: no other one is worth a change.\n",
-        None => text += "No clean shot of this kind was found from here.\n",
+        (Some(_), _) => text += "Keep your release: no other one is worth a change.\n",
+        (None, _) => text += "No clean shot of this kind was found from here.\n",
     }
-    if let Some(first) = advice.training.first() {
-        text += &format!(
-            "What to train: {}. 10 % less scatter there gains {:.1} points.\n",
-            scatter_in_words(first.cause),
-            100.0 * first.gain.mean
-        );
-    }
+    text += &training_in_words(&advice.training);
     text += &format!(
         "\nP of the usual shot  {} (95 %: {:.1} to {:.1} %, numerics ± {:.2})\n",
         percent(p.mean),
@@ -131,44 +204,39 @@ pub fn advice_text(
     if let (Some(best), Some(probability), Some(gain)) =
         (&advice.best, &advice.best_probability, &advice.gain)
     {
+        if let Some(steps) = &advice.steps {
+            text += &format!("gain of the advised shot  {}\n", points(&steps.gain));
+        }
         text += &format!(
-            "P of the best {} shot  {} (95 %: {:.1} to {:.1} %)\n",
+            "gain of the best {} shot  {}, P {} (95 %: {:.1} to {:.1} %); better in {:.0} % of the draws\n",
             advice.kind.name(),
+            points(gain),
             percent(probability.mean),
             100.0 * probability.low,
-            100.0 * probability.high
-        );
-        text += &format!(
-            "gain  {}; better in {:.0} % of the draws\n",
-            points(gain),
+            100.0 * probability.high,
             100.0 * advice.gain_is_positive
         );
-        let units_of = value_units(units);
-        let row = |title: &str, values: [f64; 4]| {
-            let aim = (values[2] - court_angle_rad) / units_of[2].1;
-            format!(
-                "{title:<11} speed {:.2} {}, pitch {:.1} deg, aim {:+.1} deg, backspin {:.2} rev/s\n",
-                values[0] / units_of[0].1,
-                units_of[0].0,
-                values[1] / units_of[1].1,
-                aim,
-                values[3] / units_of[3].1
-            )
-        };
-        text += &row("usual shot", advice.usual);
-        text += &row("best shot", values_of(&best.nominal));
-        text += "\nthe gap by cause (all changes together make the gain)\n";
-        for cause in &advice.causes {
+        text += &words.release("usual shot", &advice.usual);
+        if let Some(steps) = &advice.steps {
+            text += &words.release("advised shot", &steps.advised);
+        }
+        text += &words.release("best shot", &values_of(&best.nominal));
+    }
+    if let Some(steps) = &advice.steps {
+        text += "\nstep by step, each on top of those before\n";
+        let mut from = advice.usual;
+        for step in &steps.steps {
             text += &format!(
-                "  {:<38} {}\n",
-                change_in_words(cause.cause, cause.values, units, court_angle_rad),
-                points(&cause.gain)
+                "  {:<42} {}\n",
+                words.of_step(step, &from),
+                points(&step.gain)
             );
+            from = step.release;
         }
     }
     if advice.backspin_is_assumed {
         text += &format!(
-            "  The backspin was not measured: {:.1} rev/s is assumed.\n",
+            "  The backspin was not measured: {:.1} rev/s is assumed, and kept.\n",
             advice.usual[3] / value_units(units)[3].1
         );
     }
@@ -231,10 +299,22 @@ pub fn advice_json(
             named("bank_is_better", number(kinds.bank_is_better)),
         ])
     });
-    let causes = advice.causes.iter().map(|cause| {
-        let mut record = vec![named("cause", cause.cause.name().into())];
-        record.extend(interval_json(&cause.gain));
+    let causes = advice.steps.iter().flat_map(|steps| &steps.steps);
+    let causes = causes.map(|step| {
+        let mut record = vec![named("cause", step.cause.name().into())];
+        record.extend(interval_json(&step.gain));
+        record.push(named("release", values(step.release)));
         object(record)
+    });
+    let of_steps =
+        |get: &dyn Fn(&AdviceSteps) -> Value| advice.steps.as_ref().map_or(Value::Null, get);
+    let alone = of_steps(&|steps| {
+        steps.alone.as_ref().map_or(Value::Null, |[speed, pitch]| {
+            object(vec![
+                named("speed", interval(speed)),
+                named("pitch", interval(pitch)),
+            ])
+        })
     });
     let training = advice.training.iter().map(|training| {
         let mut record = vec![named("less_scatter_of", training.cause.name().into())];
@@ -275,6 +355,9 @@ pub fn advice_json(
         named("gain", optional(&advice.gain)),
         named("gain_is_positive", number(advice.gain_is_positive)),
         named("causes", causes.collect()),
+        named("advised", of_steps(&|steps| values(steps.advised))),
+        named("advised_gain", of_steps(&|steps| interval(&steps.gain))),
+        named("advised_alone", alone),
         named("training", training.collect()),
         named("bank_or_direct", kinds),
     ])

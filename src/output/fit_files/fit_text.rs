@@ -63,7 +63,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     if makes.labelled > 0 {
         let share = &makes.share;
         text += &format!(
-            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected of these very shots: {:.1} ± {:.1} makes\n",
+            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected from these shots: {:.1} ± {:.1} makes\n",
             makes.made,
             makes.labelled,
             percent(share.share),
@@ -121,7 +121,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         );
     }
     text += &format!(
-        "\n{} draws, R-hat {:.3}, effective sample size {:.0}; weight of the population: {:.0} % (speed), {:.0} % (pitch), {:.0} % (polar)\n",
+        "\n{} draws, R-hat {:.3}, effective sample size {:.0}; weight of the prior (the population): {:.0} % (speed), {:.0} % (pitch), {:.0} % (polar)\n",
         posterior.draws.len(),
         posterior.r_hat,
         posterior.effective_sample_size,

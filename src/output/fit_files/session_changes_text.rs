@@ -86,8 +86,8 @@ pub fn session_changes_text(
         text += &line(change);
     }
     text += "\n\
-        direction: the chance that it changed this way at all. 50 % says nothing; the\n\
-        \x20 95 % interval leaves out zero from 97.5 % on.\n\
+        direction: the chance that it changed this way at all. 50 % says nothing. Above\n\
+        \x20 97.5 % the 95 % interval does not hold zero.\n\
         decide: about how many shots a session would decide a change of this size. yes:\n\
         \x20 decided now. -: less than its own uncertainty, so that its size says nothing.\n";
     text
@@ -106,8 +106,13 @@ fn verdict(changes: &[SessionChange]) -> String {
         } else {
             let sure = 100.0 * probability;
             format!(
-                "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} points \
-                 ({interval}), and {sure:.0} % is the chance that it {direction} at all.\n"
+                "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} {} \
+                 ({interval}). The chance that it {direction} at all is {sure:.0} %.\n",
+                if points.round() == 1.0 {
+                    "point"
+                } else {
+                    "points"
+                }
             )
         };
     }
@@ -118,19 +123,37 @@ fn verdict(changes: &[SessionChange]) -> String {
             let by = change.comparison.change.scaled(1.0 / change.size);
             let (direction, _) = change.direction();
             let decimals = change.decimals();
-            let (name, unit) = (&change.name, change.unit);
-            format!("{name} {direction} by {:.decimals$} {unit}", by.mean.abs())
+            let amount = format!("{:.decimals$} {}", by.mean.abs(), change.unit);
+            match change.name.as_str() {
+                "polar_mean" => format!("the aim moved {amount} to the {direction}"),
+                name => format!("{} {direction} by {amount}", quantity_in_words(name)),
+            }
         })
         .collect();
     text += &if decided.is_empty() {
-        "No other value has an interval that leaves out zero.\n".to_owned()
+        "No other value changed by more than its uncertainty.\n".to_owned()
     } else {
         format!(
-            "Changed, each at the 95 % level: {}. (Even where nothing changes, one value in twenty seems to.)\n",
-            decided.join(", ")
+            "Changed, each at the 95 % level: {}. ({} values were tested; where nothing changes, one in twenty seems to.)\n",
+            decided.join(", "),
+            changes.len() - 1
         )
     };
     text
+}
+
+/// A value of the table in a coach's words.
+fn quantity_in_words(name: &str) -> &str {
+    match name {
+        "speed_mean" => "the speed",
+        "pitch_mean" => "the release angle",
+        "backspin_mean" => "the backspin",
+        "speed_sd" => "the scatter in speed",
+        "pitch_sd" => "the scatter in the release angle",
+        "polar_sd" => "the scatter to left and right",
+        "backspin_sd" => "the scatter in backspin",
+        other => other,
+    }
 }
 
 fn line(change: &SessionChange) -> String {
@@ -158,7 +181,7 @@ fn line(change: &SessionChange) -> String {
 }
 
 /// A number of shots with two digits: it is as noisy as the change that it rests on.
-fn two_digits(shots: f64) -> String {
+pub fn two_digits(shots: f64) -> String {
     let unit = libm::exp10(libm::floor(libm::log10(shots.max(1.0))) - 1.0).max(1.0);
     format!("{:.0}", (shots / unit).ceil() * unit)
 }

@@ -119,9 +119,9 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
         ],
     ];
     let mut text = format!(
-        "Best {} shots. P: the chance of each. range: the width of the range of speed,\n\
-         and of pitch, in which an otherwise exact shot goes in. time, entry: until it\n\
-         falls through.\n",
+        "Best {} shots. P: the chance of each. range: the width of the unbroken range\n\
+         of speed, and of pitch, about the shot in which it goes in, with all else\n\
+         exact. time, entry: until it falls through.\n",
         table.kind.name()
     );
     for cells in header {
@@ -171,11 +171,12 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
 
 /// A line of the table for people.
 fn line(cells: &[String; 11]) -> String {
-    const WIDTHS: [usize; 10] = [6, 5, 6, 5, 6, 5, 5, 5, 6, 11];
+    const WIDTHS: [usize; 10] = [6, 5, 6, 5, 6, 5, 4, 5, 5, 10];
     let mut line = String::new();
     for (cell, width) in cells.iter().zip(WIDTHS) {
         line += &format!("{cell:>width$} ");
     }
+    line.push(' ');
     line += &cells[WIDTHS.len()];
     line.truncate(line.trim_end().len());
     line + "\n"
@@ -298,10 +299,13 @@ fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
 fn bounce_note(table: &ShotTable) -> Option<String> {
     let shots = table.shots.iter().flatten();
     let bouncing = shots.filter(|shot| !table.is_clean(shot)).count();
+    let off = match table.kind {
+        ShotKind::Direct => "off the ring or the board",
+        ShotKind::Bank => "off the ring too",
+    };
     (bouncing > 0).then(|| {
         format!(
-            "At {bouncing} of {} places the best shot goes in off the ring or the board even \
-             without an error.",
+            "In {bouncing} of {} rows the best shot goes in {off} even without an error.",
             table.shots.len()
         )
     })
@@ -337,10 +341,11 @@ fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     if places.len() == table.shots.len() {
         return Some(format!("A {other} shot is better at every place, {most}."));
     }
-    let (count, all) = (places.len(), table.shots.len());
+    // The two rows of a jump are one place.
     places.dedup();
     Some(format!(
-        "A {other} shot is better at {count} of {all} places, {most}: {}.",
+        "A {other} shot is better at {} places, {most}: {}.",
+        places.len(),
         places.join("; "),
     ))
 }
