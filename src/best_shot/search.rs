@@ -172,8 +172,9 @@ pub fn find_kinds(
         progress,
     };
     let starts = search.starts()?;
+    // Side by side: the climbs of one kind are too few for all threads.
     let shots = kinds
-        .iter()
+        .par_iter()
         .map(|&kind| search.best(kind, &starts[kind.index()]))
         .collect::<Result<_, _>>()?;
     Ok((plan, shots))

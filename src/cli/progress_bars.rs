@@ -16,10 +16,16 @@ fn write_rate(state: &ProgressState, text: &mut dyn std::fmt::Write) {
     };
 }
 
-/// Shows each stage as a progress bar.
+/// A bar, and how many stages it shows.
+struct SharedBar {
+    bar: ProgressBar,
+    stages: usize,
+}
+
+/// Shows each stage as a progress bar. Stages that overlap share one.
 pub(crate) struct ProgressBars {
     quiet: bool,
-    bar: Mutex<Option<ProgressBar>>,
+    bar: Mutex<Option<SharedBar>>,
     /// Of a command that runs inside another program.
     embedded: Option<Arc<dyn Progress + Send>>,
 }
@@ -33,7 +39,25 @@ impl ProgressBars {
         }
     }
 
-    fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
+    fn new_bar(&self, stage: &str, total: u64) -> ProgressBar {
+        let target = if self.quiet {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr_with_hz(8)
+        };
+        let style =
+            "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
+        ProgressBar::with_draw_target(Some(total), target)
+            .with_style(
+                ProgressStyle::with_template(style)
+                    .unwrap_or_else(|_| ProgressStyle::default_bar())
+                    .with_key("per_sec", write_rate)
+                    .progress_chars("=> "),
+            )
+            .with_message(stage.to_owned())
+    }
+
+    fn with(&self, act: impl FnOnce(&mut Option<SharedBar>)) {
         if let Ok(mut bar) = self.bar.lock() {
             act(&mut bar);
         }
@@ -45,22 +69,17 @@ impl Progress for ProgressBars {
         if let Some(progress) = &self.embedded {
             return progress.begin(stage, total);
         }
-        let target = if self.quiet {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr_with_hz(8)
-        };
-        let style =
-            "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
-        let bar = ProgressBar::with_draw_target(Some(total), target)
-            .with_style(
-                ProgressStyle::with_template(style)
-                    .unwrap_or_else(|_| ProgressStyle::default_bar())
-                    .with_key("per_sec", write_rate)
-                    .progress_chars("=> "),
-            )
-            .with_message(stage.to_owned());
-        self.with(|slot| *slot = Some(bar));
+        self.with(|slot| match slot {
+            Some(shared) => {
+                shared.stages += 1;
+                shared.bar.inc_length(total);
+                shared.bar.set_message(stage.to_owned());
+            }
+            None => {
+                let bar = self.new_bar(stage, total);
+                *slot = Some(SharedBar { bar, stages: 1 });
+            }
+        });
     }
 
     fn advance(&self, units: u64) {
@@ -68,8 +87,8 @@ impl Progress for ProgressBars {
             return progress.advance(units);
         }
         self.with(|bar| {
-            if let Some(bar) = bar {
-                bar.inc(units);
+            if let Some(shared) = bar {
+                shared.bar.inc(units);
             }
         });
     }
@@ -78,9 +97,12 @@ impl Progress for ProgressBars {
         if let Some(progress) = &self.embedded {
             return progress.end();
         }
-        self.with(|bar| {
-            if let Some(bar) = bar.take() {
-                bar.finish_and_clear();
+        self.with(|slot| {
+            let Some(shared) = slot else { return };
+            shared.stages -= 1;
+            if shared.stages == 0 {
+                shared.bar.finish_and_clear();
+                *slot = None;
             }
         });
     }

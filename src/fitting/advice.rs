@@ -117,11 +117,13 @@ pub fn advise(
     let usual_means: Vec<Values> = draws.iter().map(|draw| draw.means[place]).collect();
     let usual_shots = simulate(&usual_means);
     let usual_p = usual_shots.probabilities(&draws, |draw| draw.means[place], factor);
-    let training = training_gains(&usual_shots, &usual_p, &draws, place);
+    let backspin_is_assumed = posterior.spin == SpinSource::Assumed;
+    let mut training = training_gains(&usual_shots, &usual_p, &draws, place);
+    // Nothing is known of a scatter that was not measured.
+    training.retain(|gain| !(backspin_is_assumed && gain.cause == Cause::BACKSPIN));
 
     let usual = typical.means[place];
     let kind = ShotKind::of(profile, &nominal_of(&usual));
-    let backspin_is_assumed = posterior.spin == SpinSource::Assumed;
     let searched = if backspin_is_assumed {
         &with_backspin_kept(profile, usual[3])
     } else {

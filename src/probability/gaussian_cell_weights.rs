@@ -53,9 +53,14 @@ pub(super) struct Gaussian {
     pub(super) sigma: f64,
 }
 
+/// A standard deviation, or the least one that points with this spacing resolve.
+pub(super) fn widened(sigma: f64, step: f64) -> f64 {
+    sigma.max(MIN_SIGMA_CELLS * step)
+}
+
 /// Weight of a point of an axis: the normal density times the width of the cell.
 pub(super) fn weight(x: f64, nominal: Gaussian, step: f64) -> f64 {
-    let sigma = nominal.sigma.max(MIN_SIGMA_CELLS * step);
+    let sigma = widened(nominal.sigma, step);
     if (x - nominal.mean).abs() <= REACH_SIGMAS * sigma {
         normal_distribution::density(x, nominal.mean, sigma) * step
     } else {
@@ -71,7 +76,7 @@ pub(super) fn weight(x: f64, nominal: Gaussian, step: f64) -> f64 {
 /// `w_(j+1) = w_j r_j`, `r_(j+1) = r_j q`, with `q = exp(-spacing^2 / sigma^2)`. Rounding adds up to
 /// about 1e-13 of the greatest weight over 400 values.
 pub(super) fn add_weights(sums: &mut [f64], x: f64, first: Gaussian, spacing: f64, step: f64) {
-    let sigma = first.sigma.max(MIN_SIGMA_CELLS * step);
+    let sigma = widened(first.sigma, step);
     let reach = REACH_SIGMAS * sigma;
     // A negative number becomes 0.
     let begin = ((x - reach - first.mean) / spacing).ceil() as usize;
@@ -138,8 +143,7 @@ mod tests {
                     // A nominal value at the edge of the reach may count or not.
                     let edge = normal_distribution::density(REACH_SIGMAS, 0.0, 1.0) / sigma * step;
                     let is_at_edge =
-                        ((x - mean).abs() - REACH_SIGMAS * sigma.max(MIN_SIGMA_CELLS * step)).abs()
-                            < 1e-9;
+                        ((x - mean).abs() - REACH_SIGMAS * widened(sigma, step)).abs() < 1e-9;
                     let allowed = if is_at_edge { 1.01 * edge } else { 2e-13 };
                     assert!(
                         (sum - 1.0 - single).abs() <= allowed,

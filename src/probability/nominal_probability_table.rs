@@ -6,15 +6,16 @@
 
 use super::gaussian_cell_weights::{
     Gaussian, WeightMatrix, add_weighted, add_weights, polar_shift, speed_shift, spin_shift,
-    weight, weight_matrix,
+    weight, weight_matrix, widened,
 };
 use super::progress::Progress;
 use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed, Verdict};
-use crate::math::evenly_spaced::CellAxis;
+use crate::math::evenly_spaced::{CellAxis, Linspace};
 use crate::model::BallState;
 use crate::search_space::{NominalGrid, TablePlan};
 use crate::shooter::{Nominal, NominalVariable, Profile, ReleaseDispersion};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Least and greatest number of shots that are simulated together. More shots fill the lanes
 /// better; fewer take less memory.
@@ -27,6 +28,12 @@ pub const MAX_BATCH_BYTES: usize =
 /// Batches for each thread, so that all threads end at about the same time. (No result depends on
 /// it.)
 const BATCHES_PER_THREAD: usize = 8;
+
+/// Points farther than this from every nominal shot, in standard deviations of the four errors
+/// together, are not simulated. The weights of all of them sum to 4.5e-4 under a nominal shot at a
+/// corner of the grid (chi-square with four degrees of freedom above 4.5^2), and to less under the
+/// others. In a window that is a third of the points.
+const REACH_SIGMAS: f64 = 4.5;
 
 /// The made shots of a plan, summed over speed and backspin with the weights of every nominal speed
 /// and backspin.
@@ -113,12 +120,22 @@ impl NominalTable {
         let dispersion = &profile.shooter().dispersion;
         let nominal = &plan.nominal;
         let speeds = gaussians(nominal.speed.values(), |v| dispersion.speed_m_s(v));
+        let spins = gaussians(nominal.backspin.values(), |w| dispersion.backspin_rad_s(w));
+        let greatest = |all: &[Gaussian]| all.iter().map(|one| one.sigma).fold(0.0, f64::max);
+        let near = |axis, sigma: f64, step: f64| Near {
+            axis,
+            sigma: widened(sigma, step),
+        };
         let simulation = TableSimulation {
             profile,
             plan,
+            near_pitch: near(nominal.pitch, dispersion.c20_rad, plan.pitch.step()),
+            near_polar: near(nominal.polar, dispersion.c30_rad, plan.polar.step()),
+            near_spin: near(nominal.backspin, greatest(&spins), plan.backspin.step()),
+            speed_sigma: greatest(&speeds),
             even_speeds: even(&speeds, nominal.speed.step()),
             speeds,
-            spins: gaussians(nominal.backspin.values(), |w| dispersion.backspin_rad_s(w)),
+            spins,
         };
         let cell_values = simulation.speeds.len() * simulation.spins.len();
         let mut sums = vec![0.0; plan.pitch.count * plan.polar.count * cell_values];
@@ -189,6 +206,20 @@ fn gaussians(means: impl Iterator<Item = f64>, sigma: impl Fn(f64) -> f64) -> Ve
         .collect()
 }
 
+/// The nominal values along one axis, to tell how far a point is from all of them.
+struct Near {
+    axis: Linspace,
+    sigma: f64,
+}
+
+impl Near {
+    /// The square of the distance from the nearest nominal value, in standard deviations.
+    fn square(&self, x: f64) -> f64 {
+        let distance = (self.axis.low - x).max(x - self.axis.high).max(0.0) / self.sigma;
+        distance * distance
+    }
+}
+
 /// The first of some evenly spaced nominal values and their spacing, if they have one standard
 /// deviation.
 fn even(nominals: &[Gaussian], spacing: f64) -> Option<(Gaussian, f64)> {
@@ -208,6 +239,8 @@ struct CellBatch {
     speeds: Vec<f64>,
     /// For each cell, its line of speeds.
     lines: Vec<Option<CellAxis>>,
+    /// For each backspin of each of these lines, the number of its speeds that are simulated.
+    counts: Vec<usize>,
     sums: Vec<f64>,
 }
 
@@ -215,6 +248,11 @@ struct CellBatch {
 struct TableSimulation<'a> {
     profile: &'a Profile,
     plan: &'a TablePlan,
+    near_pitch: Near,
+    near_polar: Near,
+    near_spin: Near,
+    /// Greatest standard deviation of the nominal speeds, m/s.
+    speed_sigma: f64,
     /// Nominal speeds, m/s.
     speeds: Vec<Gaussian>,
     /// The first of them and their spacing, if their errors do not grow with the speed.
@@ -235,21 +273,23 @@ impl TableSimulation<'_> {
         memory.starts.clear();
         memory.speeds.clear();
         memory.lines.clear();
+        memory.counts.clear();
         for cell in cells.clone() {
             self.add_shots(cell, memory);
         }
         let simulator = self.profile.simulator();
         let verdicts = simulator.finite_verdicts(&memory.starts, &mut memory.workspace);
         let mut shots = verdicts.iter().zip(&memory.speeds);
+        let mut counts = memory.counts.iter();
         for ((cell, line), cell_sums) in cells.zip(&memory.lines).zip(sums_of_cells) {
             let Some(line) = line else {
                 continue;
             };
-            for spin_rad_s in self.spins_of(cell) {
+            for (spin_rad_s, &count) in self.spins_of(cell).zip(counts.by_ref()) {
                 memory.sums.clear();
                 memory.sums.resize(self.speeds.len(), 0.0);
                 let mut any_made = false;
-                for (verdict, &speed) in shots.by_ref().take(line.count) {
+                for (verdict, &speed) in shots.by_ref().take(count) {
                     if verdict.made {
                         any_made = true;
                         self.add_speed_weights(&mut memory.sums, speed, line.step());
@@ -305,12 +345,32 @@ impl TableSimulation<'_> {
             rifle_spin_rad_s: plan.nominal.rifle_spin_rad_s,
             side_spin_rad_s: plan.nominal.side_spin_rad_s,
         }));
+        let squares = self.near_pitch.square(pitch_rad) + self.near_polar.square(polar_rad);
         for (spin, spin_rad_s) in self.spins_of((pitch, polar)).enumerate() {
-            for speed in line.values(speed_shift(pitch, polar, spin)) {
+            let left = REACH_SIGMAS * REACH_SIGMAS - squares - self.near_spin.square(spin_rad_s);
+            let shift = speed_shift(pitch, polar, spin);
+            let range = self.near_speeds(&line, shift, left);
+            memory.counts.push(range.len());
+            for speed in range.map(|i| line.value(i, shift)) {
                 memory.speeds.push(speed);
                 memory.starts.push(direction.state(speed, spin_rad_s));
             }
         }
+    }
+
+    /// The speeds of a line that are near enough to a nominal one, if the square of their distance
+    /// may be `left`.
+    fn near_speeds(&self, line: &CellAxis, shift: f64, left: f64) -> Range<usize> {
+        if left < 0.0 {
+            return 0..0;
+        }
+        let nominal = self.plan.nominal.speed;
+        let reach = left.sqrt() * widened(self.speed_sigma, line.step());
+        // A negative number becomes 0.
+        let index_of = |speed: f64| ((speed - line.low) / line.step() - shift).ceil() as usize;
+        let begin = index_of(nominal.low - reach).min(line.count);
+        let end = index_of(nominal.high + reach).min(line.count);
+        begin..end.max(begin)
     }
 
     /// The backspins of a cell's lines, rad/s.

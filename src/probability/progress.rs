@@ -1,6 +1,7 @@
 //! Progress of long computations.
 
-/// Receives the progress of a long computation.
+/// Receives the progress of a long computation. Stages can overlap: threads begin and end them side
+/// by side.
 pub trait Progress: Sync {
     /// A stage of `total` units of work (shots, rounds of a search, bytes) begins.
     fn begin(&self, stage: &str, total: u64);

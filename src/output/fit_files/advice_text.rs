@@ -13,12 +13,10 @@ use serde_json::Value;
 
 /// Points of P with their interval: `2.1 points (95 %: 0.4 to 3.9)`.
 fn points(interval: &Interval) -> String {
-    format!(
-        "{:+.1} points (95 %: {:+.1} to {:+.1})",
-        100.0 * interval.mean,
-        100.0 * interval.low,
-        100.0 * interval.high
-    )
+    // Rounded first, and 0 added: no negative zero.
+    let [mean, low, high] =
+        [interval.mean, interval.low, interval.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
+    format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
 }
 
 /// Words for the change of one value.
