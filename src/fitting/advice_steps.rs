@@ -1,11 +1,12 @@
 //! From the usual release to a better one, step by step.
 //!
-//! Speed and release angle belong together: a steeper shot with the speed of a flatter one is short.
-//! So the first step is the best speed at the shooter's own angle, the second a better angle with the
-//! speed that suits it. Then come the aim and, where it was measured, the backspin.
+//! Speed and release angle belong together: a steeper shot with the speed of a flatter one is
+//! short. So the first step is the best speed at the shooter's own angle, the second a better angle
+//! with the speed that suits it. Then come the aim and, where it was measured, the backspin.
 //!
 //! P hardly depends on the angle near the best one. So the second step goes no farther than it has
-//! to: to the angle nearest to the shooter's own at which P is within [`TOLERANCE`] of the greatest.
+//! to: to the angle nearest to the shooter's own at which P is within [`TOLERANCE`] of the
+//! greatest.
 
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
@@ -128,7 +129,8 @@ impl Shooting<'_> {
         .probabilities(self.draws, mean, |draw| draw.factors[self.place])
     }
 
-    /// The best speed of a release for the typical scatter, near the speed of the release, and its P.
+    /// The best speed of a release for the typical scatter, near the speed of the release, and its
+    /// P.
     fn best_speed(&self, release: Values) -> (f64, f64) {
         let sigma = self.typical.sds_at(self.place)[0];
         let count = SPEED_REACH * SPEEDS_PER_SIGMA;

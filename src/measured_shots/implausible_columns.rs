@@ -36,7 +36,8 @@ const USUAL_MEDIANS: [UsualMedian; 3] = [
 ];
 /// Fewer shots than this have no middle.
 const LEAST_SHOTS: usize = 5;
-/// A median depth nearer than this to the front of the ring is that of a shooter who makes few shots.
+/// A median depth nearer than this to the front of the ring is that of a shooter who makes few
+/// shots.
 const SHORT_DEPTH_M: f64 = 3.0 * INCH_M;
 /// "Few", as a fraction of the shots.
 const FEW_MAKES: f64 = 0.25;

@@ -73,8 +73,8 @@ pub(super) fn weight(x: f64, nominal: Gaussian, step: f64) -> f64 {
 ///
 /// From one nominal value to the next, `spacing` away, the exponent of the density changes by an
 /// amount that is linear in the number of steps. So the densities follow from two products each:
-/// `w_(j+1) = w_j r_j`, `r_(j+1) = r_j q`, with `q = exp(-spacing^2 / sigma^2)`. Rounding adds up to
-/// about 1e-13 of the greatest weight over 400 values.
+/// `w_(j+1) = w_j r_j`, `r_(j+1) = r_j q`, with `q = exp(-spacing^2 / sigma^2)`. Rounding adds up
+/// to about 1e-13 of the greatest weight over 400 values.
 pub(super) fn add_weights(sums: &mut [f64], x: f64, first: Gaussian, spacing: f64, step: f64) {
     let sigma = widened(first.sigma, step);
     let reach = REACH_SIGMAS * sigma;

@@ -2,10 +2,11 @@
 //!
 //! A shot that goes in must come within reach of the ring (a circle of radius R_H + R about the
 //! hoop's axis) at or above `z = -R`, and must pass neither above the ring from its near to its far
-//! side nor over the board. Both bound the speed for each pitch angle. Its direction must lead within
-//! reach of the ring, or to a point on the board from which a bounce can. A bounce does not reverse
-//! the velocity along the board. The velocity away from the board can have any size: off an edge, and
-//! off the paper's board that a rising ball leaves at the top while it is still compressed.
+//! side nor over the board. Both bound the speed for each pitch angle. Its direction must lead
+//! within reach of the ring, or to a point on the board from which a bounce can. A bounce does not
+//! reverse the velocity along the board. The velocity away from the board can have any size: off an
+//! edge, and off the paper's board that a rising ball leaves at the top while it is still
+//! compressed.
 //!
 //! With air the speeds are those of the paths under drag. A faster path in the same direction lies
 //! above a slower one all along, with drag too; and the path in a vacuum lies above both. Lift
@@ -43,8 +44,8 @@ pub struct Bracket {
     #[serde(skip)]
     air: Option<(Simulator, [f64; 2])>,
     face_x_m: f64,
-    /// The plane that the centre of a ball in play does not pass: the face or, with round edges, one
-    /// edge radius behind it.
+    /// The plane that the centre of a ball in play does not pass: the face or, with round edges,
+    /// one edge radius behind it.
     last_plane_x_m: f64,
     /// Greatest height of the centre of a ball that touches the board, m.
     board_top_m: f64,
@@ -135,8 +136,8 @@ impl Bracket {
         last <= self.board_half_width_m && first > -self.reach_m
     }
 
-    /// Lengths of the horizontal path to where the ball can first touch the board's face, and to the
-    /// last plane, if it comes near the board.
+    /// Lengths of the horizontal path to where the ball can first touch the board's face, and to
+    /// the last plane, if it comes near the board.
     fn path_to_board(&self, polar: f64) -> Option<(f64, f64)> {
         let (sin, cos) = libm::sincos(polar);
         let (x, y) = self.start();
@@ -160,9 +161,9 @@ impl Bracket {
         let lengths =
             (0..=PATH_POINTS).map(|i| near + (end - near) * f64::from(i) / f64::from(PATH_POINTS));
         let least = self.least_speed_through(lengths, -self.contact_m, pitch_rad);
-        // A faster shot passes above the ring on both sides, and above the board both where the ball
-        // would touch it (on the way up) and at the last plane (on the way down). The speed through
-        // a height has one minimum along the path, so it is greatest at an end.
+        // A faster shot passes above the ring on both sides, and above the board both where the
+        // ball would touch it (on the way up) and at the last plane (on the way down). The speed
+        // through a height has one minimum along the path, so it is greatest at an end.
         let greatest = |lengths: [f64; 2], z: f64| {
             let speeds = lengths.map(|s| self.speed_through(s.max(1e-3), z, pitch_rad));
             speeds[0].max(speeds[1])

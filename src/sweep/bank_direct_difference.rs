@@ -28,8 +28,8 @@ pub fn is_significant(difference: Difference) -> bool {
     difference.value.abs() > SIGNIFICANT_SIGMAS * difference.standard_error
 }
 
-/// Whether a difference, positive or negative, is significant and worth a word. The one rule for what
-/// is better, in texts, tables and outlines.
+/// Whether a difference, positive or negative, is significant and worth a word. The one rule for
+/// what is better, in texts, tables and outlines.
 #[must_use]
 pub fn is_advised(difference: Difference) -> bool {
     is_significant(difference) && difference.value.abs() >= LEAST_ADVISED_GAIN

@@ -1,11 +1,13 @@
 //! Properties of the bracket, of the shares of made and missed shots, and of the windows of a shot.
 
-use crate::common::{load, nominal};
+use crate::common::{at, load, nominal};
 use bankshot::analysis::miss_breakdown::classify_misses;
 use bankshot::analysis::sensitivity::{self, SensitivityTopics};
+use bankshot::model::Preset;
 use bankshot::probability::{Sampler, Silent};
 use bankshot::search_space::{TablePlan, sample_wide};
 use bankshot::shooter::Nominal;
+use bankshot::units::FOOT_M;
 
 #[test]
 fn prop_no_made_shot_lies_outside_the_bracket() {

@@ -19,7 +19,7 @@ use bankshot::units::{DEGREE_RAD, FOOT_M, INCH_M};
 enum Effort {
     /// The profile's own table, standard error 0.0005.
     Campaign,
-    /// A table with a quarter of the points, standard error 0.001.
+    /// A table with a third of the points, standard error 0.001.
     Test,
     /// The least table that finds the best shot, standard error 0.002.
     Coarse,
@@ -33,7 +33,7 @@ fn college(distance_m: f64, angle_deg: f64, release_height_m: f64, effort: Effor
     let profile = at(&profile, distance_m, angle_deg);
     match effort {
         Effort::Campaign => with_search(&profile, profile.grid(), 0.0005),
-        Effort::Test => with_search(&profile, grid(36, 24, 24, 6), 0.001),
+        Effort::Test => with_search(&profile, grid(36, 24, 36, 6), 0.001),
         Effort::Coarse => with_search(&profile, grid(24, 16, 16, 4), 0.002),
     }
 }
