@@ -124,13 +124,25 @@ fn answer(config: &SweepConfig, shots: &[ReportShot], comparison: Option<&Plot>)
     let worst = best_at
         .into_values()
         .min_by(|a, b| a.shot.probability.total_cmp(&b.shot.probability))?;
+    let in_words = |shot: &ReportShot| {
+        let is_mirror = |other: &ReportShot| {
+            other
+                .mirror_of
+                .is_some_and(|i| shots[i].place == shot.place)
+        };
+        if shot.mirror_of.is_some() || shots.iter().any(is_mirror) {
+            shot.location.in_words_on_either_side(units)
+        } else {
+            shot.location.in_words(units)
+        }
+    };
     let compared = comparison.map_or(String::new(), |plot| format!(" {}", plot.caption));
     Some(format!(
         "The surest place is {}: {:.1} of 100 go in with the {} shot. The hardest is {}: {:.1} with the {} shot.{compared}",
-        best.location.in_words(units),
+        in_words(best),
         100.0 * best.shot.probability,
         best.shot.kind.name(),
-        worst.location.in_words(units),
+        in_words(worst),
         100.0 * worst.shot.probability,
         worst.shot.kind.name()
     ))

@@ -72,6 +72,16 @@ impl Location {
         format!("{distance} {long} from the hoop, {side}")
     }
 
+    /// The same for a place and its mirror image together.
+    #[must_use]
+    pub fn in_words_on_either_side(&self, units: UnitSystem) -> String {
+        self.in_words(units)
+            .replace("to the left", "to either side")
+            .replace("to the right", "to either side")
+            .replace("on the left", "on either side")
+            .replace("on the right", "on either side")
+    }
+
     /// From the coordinates x (from the board towards midcourt) and y, m.
     #[must_use]
     pub fn from_xy(x_m: f64, y_m: f64) -> Self {

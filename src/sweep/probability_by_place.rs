@@ -141,19 +141,14 @@ impl PlaceProbabilities {
     /// too.
     #[must_use]
     pub fn in_words_with_mirror(&self, listed: &[&Self], units: UnitSystem) -> String {
-        let words = self.in_words(units);
         let (x_m, y_m) = (self.place.x_m, self.place.y_m);
         let is_mirror = |other: &&Self| {
             libm::hypot(other.place.x_m - x_m, other.place.y_m + y_m) < SAME_PLACE_M
         };
         if self.name.is_some() || libm::fabs(y_m) < SAME_PLACE_M || !listed.iter().any(is_mirror) {
-            return words;
+            return self.in_words(units);
         }
-        words
-            .replace("to the left", "to either side")
-            .replace("to the right", "to either side")
-            .replace("on the left", "on either side")
-            .replace("on the right", "on either side")
+        self.place.location().in_words_on_either_side(units)
     }
 
     /// Where on the board the bank shot is aimed, such as `14 in above the ring, 8 in left of the

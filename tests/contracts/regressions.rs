@@ -31,18 +31,18 @@ const PROBABILITIES: [u64; 3] = [
 /// Speed, pitch angle, polar angle, backspin and P: direct, bank.
 const BEST_SHOTS: [[u64; 5]; 2] = [
     [
-        0x401b_7d31_92f6_9953,
-        0x3fef_5f36_0bd6_5c14,
-        0x3feb_efc4_e109_9b95,
+        0x401b_94f9_c00c_cf9a,
+        0x3fef_f14f_f1f2_7d6e,
+        0x3feb_ed62_7ea4_5c7f,
         0x4032_d97c_7f33_21d2,
-        0x3fe6_b700_0000_0000,
+        0x3fe6_b280_0000_0000,
     ],
     [
-        0x401c_b687_29e7_918f,
-        0x3fee_7c10_b148_dca6,
-        0x3fe8_f2e8_b5d3_7718,
+        0x401c_b341_9875_6b76,
+        0x3fee_6426_deb6_d888,
+        0x3fe8_f1c1_782e_2395,
         0x4032_d97c_7f33_21d2,
-        0x3fe7_9000_0000_0000,
+        0x3fe7_9400_0000_0000,
     ],
 ];
 

@@ -9,6 +9,8 @@ use bankshot::analysis::aim_past_hoop::centre_speed_m_s;
 use bankshot::analysis::bank_aim::{closed_form_polar_rad, meeting_behind_board_m};
 use bankshot::analysis::sensitivity::SensitivityTopics;
 use bankshot::best_shot::{self, BestShot, Limit, ShotKind};
+use bankshot::dynamics::OutcomeKind;
+use bankshot::model::Preset;
 use bankshot::probability::{Estimate, Sampler, Silent, grid_integration, monte_carlo};
 use bankshot::search_space::TablePlan;
 use bankshot::shooter::{NominalVariable, Profile};
@@ -263,6 +265,63 @@ fn val_silverberg_tran_and_adams_2011_bank_against_direct() {
     check_bank_against_direct(Effort::Test);
 }
 
+/// Slegers 2022: the best pitch angle of a player is 4.3 deg plus or minus 2.1 above that of least
+/// speed. Here under `ncaa`, from 4.19 m.
+fn pitch_above_least_speed_deg(effort: Effort) -> f64 {
+    let profile = college(4.19, 0.0, 7.0 * FOOT_M, effort)
+        .with(|settings| settings.physics = Preset::named("ncaa").unwrap().physics())
+        .unwrap();
+    let (_, least_deg) = (4500..6500)
+        .step_by(10)
+        .map(|i| f64::from(i) * 0.01)
+        .map(|deg| (centre_speed_m_s(&profile, deg * DEGREE_RAD).unwrap(), deg))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap();
+    let above_deg = best_direct(&profile).nominal.pitch_rad / DEGREE_RAD - least_deg;
+    println!("least speed at {least_deg:.1} deg, best {above_deg:.1} deg above");
+    above_deg
+}
+
+#[test]
+fn val_slegers_2022_best_pitch_above_that_of_least_speed() {
+    let above_deg = pitch_above_least_speed_deg(Effort::Test);
+    assert!((4.3 - 2.1..=4.3 + 2.1).contains(&above_deg), "{above_deg}");
+}
+
+/// Mullineaux and Uhl 2010: missed free throws are 0.10 m/s slower than swishes. Mean speed of the
+/// misses less that of the swishes, m/s, of `shots` shots at a speed above the best one.
+fn misses_less_swishes_m_s(above_best_m_s: f64, shots: u64) -> f64 {
+    let profile = college(4.19, 0.0, 7.0 * FOOT_M, Effort::Coarse)
+        .with(|settings| settings.physics = Preset::named("ncaa").unwrap().physics())
+        .unwrap();
+    let best = best_direct(&profile).nominal;
+    let usual = best.with(NominalVariable::Speed, best.speed_m_s + above_best_m_s);
+    let mut sums = [(0.0, 0.0); 2];
+    for index in 0..shots {
+        let release = monte_carlo::sample(&profile, &usual, 3, index);
+        let outcome = profile.simulator().simulate(&release).unwrap();
+        let sum = match outcome.kind {
+            OutcomeKind::Swish => &mut sums[0],
+            _ if !outcome.verdict.made => &mut sums[1],
+            _ => continue,
+        };
+        *sum = (sum.0 + release.speed_m_s, sum.1 + 1.0);
+    }
+    let [swishes, misses] = sums.map(|(sum, count)| sum / count);
+    println!(
+        "{above_best_m_s:+.2} m/s from the best: misses less swishes {:+.3} m/s",
+        misses - swishes
+    );
+    misses - swishes
+}
+
+#[test]
+fn val_mullineaux_and_uhl_2010_misses_are_slower_than_swishes() {
+    // A shooter who throws too softly by half the scatter of the speed: 0.04 m/s.
+    let difference = misses_less_swishes_m_s(-0.04, 6000);
+    assert!((-0.16..=-0.04).contains(&difference), "{difference}");
+}
+
 #[test]
 #[ignore = "one minute: cargo test --test validation campaign_published -- --ignored --nocapture"]
 fn campaign_published() {
@@ -304,6 +363,11 @@ fn campaign_published() {
     least_speed(Effort::Campaign).check();
     println!("## Slegers 2021: free throws from 4.19 m by the scatter of speed and of pitch");
     check_scatter(scatter_of_players(Effort::Campaign));
+    println!("## Slegers 2022, Mullineaux and Uhl 2010");
+    pitch_above_least_speed_deg(Effort::Campaign);
+    for above_best_m_s in [0.0, -0.02, -0.04, -0.08] {
+        misses_less_swishes_m_s(above_best_m_s, 40_000);
+    }
     println!("## Silverberg, Tran and Adams 2011: bank minus direct");
     check_bank_against_direct(Effort::Campaign);
 }
