@@ -87,7 +87,11 @@ class Fit:
 
 @dataclass(frozen=True)
 class Advice:
-    """The usual shot against the best one: where the points are."""
+    """What to change, step by step, and what to train.
+
+    ``causes`` has the gain of each step over those before it; ``advised`` is the release after the
+    steps that are sure alone, and ``advised_gain`` what they gain.
+    """
 
     kind: str
     usual: Mapping[str, float]
@@ -96,6 +100,8 @@ class Advice:
     best_probability: Estimate
     gain: Estimate
     causes: Mapping[str, Estimate]
+    advised: Mapping[str, float] | None
+    advised_gain: Estimate | None
     training: Mapping[str, Estimate]
     raw: Mapping[str, Any] = field(repr=False)
 
@@ -109,13 +115,15 @@ class Advice:
             best_probability=Estimate._of(raw["best_probability"]),
             gain=Estimate._of(raw["gain"]),
             causes={cause["cause"]: Estimate._of(cause) for cause in raw["causes"]},
+            advised=raw["advised"],
+            advised_gain=Estimate._of(raw["advised_gain"]) if raw["advised_gain"] else None,
             training={part["less_scatter_of"]: Estimate._of(part) for part in raw["training"]},
             raw=raw,
         )
 
     def to_arrow(self) -> Any:
-        """A row for each cause and each thing to train: its gain."""
-        parts = [("cause", self.causes), ("10 % less scatter", self.training)]
+        """A row for each step and each thing to train: its gain."""
+        parts = [("step", self.causes), ("10 % less scatter", self.training)]
         return _tables.arrow(
             [
                 {"what": what, "of": name, "mean": e.mean, "low": e.low, "high": e.high}
@@ -126,7 +134,8 @@ class Advice:
 
     def _repr_html_(self) -> str:
         rows = [("P now", str(self.usual_probability)), ("P at best", str(self.best_probability))]
-        rows += [(f"gain by {name}", str(estimate)) for name, estimate in self.causes.items()]
+        rows += [("gain as advised", str(self.advised_gain))]
+        rows += [(f"step: {name}", str(estimate)) for name, estimate in self.causes.items()]
         rows += [(f"steadier {name}", str(estimate)) for name, estimate in self.training.items()]
         return _tables.html(f"the best {self.kind} shot", ("", "mean (95 % interval)"), rows)
 

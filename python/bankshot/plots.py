@@ -104,7 +104,7 @@ def intervals(result: Fit | Advice, ax: Axes | None = None) -> Axes:
         shown = {f"{p.name} ({p.unit})": p for p in parameters if p.name.endswith("_sd")}
         label = "standard deviation"
     else:
-        shown = {f"gain by {name}": e for name, e in result.causes.items()}
+        shown = {f"step: {name}": e for name, e in result.causes.items()}
         shown |= {f"steadier {name}": e for name, e in result.training.items()}
         label = "makes in 100 shots"
     scale = 1.0 if isinstance(result, Fit) else 100.0

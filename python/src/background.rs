@@ -13,12 +13,21 @@ use std::time::Duration;
 /// How often signals and progress are looked at.
 const INTERVAL: Duration = Duration::from_millis(50);
 
+/// What is shown of running work: stages that overlap as one.
+#[derive(Debug)]
+struct Stage {
+    name: String,
+    total: u64,
+    /// Stages that have begun and not ended.
+    open: u64,
+}
+
 /// What is known of running work.
 #[derive(Debug, Default)]
 pub(crate) struct Monitor {
     is_stopped: AtomicBool,
     done: AtomicU64,
-    stage: Mutex<Option<(String, u64)>>,
+    stage: Mutex<Option<Stage>>,
 }
 
 impl Monitor {
@@ -31,7 +40,10 @@ impl Monitor {
             return Ok(());
         };
         let stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some((name, total)) = stage.clone() else {
+        let Some((name, total)) = stage
+            .as_ref()
+            .map(|stage| (stage.name.clone(), stage.total))
+        else {
             return Ok(());
         };
         drop(stage);
@@ -41,10 +53,23 @@ impl Monitor {
 }
 
 impl Progress for Monitor {
-    fn begin(&self, stage: &str, total: u64) {
-        self.done.store(0, Ordering::Relaxed);
+    fn begin(&self, name: &str, total: u64) {
         let mut slot = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
-        *slot = Some((stage.to_owned(), total));
+        match &mut *slot {
+            Some(stage) if stage.open > 0 => {
+                name.clone_into(&mut stage.name);
+                stage.total += total;
+                stage.open += 1;
+            }
+            _ => {
+                self.done.store(0, Ordering::Relaxed);
+                *slot = Some(Stage {
+                    name: name.to_owned(),
+                    total,
+                    open: 1,
+                });
+            }
+        }
     }
 
     fn advance(&self, units: u64) {
@@ -54,7 +79,12 @@ impl Progress for Monitor {
         }
     }
 
-    fn end(&self) {}
+    fn end(&self) {
+        let mut slot = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(stage) = &mut *slot {
+            stage.open = stage.open.saturating_sub(1);
+        }
+    }
 }
 
 /// A result, or the payload of a panic.

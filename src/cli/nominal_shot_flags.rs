@@ -69,14 +69,14 @@ impl NominalOptions {
         }
     }
 
-    /// Whether a flag or the profile gives the speed or the pitch angle.
+    /// Whether a flag gives anything, or the profile the speed or the pitch angle.
     pub(crate) fn is_given(&self, profile: &Profile) -> bool {
-        [NominalVariable::Speed, NominalVariable::Pitch]
-            .into_iter()
-            .any(|variable| {
-                self.flag(variable).1.is_some()
-                    || profile.nominal_overrides().get(variable).is_some()
-            })
+        let by_flag = |variable| self.flag(variable).1.is_some();
+        let by_profile = |variable| profile.nominal_overrides().get(variable).is_some();
+        self.aim.is_some()
+            || NominalVariable::ALL.into_iter().any(by_flag)
+            || by_profile(NominalVariable::Speed)
+            || by_profile(NominalVariable::Pitch)
     }
 
     /// A warning if the error-free shot touches nothing and misses: such a shot is seldom meant.

@@ -44,8 +44,8 @@ pub struct Advice {
     pub kind: ShotKind,
     /// The usual release: means over the draws.
     pub usual: Values,
-    /// The backspin was not measured; that of the population is assumed.
-    pub backspin_is_assumed: bool,
+    /// Where the backspin comes from. One that was not measured is kept.
+    pub spin: SpinSource,
     /// P of the usual shot.
     pub usual_probability: Interval,
     /// Its numerical standard error.
@@ -117,14 +117,14 @@ pub fn advise(
     let usual_means: Vec<Values> = draws.iter().map(|draw| draw.means[place]).collect();
     let usual_shots = simulate(&usual_means);
     let usual_p = usual_shots.probabilities(&draws, |draw| draw.means[place], factor);
-    let backspin_is_assumed = posterior.spin == SpinSource::Assumed;
+    let keeps_backspin = posterior.spin != SpinSource::Measured;
     let mut training = training_gains(&usual_shots, &usual_p, &draws, place);
     // Nothing is known of a scatter that was not measured.
-    training.retain(|gain| !(backspin_is_assumed && gain.cause == Cause::BACKSPIN));
+    training.retain(|gain| !(keeps_backspin && gain.cause == Cause::BACKSPIN));
 
     let usual = typical.means[place];
     let kind = ShotKind::of(profile, &nominal_of(&usual));
-    let searched = if backspin_is_assumed {
+    let searched = if keeps_backspin {
         &with_backspin_kept(profile, usual[3])
     } else {
         profile
@@ -134,7 +134,7 @@ pub fn advise(
     let fixed = |best: &BestShot| {
         let of_draw = |draw: &Draw| {
             let mut values = values_of(&best.nominal);
-            if backspin_is_assumed {
+            if keeps_backspin {
                 values[3] = draw.means[place][3];
             }
             values
@@ -165,13 +165,12 @@ pub fn advise(
         typical: &typical,
         place,
     };
-    let steps =
-        best.map(|best| shooting.steps(&usual, &values_of(&best.nominal), !backspin_is_assumed));
+    let steps = best.map(|best| shooting.steps(&usual, &values_of(&best.nominal), !keeps_backspin));
     let told = usual_probabilities(profile, posterior, place, USUAL_SHOTS);
     Ok(Advice {
         kind,
         usual,
-        backspin_is_assumed,
+        spin: posterior.spin,
         usual_probability: told.interval(),
         numerical_standard_error: told.numerical_standard_error(),
         best_probability: by_kind[kind as usize]

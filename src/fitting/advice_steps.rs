@@ -15,7 +15,7 @@ use super::posterior::Draw;
 use crate::shooter::Profile;
 
 /// Shots of a sample that two steps are compared with, and of one that a speed is chosen with.
-const STEP_SHOTS: usize = 8_192;
+const STEP_SHOTS: usize = 32_768;
 const SPEED_SHOTS: usize = 32_768;
 /// Speeds that are tried are this many standard deviations to each side, in steps of a quarter.
 const SPEED_REACH: i32 = 3;
@@ -60,7 +60,7 @@ pub struct AdviceStep {
 }
 
 impl AdviceStep {
-    /// Whether the step is worth a change, whatever these shots do not tell.
+    /// Whether the step gains at least half a point, and its interval lies above 0.
     #[must_use]
     pub fn is_sure(&self) -> bool {
         self.gain.low > 0.0 && self.gain.mean > WORTH_A_CHANGE
@@ -72,11 +72,11 @@ impl AdviceStep {
 pub struct AdviceSteps {
     /// The steps in order.
     pub steps: Vec<AdviceStep>,
-    /// The release after the sure steps alone, and what they gain together.
+    /// The release after the sure steps alone: the usual one if no step is sure.
     pub advised: Values,
     /// P of the advised release less that of the usual one.
     pub gain: Interval,
-    /// P with the advised speed alone and with the advised angle alone, if both change.
+    /// What the advised speed alone and the advised angle alone gain, if both change.
     pub alone: Option<[Interval; 2]>,
 }
 
@@ -179,7 +179,7 @@ impl Shooting<'_> {
         let on_the_way: Vec<(f64, f64, f64)> = (0..=ANGLES)
             .map(|k| {
                 let part = k as f64 / ANGLES as f64;
-                let mut release = *best;
+                let mut release = *usual;
                 for i in 0..2 {
                     release[i] = usual[i] + part * (best[i] - usual[i]);
                 }
@@ -237,7 +237,7 @@ impl Shooting<'_> {
             alone: is_two.then(|| {
                 [0, 1].map(|i| {
                     let alone = none.with(i, advised.target[i]);
-                    self.probabilities(&alone).interval()
+                    self.probabilities(&alone).minus(&usual_p).interval()
                 })
             }),
             steps,
@@ -245,11 +245,10 @@ impl Shooting<'_> {
     }
 }
 
-/// The sure steps; all of them if none is sure alone.
+/// The sure steps together.
 fn advised(steps: &[AdviceStep], none: Change) -> Change {
-    let any = steps.iter().any(AdviceStep::is_sure);
     let mut change = none;
-    for step in steps.iter().filter(|step| step.is_sure() || !any) {
+    for step in steps.iter().filter(|step| step.is_sure()) {
         if step.cause == Cause::PITCH {
             change = change.with(0, step.release[0]);
         }

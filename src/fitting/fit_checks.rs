@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
 pub enum TestError {
     /// Fewer shots than unknowns.
     #[error(
-        "has {shots} usable shots; with the places that they are from ({places}) the fit has {unknowns} unknowns and needs at least {needed} shots"
+        "has {shots} usable shots; a fit of shots from {places} place(s) has {unknowns} unknowns and needs at least {needed} shots"
     )]
     TooFewShots {
         /// Usable shots.
@@ -31,7 +31,7 @@ pub enum TestError {
     NoSpread(&'static str),
     /// Speeds in another unit.
     #[error(
-        "speed: {given:.1} {unit} (the median) cannot be a shot from there, which needs about {needed:.1} {unit} or more; the column looks like {likely}: --map 'speed=COLUMN:{suffix}'"
+        "speed: {given:.1} {unit} (the median) cannot be that of a shot from there, which has about {needed:.1} {unit}; the column looks like {likely}: --map 'speed=COLUMN:{suffix}'"
     )]
     WrongUnit {
         /// The median.

@@ -237,23 +237,29 @@ fn check_release_height(height_m: f64) -> Result<(), String> {
     ))
 }
 
-/// Refuses a file of which so many shots are kept out that the rest means nothing.
-fn too_many_kept_out(shooter: &ShooterShots) -> Result<(), String> {
+/// The end of the reason of a row without a value.
+const IS_MISSING: &str = "is missing";
+
+/// Refuses a file in which so many rows hold absurd values that the columns are probably others. An
+/// empty cell is not absurd.
+fn too_many_absurd(rows: usize, rejected: &[(u64, String)]) -> Result<(), String> {
     /// Fewer than this can be mistakes of single rows, whatever their fraction.
     const MANY: usize = 10;
     /// One in so many.
     const FRACTION: usize = 4;
-    let (kept, out) = (shooter.shots.len(), shooter.rejected.len());
-    let Some((row, reason)) = shooter.rejected.first() else {
-        return Ok(());
-    };
-    if out < MANY || FRACTION * out <= kept + out {
-        return Ok(());
+    let absurd: Vec<_> = rejected
+        .iter()
+        .filter(|(_, reason)| !reason.ends_with(IS_MISSING))
+        .collect();
+    match absurd[..] {
+        [(row, reason), ..] if absurd.len() >= MANY && FRACTION * absurd.len() > rows => {
+            Err(format!(
+                "{} of {rows} rows hold absurd values; do the columns hold what their names say, in these units? The first is that of row {row}: {reason}",
+                absurd.len()
+            ))
+        }
+        _ => Ok(()),
     }
-    Err(format!(
-        "{out} of {} shots make no sense, too many to leave out: do the columns hold what their names say, in these units? The first is {row}: {reason}",
-        kept + out
-    ))
 }
 
 struct Reader<'a> {
@@ -335,7 +341,7 @@ impl Reader<'_> {
         let name = self.columns.name(index);
         let cell = cells.get(index).map_or("", String::as_str);
         if cell.is_empty() {
-            return Err(format!("{name}: is missing"));
+            return Err(format!("{name}: {IS_MISSING}"));
         }
         let shown: String = cell.chars().take(30).collect();
         match cell.parse::<f64>() {
@@ -450,15 +456,21 @@ impl Reader<'_> {
     }
 
     fn shooter(&self, name: String, rows: &[(u64, &[String])]) -> Result<ShooterShots, String> {
-        if self.source != Source::Trajectories
-            && let Some(words) = implausible_column(self.columns, rows)
-        {
-            return Err(words);
+        let of_shooter = |words: String| match name.as_str() {
+            "" => words,
+            name => format!("{name}: {words}"),
+        };
+        if let Some(words) = implausible_column(self.columns, self.source, rows) {
+            return Err(of_shooter(words));
         }
         let mut rejected = Vec::new();
         let raw = match self.source {
             Source::Trajectories => self.tracked_shots(rows, &mut rejected),
-            Source::Releases | Source::Landings => self.row_shots(rows, &mut rejected),
+            Source::Releases | Source::Landings => {
+                let shots = self.row_shots(rows, &mut rejected);
+                too_many_absurd(rows.len(), &rejected).map_err(of_shooter)?;
+                shots
+            }
         };
         let spin = if self.columns.quantity(Quantity::Backspin).is_some() {
             SpinSource::Measured
@@ -499,7 +511,6 @@ impl Reader<'_> {
                 .map_err(|error| error.to_string())?;
         }
         self.reject_shots(&mut shooter);
-        too_many_kept_out(&shooter)?;
         if self.source == Source::Landings {
             shooter.differences = self.release_differences(rows, &shooter.shots);
         }

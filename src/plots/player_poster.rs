@@ -119,7 +119,7 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         .iter()
         .reduce(|a, b| if gain(b) > gain(a) { b } else { a });
     let Some(most) = most else {
-        return "Shoot direct or off the board as you like it: from no place does the bank shot make 1 of 100 more.".to_owned();
+        return "Shoot direct: from no place does the bank shot make 1 of 100 more.".to_owned();
     };
     let in_hundred = |p: Option<Difference>| p.map(|p| format!("{:.0}", 100.0 * p.value));
     let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));

@@ -40,7 +40,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     };
     let caption = advantage.to_string();
     let note = format!(
-        "{caption} Outlined: there. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} points.",
+        "{caption} These are outlined. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} points.",
         100.0 * largest
     );
     let map = results.court_map();

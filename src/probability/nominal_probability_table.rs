@@ -30,9 +30,9 @@ pub const MAX_BATCH_BYTES: usize =
 const BATCHES_PER_THREAD: usize = 8;
 
 /// Points farther than this from every nominal shot, in standard deviations of the four errors
-/// together, are not simulated. The weights of all of them sum to 4.5e-4 under a nominal shot at a
-/// corner of the grid (chi-square with four degrees of freedom above 4.5^2), and to less under the
-/// others. In a window that is a third of the points.
+/// together, are not simulated. The weights of all of them sum to at most 4.5e-4 (chi-square with
+/// four degrees of freedom above 4.5^2): that is for a grid of one shot. At a corner of a wide grid
+/// it is 8e-5, within the grid less. In a window that is a third of the points.
 const REACH_SIGMAS: f64 = 4.5;
 
 /// The made shots of a plan, summed over speed and backspin with the weights of every nominal speed

@@ -4,9 +4,9 @@
 //! hoop's axis) at or above `z = -R`, and must pass neither above the ring from its near to its far
 //! side nor over the board. Both bound the speed for each pitch angle. Its direction must lead
 //! within reach of the ring, or to a point on the board from which a bounce can. A bounce does not
-//! reverse the velocity along the board. The velocity away from the board can have any size: off an
-//! edge, and off the paper's board that a rising ball leaves at the top while it is still
-//! compressed.
+//! reverse the velocity along the board (only much side spin could, and it is not counted). The
+//! velocity away from the board can have any size: off an edge, and off the paper's board that a
+//! rising ball leaves at the top while it is still compressed.
 //!
 //! With air the speeds are those of the paths under drag. A faster path in the same direction lies
 //! above a slower one all along, with drag too; and the path in a vacuum lies above both. Lift
@@ -142,11 +142,12 @@ impl Bracket {
         let (sin, cos) = libm::sincos(polar);
         let (x, y) = self.start();
         let length_to = |plane: f64| (x - plane) / cos;
-        let last = length_to(self.last_plane_x_m);
-        let across = y - last * sin;
-        let near = self.board_half_width_m + self.reach_m;
         let first = length_to(self.face_x_m + self.ball_radius_m);
-        (cos > 1e-6 && across.abs() < near).then_some((first, last))
+        let last = length_to(self.last_plane_x_m);
+        let near = self.board_half_width_m + self.reach_m;
+        let [from, to] = [first, last].map(|length| y - length * sin);
+        let comes_near = from.min(to) < near && from.max(to) > -near;
+        (cos > 1e-6 && comes_near).then_some((first, last))
     }
 
     /// Least and greatest speed with which a shot in this direction can go in, m/s; `None` if there

@@ -262,21 +262,26 @@ fn feet_and_inches(
     }
     let names = ["feet", "foot", "ft", "'", "\u{2032}", "\u{2019}"];
     let after = names.into_iter().find_map(|name| rest.strip_prefix(name))?;
-    let after = after.trim_start_matches(['.', ',']).trim();
-    if !after.starts_with(|c: char| c.is_ascii_digit()) {
-        return None;
-    }
-    // `6'11` and `6 ft 11` can only be inches.
-    let inches;
-    let after = if after.ends_with(|c: char| c.is_ascii_digit()) {
-        inches = format!("{after} in");
-        &inches
+    let is_mark = !rest.starts_with('f');
+    let after = if is_mark {
+        after
     } else {
-        after.trim_end_matches('.')
+        // `6 ft. 11 in.`
+        after.strip_prefix('.').unwrap_or(after)
     };
+    let after = after.trim_start();
+    let unit_at = after.find(|c: char| !c.is_ascii_digit() && c != '.');
+    let (number, unit) = after.split_at(unit_at.unwrap_or(after.len()));
+    let unit = unit.trim_start();
+    let unit = unit.strip_suffix("in.").map_or(unit, |_| "in");
+    // `6'11` can only be inches; after `ft` they need their unit.
+    let is_inches = match unit {
+        "" => is_mark,
+        unit => dimension.size_of(unit) == Some(INCH_M),
+    };
+    let inches: f64 = number.parse().ok().filter(|inches| *inches < 12.0)?;
     // A sign before the feet is that of the whole.
-    let signed = |inches: f64| feet * FOOT_M + inches.copysign(feet);
-    Some(parse(after, dimension).map(signed))
+    is_inches.then(|| Ok(feet * FOOT_M + (inches * INCH_M).copysign(feet)))
 }
 
 /// What may have been meant by a name that is not known, as the end of a sentence; empty if nothing
@@ -349,9 +354,7 @@ mod tests {
             "6'11''",
             "6' 11\"",
             "6'11",
-            "6 ft 11",
             "6ft. 11in.",
-            "6 ft, 11 in",
         ] {
             near(text, length, 83.0 * INCH_M);
         }
@@ -363,6 +366,17 @@ mod tests {
         near("52\u{b0}", Dimension::Angle, 52.0 * DEGREE_RAD);
         near("52 degrees", Dimension::Angle, 52.0 * DEGREE_RAD);
         near("70 %", Dimension::Number, 0.7);
+        near("6'0.5\"", length, 72.5 * INCH_M);
+        for text in [
+            "6 ft, 8 ft",
+            "6 ft 8",
+            "6' 11'",
+            "6 ft 2 m",
+            "20 ft 45 in",
+            "6'.\"",
+        ] {
+            assert!(parse(text, length).is_err(), "{text}");
+        }
         let message = |text: &str| parse(text, length).unwrap_err().to_string();
         assert_eq!(
             message("13,75 ft"),

@@ -197,7 +197,7 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
         .enumerate()
     {
         let is_spin = i == VALUE_NAMES.len() - 1;
-        // What was assumed or given of one session did not change by what was measured.
+        // A spin that was not measured in both sessions tells nothing of a change.
         if is_spin && posteriors.iter().any(|p| p.spin != SpinSource::Measured) {
             continue;
         }

@@ -16,7 +16,7 @@ use crate::fitting::{
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
 use crate::shooter::{Nominal, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+use crate::units::{DEGREE_RAD, REV_RAD};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -177,10 +177,11 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
             Failure::usage("no clean shot from there; name one with --speed and --pitch")
         })?;
     if !quiet {
+        let (long, metre) = profile.output().units.length();
         print_remark(&format!(
-            "no shot is named: tests of the best one, {} at {:.2} ft/s and {:.1} deg, {:.1} rev/s",
+            "no shot is named: tests of the best one, {} at {:.2} {long}/s and {:.1} deg, {:.1} rev/s",
             ShotKind::of(profile, &best.nominal).name(),
-            best.nominal.speed_m_s / FOOT_M,
+            best.nominal.speed_m_s / metre,
             best.nominal.pitch_rad / DEGREE_RAD,
             best.nominal.backspin_rad_s / REV_RAD
         ));

@@ -100,7 +100,7 @@ fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String 
         ]);
     }
     format!(
-        "{table}\nThe first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere. (Of landings, fit again with --physics: their speeds follow from the flight.)\n",
+        "{table}\nThe first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere. (A profile that was fitted to landings changes with the physics: fit the shots again with --physics.)\n",
         if has_air { "with" } else { "ncaa," },
         if has_air { "it" } else { "ncaa" },
         comparison.same_shot.in_words()

@@ -122,14 +122,20 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         Some(text) => values("angles", text, Dimension::Angle)?,
         None => vec![profile.location().angle_rad],
     };
-    for (k, distance_m) in distances_m.iter().enumerate() {
-        let place = Location {
-            distance_m: *distance_m,
-            angle_rad: angles_rad[0],
-        };
-        place
-            .check(profile.physics())
-            .map_err(|error| Failure::usage(format!("--distances: value {}: {error}", k + 1)))?;
+    for (d, distance_m) in distances_m.iter().enumerate() {
+        for (a, angle_rad) in angles_rad.iter().enumerate() {
+            let place = Location {
+                distance_m: *distance_m,
+                angle_rad: *angle_rad,
+            };
+            place.check(profile.physics()).map_err(|error| {
+                let (flag, k) = match error.key() {
+                    "distance" => ("distances", d),
+                    _ => ("angles", a),
+                };
+                Failure::usage(format!("--{flag}: value {}: {error}", k + 1))
+            })?;
+        }
     }
     let mut fixed = Vec::new();
     for (variable, text) in [
@@ -213,11 +219,10 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             print_remark(&great_loss_warning(&profile, &request));
         }
     }
-    let missing = table.shots.iter().filter(|shot| shot.is_none()).count();
+    let missing = missing_places(&table);
     if missing > 0 && !quiet {
         print_remark(&format!(
-            "no clean shot at {missing} of {} places (exit code {})",
-            table.shots.len(),
+            "no clean shot at {missing} of the places that were asked for (exit code {})",
             code::INCOMPLETE
         ));
     }
@@ -226,6 +231,19 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     } else {
         code::INCOMPLETE
     })
+}
+
+/// The number of places without a shot, of those that were asked for.
+fn missing_places(table: &ShotTable) -> usize {
+    let mut missing = 0;
+    for (a, angle_rad) in table.angles_rad.iter().enumerate() {
+        for (d, distance_m) in table.distances_m.iter().enumerate() {
+            let is_added = table.added_distances_m.contains(distance_m)
+                || table.added_angles_rad.contains(angle_rad);
+            missing += usize::from(!is_added && table.at(a, d).is_none());
+        }
+    }
+    missing
 }
 
 /// Where a table goes, and in which form.
@@ -257,7 +275,9 @@ fn outputs(options: &TableOptions) -> Result<Vec<Output<'_>>, Failure> {
             Ok(Output {
                 file: Some(file.as_path()),
                 format: match (options.format, TableFormat::of_output(file)) {
-                    (Some(format), Ok(of_name)) if format != of_name => {
+                    (Some(format), Ok(of_name))
+                        if format != of_name && file.extension().is_some() =>
+                    {
                         return Err(Failure::usage(format!(
                             "--format: the name {} asks for another form; leave --format out, or name the file otherwise",
                             file.display()

@@ -4,7 +4,7 @@ use super::fit_json::interval_json;
 use super::fit_text::percent;
 use super::parameters::value_units;
 use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, Cause, Interval, TrainingGain, Values, values_of,
+    Advice, AdviceStep, AdviceSteps, Cause, Interval, SpinSource, TrainingGain, Values, values_of,
 };
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
@@ -36,6 +36,12 @@ impl ChangeWords {
             _ => 2,
         };
         let amount = format!("{difference:.decimals$} {unit}");
+        if amount.chars().all(|c| !('1'..='9').contains(&c)) {
+            return format!(
+                "keep {}",
+                ["the speed", "the angle", "the aim", "the backspin"][cause.0]
+            );
+        }
         let grows = to > from;
         match cause {
             Cause::SPEED if grows => format!("throw {amount} harder"),
@@ -56,7 +62,10 @@ impl ChangeWords {
         let mut text = self.of_value(step.cause, from[i], step.release[i]);
         if step.cause == Cause::PITCH {
             let speed = self.of_value(Cause::SPEED, from[0], step.release[0]);
-            text += &format!(", {}", speed.trim_start_matches("throw "));
+            text += &format!(
+                ", {}",
+                speed.trim_start_matches("throw ").replace("keep", "with")
+            );
         }
         text
     }
@@ -90,7 +99,7 @@ impl ChangeWords {
     }
 }
 
-/// What to change, in one or two sentences.
+/// What to change, in words.
 fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -> String {
     let p = advice.usual_probability.mean;
     let changes = words.of_releases(&advice.usual, &steps.advised);
@@ -98,18 +107,14 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
         "With the same scatter you can make {:.0} %: {changes}.",
         100.0 * (p + steps.gain.mean)
     );
-    if !steps.steps.iter().any(AdviceStep::is_sure) {
-        text += " No single one of these is sure to help.";
-    }
-    if let Some([speed, pitch]) = &steps.alone {
-        let worse = |alone: &Interval| alone.mean < p;
-        if worse(speed) || worse(pitch) {
-            text += &format!(
-                " Change speed and angle together: the new speed alone makes {:.0} %, the new angle alone {:.0} %.",
-                100.0 * speed.mean,
-                100.0 * pitch.mean
-            );
-        }
+    if let Some([speed, pitch]) = &steps.alone
+        && (speed.mean < 0.0 || pitch.mean < 0.0)
+    {
+        text += &format!(
+            " Change speed and angle together: the new speed alone makes {:.0} %, the new angle alone {:.0} %.",
+            100.0 * (p + speed.mean),
+            100.0 * (p + pitch.mean)
+        );
     }
     text + "\n"
 }
@@ -152,7 +157,7 @@ fn scatter_in_words(cause: Cause) -> &'static str {
 /// What makes were observed: made and shots.
 pub type Observed = Option<(usize, usize)>;
 
-/// The answer for people: three sentences, then the figures.
+/// The answer for people: a few sentences, then the figures.
 #[must_use]
 pub fn advice_text(
     name: &str,
@@ -178,18 +183,24 @@ pub fn advice_text(
         units,
         court_angle_rad,
     };
-    match (&advice.gain, &advice.steps) {
-        (Some(gain), Some(steps)) if gain.low > 0.0 && steps.gain.mean > 0.005 => {
-            text += &advised_in_words(&words, advice, steps);
+    let sure = advice.steps.as_ref();
+    let sure = sure.filter(|steps| steps.steps.iter().any(AdviceStep::is_sure));
+    match (&advice.gain, sure) {
+        (_, Some(steps)) => text += &advised_in_words(&words, advice, steps),
+        (Some(gain), None) if gain.low > 0.0 && gain.mean > 0.005 => {
+            text += &format!(
+                "The best shot below gains {:.1} points, but no single step towards it is sure to help: measure more before you change anything.\n",
+                100.0 * gain.mean
+            );
         }
-        (Some(gain), _) if gain.mean > 0.005 => {
+        (Some(gain), None) if gain.mean > 0.005 => {
             text += &format!(
                 "Another release may gain {:.1} points, but these shots cannot tell it from luck: measure more before you change anything.\n",
                 100.0 * gain.mean
             );
         }
-        (Some(_), _) => text += "Keep your release: no other one is worth a change.\n",
-        (None, _) => text += "No clean shot of this kind was found from here.\n",
+        (Some(_), None) => text += "Keep your release: no other one is worth a change.\n",
+        (None, None) => text += "No clean shot of this kind was found from here.\n",
     }
     text += &training_in_words(&advice.training);
     text += &format!(
@@ -232,10 +243,11 @@ pub fn advice_text(
             from = step.release;
         }
     }
-    if advice.backspin_is_assumed {
+    if advice.spin != SpinSource::Measured {
         text += &format!(
-            "  The backspin was not measured: {:.1} rev/s is assumed, and kept.\n",
-            advice.usual[3] / value_units(units)[3].1
+            "  The backspin was not measured: {:.1} rev/s is {}, and kept.\n",
+            advice.usual[3] / value_units(units)[3].1,
+            advice.spin.name()
         );
     }
     text += "\n10 % less scatter\n";

@@ -100,19 +100,19 @@ fn verdict(changes: &[SessionChange]) -> String {
         let change = p.comparison.change.scaled(1.0 / p.size);
         let (direction, probability) = p.direction();
         let points = change.mean.abs();
+        let unit = if points.round() == 1.0 {
+            "point"
+        } else {
+            "points"
+        };
         let interval = format!("95 %: {:+.0} to {:+.0}", change.low, change.high);
         text += &if p.is_decided() {
-            format!("The chance of a shot {direction} by {points:.0} points ({interval}).\n")
+            format!("The chance of a shot {direction} by {points:.0} {unit} ({interval}).\n")
         } else {
             let sure = 100.0 * probability;
             format!(
-                "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} {} \
-                 ({interval}). The chance that it {direction} at all is {sure:.0} %.\n",
-                if points.round() == 1.0 {
-                    "point"
-                } else {
-                    "points"
-                }
+                "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} {unit} \
+                 ({interval}). The chance that it {direction} at all is {sure:.0} %.\n"
             )
         };
     }

@@ -119,9 +119,9 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
         ],
     ];
     let mut text = format!(
-        "Best {} shots. P: the chance of each. range: the width of the unbroken range\n\
-         of speed, and of pitch, about the shot in which it goes in, with all else\n\
-         exact. time, entry: until it falls through.\n",
+        "Best {} shots. P: the chance of each. range: how far speed and pitch can vary,\n\
+         one at a time and with all else exact, until the shot misses. time, entry:\n\
+         until it falls through.\n",
         table.kind.name()
     );
     for cells in header {
@@ -344,8 +344,9 @@ fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     // The two rows of a jump are one place.
     places.dedup();
     Some(format!(
-        "A {other} shot is better at {} places, {most}: {}.",
+        "A {other} shot is better at {} place{}, {most}: {}.",
         places.len(),
+        if places.len() == 1 { "" } else { "s" },
         places.join("; "),
     ))
 }
