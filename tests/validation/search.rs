@@ -113,7 +113,7 @@ fn physics_with_and_without_air() -> [(&'static str, Physics); 3] {
 /// Authority: brute force. `prop_no_made_shot_lies_outside_the_bracket` is the small test of it,
 /// under the paper's physics.
 #[test]
-#[ignore = "a quarter of an hour: cargo test --test validation campaign_no_made_shot -- --ignored --nocapture"]
+#[ignore = "four minutes: cargo test --test validation campaign_no_made_shot -- --ignored --nocapture"]
 fn campaign_no_made_shot_lies_outside_the_range_of_a_search() {
     let mut found = 0;
     for (name, physics) in physics_with_and_without_air() {
