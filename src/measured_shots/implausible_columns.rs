@@ -3,12 +3,10 @@
 //! A single absurd row is kept out. Where the middle of a whole column is absurd, the column is.
 
 use super::columns::{Columns, Label, Quantity, parse_made};
-use super::read::Source;
 use crate::units::{DEGREE_RAD, INCH_M};
 
 /// A quantity whose median over many shots lies between two values, SI units, whatever the shooter.
 struct UsualMedian {
-    source: Source,
     quantity: Quantity,
     low: f64,
     high: f64,
@@ -18,21 +16,18 @@ struct UsualMedian {
 
 const USUAL_MEDIANS: [UsualMedian; 3] = [
     UsualMedian {
-        source: Source::Landings,
         quantity: Quantity::Depth,
         low: -3.0 * INCH_M,
         high: 18.0 * INCH_M,
         in_words: "from the front of the ring (0 in) to its back (18 in)",
     },
     UsualMedian {
-        source: Source::Landings,
         quantity: Quantity::EntryAngle,
         low: 22.0 * DEGREE_RAD,
         high: 70.0 * DEGREE_RAD,
         in_words: "from 25 to 65 deg",
     },
     UsualMedian {
-        source: Source::Releases,
         quantity: Quantity::Pitch,
         low: 15.0 * DEGREE_RAD,
         high: 85.0 * DEGREE_RAD,
@@ -44,21 +39,24 @@ const LEAST_SHOTS: usize = 5;
 /// A median depth nearer than this to the front of the ring is that of a shooter who makes few
 /// shots.
 const SHORT_DEPTH_M: f64 = 3.0 * INCH_M;
-/// More makes than this fraction of the shots are more than such a shooter can have: the ring's front
-/// is 9 in from its centre, and half of the shots are shorter.
+/// More makes than this fraction of the shots are more than such a shooter can have: the front of
+/// the ring is 9 in from its centre, and half of the shots are shorter.
 const MOST_MAKES: f64 = 0.5;
-/// Shots with a result that this needs: 15 makes of 30 are seldom those of a shooter who makes a third.
+/// Shots with a result that this needs: 15 makes of 30 are seldom those of a shooter who makes a
+/// third.
 const LEAST_LABELLED: usize = 30;
 
-/// What is wrong with a column as a whole, and what to write. Only the columns that the fit of this
-/// source uses are looked at.
+/// What is wrong with a column as a whole, and what to write. Only quantities that the fit uses are
+/// looked at.
 pub(super) fn implausible_column(
     columns: &Columns,
-    source: Source,
+    used: &[Quantity],
     rows: &[(u64, &[String])],
 ) -> Option<String> {
-    let used = USUAL_MEDIANS.iter().filter(|usual| usual.source == source);
-    let of_unit = used.into_iter().find_map(|usual| {
+    let mut medians = USUAL_MEDIANS
+        .iter()
+        .filter(|usual| used.contains(&usual.quantity));
+    let of_unit = medians.find_map(|usual| {
         let median = median_of(columns, rows, usual.quantity)?;
         let column = columns.quantity(usual.quantity)?;
         let is_usual = |value: f64| (usual.low..=usual.high).contains(&value);
@@ -84,9 +82,9 @@ pub(super) fn implausible_column(
             usual.in_words
         ))
     });
-    of_unit.or_else(|| match source {
-        Source::Landings => misplaced_depth(columns, rows),
-        _ => None,
+    of_unit.or_else(|| {
+        let is_landing = used.contains(&Quantity::Depth);
+        is_landing.then(|| misplaced_depth(columns, rows)).flatten()
     })
 }
 

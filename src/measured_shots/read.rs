@@ -48,6 +48,16 @@ impl Source {
         }
     }
 
+    /// The quantities of each row that a fit uses; those of trajectories are looked at point by
+    /// point.
+    fn quantities(self) -> &'static [Quantity] {
+        match self {
+            Self::Releases => &[Quantity::Speed, Quantity::Pitch, Quantity::Aim],
+            Self::Landings => &[Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight],
+            Self::Trajectories => &[],
+        }
+    }
+
     /// What the columns of a file hold.
     ///
     /// # Errors
@@ -460,7 +470,7 @@ impl Reader<'_> {
             "" => words,
             name => format!("{name}: {words}"),
         };
-        if let Some(words) = implausible_column(self.columns, self.source, rows) {
+        if let Some(words) = implausible_column(self.columns, self.source.quantities(), rows) {
             return Err(of_shooter(words));
         }
         let mut rejected = Vec::new();
