@@ -113,8 +113,8 @@ fn contract_sweep_report_and_compare_count_with_one_rule() {
             "{sentence}: {output:?}"
         );
     }
-    // The rule, again from the table: independent estimates, two standard errors and one shot in 100,
-    // every place.
+    // The rule, again from the table: independent estimates, two standard errors and one shot in
+    // 100, every place.
     let table = fs::read_to_string(out.join("best_shots.csv")).unwrap();
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     let header = reader.headers().unwrap().clone();
