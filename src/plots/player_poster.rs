@@ -123,10 +123,26 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
     };
     let in_hundred = |p: Option<Difference>| p.map(|p| format!("{:.0}", 100.0 * p.value));
     let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));
-    let aim = most.board_aim_in_words(units);
+    let place = most.in_words_with_mirror(bank, units);
+    let aim = most.board_aim_in_words(units).map(|aim| {
+        // Of a place and its mirror image, the aim is on the same side of the board as the shooter,
+        // or on the other.
+        let is_of_both = place != most.in_words(units);
+        let is_own_side = most
+            .board_aim_m
+            .is_some_and(|(across_m, _)| across_m * most.place.y_m > 0.0);
+        let side = if is_own_side { "your" } else { "the other" };
+        let of_both = format!("from the board's middle on {side} side");
+        if is_of_both {
+            aim.replace("left of the board's middle", &of_both)
+                .replace("right of the board's middle", &of_both)
+        } else {
+            aim
+        }
+    });
     format!(
         "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}: {} of 100 go in{direct}. Aim {}.",
-        most.in_words_with_mirror(bank, units),
+        place,
         in_hundred(most.bank).unwrap_or_default(),
         aim.unwrap_or_else(|| "at the board".to_owned())
     )
