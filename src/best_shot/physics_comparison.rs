@@ -14,6 +14,8 @@ pub struct PhysicsVariant {
     pub name: String,
     /// It.
     pub physics: Physics,
+    /// Whether it changes something of the base that nobody measured in this gym.
+    pub is_unmeasured: bool,
 }
 
 /// The best shots under one physics.
@@ -29,6 +31,8 @@ pub struct PhysicsRow {
     pub aim_past_centre_m: Option<f64>,
     /// P of [`PhysicsComparison::same_shot`].
     pub same_shot: Option<Estimate>,
+    /// As [`PhysicsVariant::is_unmeasured`].
+    pub is_unmeasured: bool,
 }
 
 /// The best shots of a profile under each physics, and one shot under all of them.
@@ -38,6 +42,45 @@ pub struct PhysicsComparison {
     pub rows: Vec<PhysicsRow>,
     /// The shot that is released the same way in every row.
     pub same_shot: SameShot,
+    /// The row that single changes start from: the profile's own physics, or `ncaa`.
+    pub base: usize,
+}
+
+impl PhysicsComparison {
+    /// What the single changes that nobody measured in this gym do to a P of a row: their names and
+    /// P less that of the base, the largest first.
+    pub fn unmeasured_changes(&self, p: impl Fn(&PhysicsRow) -> Option<f64>) -> Vec<(&str, f64)> {
+        let base = self.rows.get(self.base).and_then(&p);
+        let rows = self.rows.iter().filter(|row| row.is_unmeasured);
+        let mut changes: Vec<(&str, f64)> = rows
+            .filter_map(|row| Some((row.name.as_str(), p(row)? - base?)))
+            .collect();
+        changes.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+        changes
+    }
+
+    /// One sentence: how far P of the best direct shot rests on what nobody measured in this gym.
+    #[must_use]
+    pub fn in_words(&self) -> Option<String> {
+        let direct = |row: &PhysicsRow| {
+            let shot = row.direct.as_ref().ok()?;
+            Some(shot.estimate.probability)
+        };
+        let changes = self.unmeasured_changes(direct);
+        let words: Vec<String> = changes
+            .iter()
+            .map(|(name, by)| {
+                let name = name.split_once(' ').map_or(*name, |(_, change)| change);
+                format!("{name} {:+.1}", 100.0 * by)
+            })
+            .collect();
+        (!words.is_empty()).then(|| {
+            format!(
+                "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {}.",
+                words.join(", ")
+            )
+        })
+    }
 }
 
 /// A shot that is released the same way under each physics.
@@ -67,6 +110,7 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
     let variant = |name: &str, physics: &Physics| PhysicsVariant {
         name: name.to_owned(),
         physics: physics.clone(),
+        is_unmeasured: false,
     };
     let mut variants = vec![variant("the profile's", own)];
     variants.extend(
@@ -81,36 +125,44 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         _ => own.clone(),
     };
     let with = if has_air { "with" } else { "ncaa," };
-    let changes: [(&str, fn(&mut Physics)); 10] = [
-        ("no air", |physics| physics.air = Air::NONE),
-        ("air of 5280 ft", |physics| physics.air.density_kg_m3 = 0.98),
-        ("drag_coefficient 0.41", |physics| {
+    // The altitude, the thickness of a ring and its bracket are known of every gym.
+    let changes: [(&str, bool, fn(&mut Physics)); 10] = [
+        ("no air", false, |physics| physics.air = Air::NONE),
+        ("air of 5280 ft", false, |physics| {
+            physics.air.density_kg_m3 = 0.98
+        }),
+        ("drag_coefficient 0.41", true, |physics| {
             physics.air.drag_coefficient = 0.41;
         }),
-        ("drag_coefficient 0.50", |physics| {
+        ("drag_coefficient 0.50", true, |physics| {
             physics.air.drag_coefficient = 0.50;
         }),
-        ("lift_slope 0.1", |physics| physics.air.lift_slope = 0.1),
-        ("a ring of no thickness", |physics| {
+        ("lift_slope 0.1", true, |physics| {
+            physics.air.lift_slope = 0.1
+        }),
+        ("a ring of no thickness", false, |physics| {
             physics.ring_tube_diameter_m = 0.0;
         }),
-        ("no bracket", |physics| physics.bracket_width_m = 0.0),
-        ("hoop_restitution 0.45", |physics| {
+        ("no bracket", false, |physics| physics.bracket_width_m = 0.0),
+        ("hoop_restitution 0.45", true, |physics| {
             set_restitution(physics, 0.45);
         }),
-        ("hoop_restitution 0.70", |physics| {
+        ("hoop_restitution 0.70", true, |physics| {
             set_restitution(physics, 0.70);
         }),
-        ("friction 0.8", |physics| {
+        ("friction 0.8", true, |physics| {
             *physics = physics
                 .clone()
                 .with_contacts(|contact| contact.friction = 0.8);
         }),
     ];
-    variants.extend(changes.into_iter().map(|(name, change)| {
+    variants.extend(changes.into_iter().map(|(name, is_unmeasured, change)| {
         let mut physics = base.clone();
         change(&mut physics);
-        variant(&format!("{with} {name}"), &physics)
+        PhysicsVariant {
+            is_unmeasured,
+            ..variant(&format!("{with} {name}"), &physics)
+        }
     }));
     variants
 }
@@ -156,6 +208,7 @@ pub fn compare_physics(
         });
         rows.push(PhysicsRow {
             name: variant.name.clone(),
+            is_unmeasured: variant.is_unmeasured,
             aim_past_centre_m: direct
                 .as_ref()
                 .ok()
@@ -165,7 +218,10 @@ pub fn compare_physics(
             same_shot,
         });
     }
+    let has_air = profile.physics().air.density_kg_m3 > 0.0;
+    let ncaa = rows.iter().position(|row| row.name == "ncaa");
     Ok(PhysicsComparison {
+        base: if has_air { 0 } else { ncaa.unwrap_or(0) },
         rows,
         same_shot: if own.is_some() {
             SameShot::OfProfile

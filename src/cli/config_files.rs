@@ -1,6 +1,6 @@
 //! Reads configuration files.
 
-use super::failure::{Failure, io_in_words};
+use super::failure::{Failure, io_in_words, refuse_missing};
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::config::{
@@ -10,6 +10,7 @@ use crate::dynamics::Integrator;
 use crate::model::{PRESETS, Physics, Preset};
 use crate::shooter::{NominalVariable, Profile, implausible_values, nominal_values_not_fixed};
 use crate::sweep::sweep_toml::{SourceTexts, SweepConfig, is_sweep, named_files, parse_sweep};
+use crate::units::suggestion;
 use std::io::Read;
 use std::path::Path;
 
@@ -23,6 +24,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     } else {
         MAX_FILE_BYTES
     };
+    refuse_missing(path)?;
     let shown = path.display();
     let refuse =
         |error: std::io::Error| Failure::usage(format!("{shown}: {}", io_in_words(&error)));
@@ -122,6 +124,8 @@ fn load(
         )));
     }
     let table = physics_text(name)?;
+    // By itself first, so that a message names the file and its own line.
+    parse_physics(&table, name)?;
     text.push_str(&format!("\n\n# --physics {name}\n{}\n", table.trim_end()));
     let profile = parse_profile(&text, &format!("{origin} with --physics {name}"))?;
     if !quiet && let Some(warning) = other_physics_warning(&own, &profile, name) {
@@ -179,8 +183,9 @@ fn physics_text(name: &str) -> Result<String, Failure> {
     if !path.exists() {
         let presets: Vec<_> = PRESETS.iter().map(|preset| preset.name).collect();
         return Err(Failure::usage(format!(
-            "--physics {name}: is neither a preset ({}) nor a file",
-            presets.join(", ")
+            "--physics {name}: is neither a preset ({}) nor a file{}",
+            presets.join(", "),
+            suggestion(name, presets.iter().copied())
         )));
     }
     read_text(path)

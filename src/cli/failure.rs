@@ -7,8 +7,10 @@ use crate::search_space::PlanError;
 use crate::shooter::{IdentityError, ProfileError};
 use crate::sweep::SweepFolderError;
 use crate::sweep::sqlite_results::StoreError;
+use crate::units::suggestion;
 use std::fmt::Display;
 use std::io::ErrorKind;
+use std::path::Path;
 
 /// Exit codes.
 pub(crate) mod code {
@@ -62,10 +64,39 @@ impl Failure {
     }
 }
 
+/// Refuses a path at which there is nothing, with a name in its folder that may have been meant.
+pub(crate) fn refuse_missing(path: &Path) -> Result<(), Failure> {
+    if path.exists() {
+        return Ok(());
+    }
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let entries = std::fs::read_dir(folder.unwrap_or(Path::new(".")));
+    let mut names: Vec<String> = entries
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let meant = match suggestion(&name, names.iter().map(String::as_str)) {
+        none if none.is_empty() => "; check its name".to_owned(),
+        meant => meant,
+    };
+    Err(Failure::usage(format!(
+        "{}: {NO_SUCH_FILE}{meant}",
+        path.display()
+    )))
+}
+
+const NO_SUCH_FILE: &str = "there is no such file or folder";
+
 /// What the system says of a file, without its number where words are enough.
 pub(crate) fn io_in_words(error: &std::io::Error) -> String {
     match error.kind() {
-        ErrorKind::NotFound => "there is no such file or folder".to_owned(),
+        ErrorKind::NotFound => NO_SUCH_FILE.to_owned(),
         _ => error.to_string(),
     }
 }

@@ -1,7 +1,7 @@
 //! The folder of a fit, read again.
 
 use super::config_files::{load_profile, read_text};
-use super::failure::{Failure, code};
+use super::failure::{Failure, code, refuse_missing};
 use super::measured_shots_flags::MeasuredShotsOptions;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
@@ -59,10 +59,11 @@ pub(crate) fn refuse_options_of_files(
 
 /// Reads the folder of a fit.
 pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
+    refuse_missing(folder)?;
     let json_path = folder.join("fit.json");
     if !json_path.exists() {
         return Err(Failure::usage(format!(
-            "{}: is no folder of `bankshot fit` (it has no fit.json; of several shooters, name the folder of one)",
+            "{}: holds no fit (it has no fit.json); name a folder that `bankshot fit` wrote",
             folder.display()
         )));
     }
@@ -163,12 +164,8 @@ pub(crate) fn probability_over_draws(
     Ok(sample.probabilities(&here, |_| values, |draw| draw.factor_at(0)))
 }
 
-/// P of a nominal shot over the draws of a fit, in words.
-pub(crate) fn text_over_draws(
-    folder: &Path,
-    profile: &Profile,
-    nominal: &Nominal,
-) -> Result<String, Failure> {
+/// Reads the draws of `--draws`, with a warning where they are those of another shooter.
+pub(crate) fn read_draws_of(folder: &Path, profile: &Profile) -> Result<FitFolder, Failure> {
     let fit = read(folder)?;
     let shooter = &fit.profiles[0].shooter().name;
     if *shooter != profile.shooter().name {
@@ -178,6 +175,15 @@ pub(crate) fn text_over_draws(
             profile.shooter().name
         ));
     }
+    Ok(fit)
+}
+
+/// P of a nominal shot over the draws of a fit, in words.
+pub(crate) fn text_over_draws(
+    (folder, fit): (&Path, &FitFolder),
+    profile: &Profile,
+    nominal: &Nominal,
+) -> Result<String, Failure> {
     let draws = &fit.posterior.draws;
     let p = probability_over_draws(draws, profile, nominal, SHOTS)?;
     Ok(format!(

@@ -1,7 +1,7 @@
 //! The options of commands that read measured shots.
 
 use super::config_files::{load_physics, read_text};
-use super::failure::Failure;
+use super::failure::{Failure, refuse_missing};
 use super::value_parsers::{PhysicsArg, UnitsArg};
 use crate::dynamics::Simulator;
 use crate::fitting::{
@@ -29,7 +29,8 @@ pub(crate) struct MeasuredShotsOptions {
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
     /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
-    /// 'made=Result'; may be repeated.
+    /// 'made=Result'. A minus before COLUMN turns its sign round and a number after UNIT is added:
+    /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
     /// Only the shots of this shooter, of a file with several.
@@ -166,6 +167,7 @@ impl MeasuredShotsOptions {
 
     /// Reads a file.
     pub(crate) fn read(&self, path: &Path) -> Result<MeasuredFile, Failure> {
+        refuse_missing(path)?;
         let refuse = |message: String| Failure::usage(format!("{}: {message}", path.display()));
         let table = Table::read(path).map_err(refuse)?;
         let columns =
@@ -254,8 +256,9 @@ impl MeasuredShotsOptions {
         if !path.exists() {
             let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
             return Err(Failure::usage(format!(
-                "--tracker {name}: is neither a tracker ({}) nor a file",
-                names.join(", ")
+                "--tracker {name}: is neither a tracker ({}) nor a file{}",
+                names.join(", "),
+                units::suggestion(name, names.iter().copied())
             )));
         }
         let noise = tracker_of_file(&read_text(path)?, source)

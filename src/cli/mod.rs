@@ -149,7 +149,12 @@ fn manual_page(command: Option<&str>) -> Result<String, Failure> {
             .find_subcommand(name)
             .filter(|_| name != "help")
             .cloned()
-            .ok_or_else(|| Failure::usage(format!("man {name}: there is no such command")))?,
+            .ok_or_else(|| {
+                let program = Arguments::command();
+                let names = program.get_subcommands().map(clap::Command::get_name);
+                let meant = crate::units::suggestion(name, names);
+                Failure::usage(format!("man {name}: there is no such command{meant}"))
+            })?,
     };
     let mut text = Vec::new();
     clap_mangen::Man::new(page)

@@ -1,7 +1,7 @@
 //! Writes plots as SVG and PNG.
 
 use super::failure::{Failure, code};
-use super::terminal::{print_answer, print_remark};
+use super::terminal::{print_prose, print_remark};
 use crate::output::atomic_file;
 use crate::plots::rasterise::to_png;
 use crate::plots::svg::Plot;
@@ -59,7 +59,7 @@ pub(crate) fn write_one(path: &Path, plot: &Plot) -> Result<(), Failure> {
 /// Prints the captions of the written plots.
 pub(crate) fn print_captions(folder: &Path, plots: &[Plot], quiet: bool) -> Result<u8, Failure> {
     for plot in plots {
-        print_answer(&format!("{}: {}\n", plot.name, plot.caption))?;
+        print_prose(&format!("{}: {}\n", plot.name, plot.caption))?;
     }
     if !quiet {
         print_remark(&format!(

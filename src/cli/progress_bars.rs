@@ -16,6 +16,19 @@ fn write_rate(state: &ProgressState, text: &mut dyn std::fmt::Write) {
     };
 }
 
+/// A bar as wide as the terminal leaves room for.
+const OF_ONE_STAGE: &str =
+    "{msg:12} [{wide_bar}] {percent:>3} % {human_pos}/{human_len} {per_sec} {eta} left";
+/// Stages that overlap count different things, so their sum has no rate.
+const OF_SEVERAL_STAGES: &str = "{msg:12} [{wide_bar}] {percent:>3} %";
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template)
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("per_sec", write_rate)
+        .progress_chars("=> ")
+}
+
 /// A bar, and how many stages it shows.
 struct SharedBar {
     bar: ProgressBar,
@@ -45,15 +58,8 @@ impl ProgressBars {
         } else {
             ProgressDrawTarget::stderr_with_hz(8)
         };
-        let style =
-            "{msg:12} [{bar:30}] {percent:>3} %  {human_pos}/{human_len}  {per_sec}  {eta} left";
         ProgressBar::with_draw_target(Some(total), target)
-            .with_style(
-                ProgressStyle::with_template(style)
-                    .unwrap_or_else(|_| ProgressStyle::default_bar())
-                    .with_key("per_sec", write_rate)
-                    .progress_chars("=> "),
-            )
+            .with_style(style(OF_ONE_STAGE))
             .with_message(stage.to_owned())
     }
 
@@ -73,6 +79,7 @@ impl Progress for ProgressBars {
             Some(shared) => {
                 shared.stages += 1;
                 shared.bar.inc_length(total);
+                shared.bar.set_style(style(OF_SEVERAL_STAGES));
                 shared.bar.set_message(stage.to_owned());
             }
             None => {

@@ -128,8 +128,44 @@ pub(crate) fn of_sweep(config: &SweepConfig) -> Result<PathBuf, Failure> {
     Ok(numbered(parent, &config.name, &config.hash()?))
 }
 
+/// What a command writes into a folder.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RunKind {
+    Best,
+    Fit,
+    Sweep,
+}
+
+impl RunKind {
+    const ALL: [Self; 3] = [Self::Sweep, Self::Fit, Self::Best];
+
+    /// The name of its command, and a file that it alone writes.
+    fn command_and_file(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Best => ("best", "curves.csv"),
+            Self::Fit => ("fit", "fit.json"),
+            Self::Sweep => ("sweep", "configuration.json"),
+        }
+    }
+}
+
+/// Refuses a folder that holds the results of another command: some files have the same names.
+pub(crate) fn refuse_other_results(folder: &Path, own: RunKind) -> Result<(), Failure> {
+    for kind in RunKind::ALL {
+        let (command, file) = kind.command_and_file();
+        if kind != own && folder.join(file).exists() {
+            return Err(Failure::usage(format!(
+                "{}: holds the results of `bankshot {command}`; name another folder",
+                folder.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Creates a folder and checks that it can be written to, before anything is computed.
-pub(crate) fn prepare(folder: &Path) -> Result<(), Failure> {
+pub(crate) fn prepare(folder: &Path, own: RunKind) -> Result<(), Failure> {
+    refuse_other_results(folder, own)?;
     let refuse = |error: std::io::Error| Failure::io(folder.display(), &error);
     std::fs::create_dir_all(folder).map_err(refuse)?;
     tempfile::tempfile_in(folder).map_err(refuse)?;

@@ -100,12 +100,34 @@ pub(crate) fn print_remark(text: &str) {
         return;
     }
     let mut out = io::stderr().lock();
+    let text = if out.is_terminal() {
+        wrapped_remark(&text)
+    } else {
+        text
+    };
     let text = if has_colours(&out) {
         coloured(&text)
     } else {
         text
     };
     let _ = writeln!(out, "{text}");
+}
+
+/// A remark in lines of at most 80 columns. Lines of a quoted file stay as they are: a mark below
+/// one points into it.
+fn wrapped_remark(text: &str) -> String {
+    let lines = text.lines().map(|line| {
+        let is_quoted = line
+            .find("-->")
+            .or_else(|| line.find('|'))
+            .is_some_and(|at| is_gutter(&line[..at]));
+        if is_quoted || line.chars().count() <= COLUMNS {
+            line.to_owned()
+        } else {
+            wrapped_line(line, column_of_text(line) + 2)
+        }
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Whether standard error is a terminal and the user has not asked for none
@@ -167,6 +189,17 @@ fn harmless(text: &str) -> String {
     safe
 }
 
+/// A time for people: `12 s`, `22 min`, `3.1 h`.
+pub(crate) fn time_in_words(seconds: f64) -> String {
+    if seconds < 90.0 {
+        format!("{seconds:.0} s")
+    } else if seconds < 90.0 * 60.0 {
+        format!("{:.0} min", seconds / 60.0)
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
 /// Prints an error on standard error.
 pub(crate) fn print_error(text: &str) {
     let prefix = if text.starts_with("error: ") {
@@ -201,6 +234,21 @@ mod tests {
         // No space is lost from a table.
         let table = format!("a{}b\n", " ".repeat(60));
         assert_eq!(wrapped(&table), table);
+    }
+
+    #[test]
+    fn contract_remarks_fit_a_terminal_and_quoted_lines_stay() {
+        let quoted = format!("3 | {}\n  | {}^^^^", "long = 1 ".repeat(12), " ".repeat(90));
+        let error = format!("error: {}\n{quoted}", "a word or two ".repeat(8).trim_end());
+        let text = wrapped_remark(&error);
+        assert!(text.ends_with(&quoted), "{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 4);
+        assert!(lines[..2].iter().all(|line| line.len() <= COLUMNS));
+        assert!(
+            lines[1].starts_with("  a ") || lines[1].starts_with("  w"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What to write as `--map` for a file whose columns have other names.
 
 use super::columns::{Columns, Quantity};
+use crate::fitting::CENTRE_DEPTH_M;
 
 /// Parts of the names that others give to a quantity or a label, in small letters without spaces.
 /// What is named first is found first.
@@ -19,7 +20,7 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
     ("aim", &["aim", "direction", "lateral", "horizontalangle"]),
     ("backspin", &["backspin", "spinrate", "spin"]),
     ("depth", &["depth"]),
-    ("left_right", &["leftright", "leftorright"]),
+    ("left_right", &["left", "right"]),
     ("court_angle", &["courtangle"]),
     ("distance", &["distance", "dist"]),
     ("made", &["made", "make", "result", "outcome", "goal"]),
@@ -71,8 +72,10 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     let mut taken: Vec<&str> = Vec::new();
     let mut maps = Vec::new();
     let mut has_no_unit = Vec::new();
+    let is_landing = columns.quantity(Quantity::Depth).is_some()
+        || unused.iter().any(|name| letters_of(name).contains("depth"));
     for name in &unused {
-        let Some(target) = target_of(name, &taken) else {
+        let Some(target) = target_of(name, is_landing, &taken) else {
             continue;
         };
         let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
@@ -87,7 +90,11 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
                 if unit.is_none() {
                     has_no_unit.push(quantity);
                 }
-                format!("--map '{target}={name}:{}'", unit.unwrap_or("UNIT"))
+                let (sign, offset) = zero_of(name, quantity, unit);
+                format!(
+                    "--map '{target}={sign}{name}:{}{offset}'",
+                    unit.unwrap_or("UNIT")
+                )
             }
         });
     }
@@ -99,7 +106,8 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         }
         return text;
     }
-    text += &format!("\nperhaps: {}", maps.join(" "));
+    // One a line, so that they can be copied whole.
+    text += &format!("\nperhaps:\n  {}", maps.join(" \\\n  "));
     for quantity in has_no_unit {
         text += &format!(
             "\n  UNIT of {}: {}",
@@ -128,13 +136,39 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     text
 }
 
-/// What a column may hold, if nothing else is taken as that.
-fn target_of(name: &str, taken: &[&str]) -> Option<&'static str> {
-    let letters: String = name
-        .to_lowercase()
-        .chars()
-        .filter(|c| c.is_alphanumeric())
-        .collect();
+/// A name in small letters, without spaces and signs.
+fn letters_of(name: &str) -> String {
+    let lower = name.to_lowercase();
+    lower.chars().filter(|c| c.is_alphanumeric()).collect()
+}
+
+/// The sign before a column and the number after its unit, where its name says that it counts from
+/// the centre of the ring, or to the left.
+fn zero_of(name: &str, quantity: Quantity, unit: Option<&str>) -> (&'static str, String) {
+    let letters = letters_of(name);
+    match quantity {
+        Quantity::Depth if letters.contains("centre") || letters.contains("center") => {
+            let size = quantity
+                .units()
+                .iter()
+                .find(|(name, _)| Some(*name) == unit);
+            let offset = size.map(|(_, size)| (1e4 * CENTRE_DEPTH_M / size).round() / 1e4);
+            (
+                "",
+                offset.map_or_else(String::new, |offset| format!("+{offset}")),
+            )
+        }
+        Quantity::LeftRight if letters.contains("left") && !letters.contains("right") => {
+            ("-", String::new())
+        }
+        _ => ("", String::new()),
+    }
+}
+
+/// What a column may hold, if nothing else is taken as that. In a file of landings an arc is that
+/// of the fall.
+fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static str> {
+    let letters = letters_of(name);
     let found = OTHER_NAMES
         .iter()
         .find(|(_, parts)| parts.iter().any(|part| letters.contains(part)))
@@ -144,7 +178,11 @@ fn target_of(name: &str, taken: &[&str]) -> Option<&'static str> {
                 .iter()
                 .find(|(target, _)| short.is_some_and(|(short, _)| short == target))
         })?;
-    (!taken.contains(&found.0)).then_some(found.0)
+    let target = match found.0 {
+        "pitch" if is_landing && letters.contains("arc") => "entry_angle",
+        target => target,
+    };
+    (!taken.contains(&target)).then_some(target)
 }
 
 /// The unit that the name of a column ends with or has in brackets; degrees for an angle without
@@ -160,10 +198,15 @@ fn unit_of(name: &str, quantity: Quantity) -> Option<&'static str> {
             unit.len() >= LONG_UNIT || !rest.ends_with(|c: char| c.is_alphabetic())
         })
     };
+    // In brackets a unit comes first, whatever follows it: `Depth (in, + = long)`.
+    let in_brackets = name.rsplit_once(['(', '[']).map(|(_, rest)| {
+        let end = rest.find([',', ';', ' ']).unwrap_or(rest.len());
+        rest[..end].trim()
+    });
     let found = OTHER_UNITS
         .into_iter()
         .filter(|(_, unit)| known.contains(unit))
-        .find(|(other, _)| ends_with(other))
+        .find(|(other, _)| in_brackets == Some(*other) || ends_with(other))
         .map(|(_, unit)| unit);
     found.or_else(|| known.contains(&"deg").then_some("deg"))
 }
@@ -204,7 +247,29 @@ mod tests {
     }
 
     #[test]
+    fn contract_maps_of_a_sensor_that_counts_from_the_centre() {
+        let header = [
+            "Shot No",
+            "Arc (deg)",
+            "Depth from rim centre (in, + = long)",
+            "Left (in)",
+        ];
+        let header = header.map(str::to_owned);
+        let text = map_proposal(&Columns::new(&header, &[]).unwrap());
+        for map in [
+            "--map 'entry_angle=Arc (deg):deg'",
+            "--map 'depth=Depth from rim centre (in, + = long):in+9'",
+            "--map 'left_right=-Left (in):in'",
+        ] {
+            assert!(text.contains(map), "{text}");
+            let map = map.trim_start_matches("--map '").trim_end_matches('\'');
+            assert!(Columns::new(&header, &[map.to_owned()]).is_ok(), "{map}");
+        }
+    }
+
+    #[test]
     fn contract_units_are_read_off_names() {
+        assert_eq!(unit_of("Depth (in, + = long)", Quantity::Depth), Some("in"));
         assert_eq!(unit_of("speed_fps", Quantity::Speed), Some("ft_s"));
         assert_eq!(unit_of("Depth (in)", Quantity::Depth), Some("in"));
         assert_eq!(unit_of("DepthInches", Quantity::Depth), Some("in"));

@@ -1,7 +1,7 @@
 //! The columns of a file of measured shots: what they mean, and their units.
 //!
 //! A column is `QUANTITY_UNIT`, such as `speed_ft_s`; columns of other names are named with
-//! `--map`.
+//! `--map`, which can also turn a sign round and move the zero.
 
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
 
@@ -149,6 +149,33 @@ pub struct QuantityColumn {
     pub index: usize,
     /// Suffix of its unit, and its size in SI units.
     pub unit: Unit,
+    /// What the quantity is in terms of the column's numbers.
+    pub zero: Zero,
+}
+
+/// The sign and the zero of a column: the quantity is `sign * number + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zero {
+    /// 1 or -1.
+    pub sign: f64,
+    /// In the column's unit.
+    pub offset: f64,
+}
+
+impl Zero {
+    /// Those of a column that holds the quantity itself.
+    pub const OWN: Self = Self {
+        sign: 1.0,
+        offset: 0.0,
+    };
+}
+
+impl QuantityColumn {
+    /// The quantity in SI units.
+    #[must_use]
+    pub fn value(&self, number: f64) -> f64 {
+        (self.zero.sign * number + self.zero.offset) * self.unit.1
+    }
 }
 
 /// The known columns of a file.
@@ -207,7 +234,9 @@ fn meaning(name: &str, unit: Option<&str>) -> Result<Option<Meaning>, String> {
 
 impl Columns {
     /// The columns of a header. `maps` are of the form `speed_ft_s=ReleaseSpeed:mph`: the quantity,
-    /// the name of the column, and its unit where that is not the suffix of the quantity.
+    /// the name of the column, and its unit where that is not the suffix of the quantity. A minus
+    /// before the name turns the sign round, a number after the unit is added:
+    /// `depth=-PastCentre:in+9`.
     ///
     /// # Errors
     /// A map that cannot be followed, or a quantity given twice.
@@ -229,7 +258,7 @@ impl Columns {
             }
             match meaning(name.trim(), None) {
                 Ok(Some(meaning)) => {
-                    if let Err(error) = columns.add(meaning, index) {
+                    if let Err(error) = columns.add(meaning, index, Zero::OWN) {
                         errors.push(error);
                     }
                 }
@@ -250,19 +279,37 @@ impl Columns {
         header: &[String],
         is_mapped: &mut [bool],
     ) -> Result<(), String> {
-        let (target, source) = map
-            .split_once('=')
-            .ok_or("must be QUANTITY=COLUMN or QUANTITY=COLUMN:UNIT")?;
+        let (target, source) = map.split_once('=').ok_or(
+            "must be QUANTITY=COLUMN, QUANTITY=COLUMN:UNIT or QUANTITY=-COLUMN:UNIT+NUMBER",
+        )?;
         let find = |name: &str| {
             header
                 .iter()
                 .position(|column| column.trim() == name.trim())
         };
-        // A column's own name may have a colon.
+        let mut zero = Zero::OWN;
+        // A column's own name may have a colon, a plus or a minus.
         let (index, unit) = match find(source) {
             Some(index) => (index, None),
             None => {
-                let (name, unit) = source.rsplit_once(':').unwrap_or((source, ""));
+                let (name, mut unit) = source.rsplit_once(':').unwrap_or((source, ""));
+                if let Some(at) = unit.find(['+', '-']) {
+                    let number = unit[at..].trim();
+                    let is_plausible = |offset: &f64| offset.is_finite() && offset.abs() < 1e9;
+                    zero.offset =
+                        number.parse().ok().filter(is_plausible).ok_or_else(|| {
+                            format!("{number} is not a number to add, such as +9")
+                        })?;
+                    unit = &unit[..at];
+                }
+                let turned = name
+                    .trim()
+                    .strip_prefix('-')
+                    .filter(|_| find(name).is_none());
+                if turned.is_some() {
+                    zero.sign = -1.0;
+                }
+                let name = turned.unwrap_or(name);
                 let index = find(name).ok_or_else(|| {
                     format!(
                         "there is no column {}; the file has {}",
@@ -270,7 +317,8 @@ impl Columns {
                         header.join(", ")
                     )
                 })?;
-                (index, Some(unit.trim()))
+                let unit = unit.trim();
+                (index, Some(unit).filter(|unit| !unit.is_empty()))
             }
         };
         let meaning = meaning(target.trim(), unit)?.ok_or_else(|| {
@@ -293,11 +341,14 @@ impl Columns {
             )
         })?;
         is_mapped[index] = true;
-        self.add(meaning, index)
+        self.add(meaning, index, zero)
     }
 
-    fn add(&mut self, meaning: Meaning, index: usize) -> Result<(), String> {
+    fn add(&mut self, meaning: Meaning, index: usize, zero: Zero) -> Result<(), String> {
         match meaning {
+            Meaning::Label(_) if zero != Zero::OWN => {
+                return Err("a text has no sign and no number to add".to_owned());
+            }
             Meaning::Label(label) => self.labels.push((label, index)),
             Meaning::Quantity(quantity, unit) => {
                 if let Some(other) = self.quantity(quantity) {
@@ -309,7 +360,7 @@ impl Columns {
                     ));
                 }
                 self.quantities
-                    .push((quantity, QuantityColumn { index, unit }));
+                    .push((quantity, QuantityColumn { index, unit, zero }));
             }
         }
         Ok(())
@@ -405,6 +456,25 @@ mod tests {
     }
 
     #[test]
+    fn contract_a_map_turns_the_sign_and_moves_the_zero() {
+        let names = header(&["Past Centre", "-odd", "Left"]);
+        let maps = [
+            "depth=Past Centre:in+9",
+            "left_right_in=-Left",
+            "aim=-odd:deg",
+        ];
+        let columns = Columns::new(&names, &maps.map(str::to_owned)).unwrap();
+        let value = |quantity, number| columns.quantity(quantity).unwrap().value(number);
+        assert_eq!(value(Quantity::Depth, 2.0), 11.0 * INCH_M);
+        assert_eq!(value(Quantity::LeftRight, 2.0), -2.0 * INCH_M);
+        // The column's own name has the minus.
+        assert_eq!(value(Quantity::Aim, 2.0), 2.0 * DEGREE_RAD);
+        let from_the_back = Columns::new(&names, &["depth=-Left:cm+45.72".to_owned()]).unwrap();
+        let depth = from_the_back.quantity(Quantity::Depth).unwrap();
+        assert!((depth.value(10.0) - 0.3572).abs() < 1e-12);
+    }
+
+    #[test]
     fn contract_faulty_maps_and_doubled_columns_are_refused() {
         let names = header(&["a", "speed_ft_s", "speed_m_s"]);
         let refused = |maps: &[&str], part: &str| {
@@ -418,6 +488,8 @@ mod tests {
         refused(&["pitch_deg=b"], "there is no column b");
         refused(&["pitch_deg=a:mph"], "not one of its units (deg, rad)");
         refused(&["pitch_deg"], "must be QUANTITY=COLUMN");
+        refused(&["pitch=a:deg+x"], "+x is not a number to add");
+        refused(&["made=-a"], "a text has no sign");
         assert_eq!(parse_made("Missed"), Ok(Some(false)));
         assert_eq!(parse_made(" "), Ok(None));
         assert!(parse_made("2").is_err());

@@ -2,7 +2,8 @@
 //!
 //! A single absurd row is kept out. Where the middle of a whole column is absurd, the column is.
 
-use super::columns::{Columns, Label, Quantity, parse_made};
+use super::columns::{Columns, Label, Quantity, Zero, parse_made};
+use crate::fitting::CENTRE_DEPTH_M;
 use crate::units::{DEGREE_RAD, INCH_M};
 
 /// A quantity whose median over many shots lies between two values, SI units, whatever the shooter.
@@ -72,6 +73,12 @@ pub(super) fn implausible_column(
             .iter()
             .find(|(other, size)| *other != unit && is_usual(number * size));
         let fix = likely.map_or_else(String::new, |(other, _)| {
+            if column.zero != Zero::OWN {
+                return format!(
+                    " (with its sign and the number added: {:+})",
+                    column.zero.offset
+                );
+            }
             format!(
                 ". The numbers look like {other}: --map '{}={name}:{other}'",
                 usual.quantity.name()
@@ -92,7 +99,8 @@ pub(super) fn implausible_column(
 fn misplaced_depth(columns: &Columns, rows: &[(u64, &[String])]) -> Option<String> {
     let depth = median_of(columns, rows, Quantity::Depth)?;
     let left_right = median_of(columns, rows, Quantity::LeftRight)?;
-    let name = columns.name(columns.quantity(Quantity::Depth)?.index);
+    let column = columns.quantity(Quantity::Depth)?;
+    let name = columns.name(column.index);
     let other = columns.name(columns.quantity(Quantity::LeftRight)?.index);
     if left_right.abs() > 5.0 * INCH_M && depth.abs() < SHORT_DEPTH_M {
         return Some(format!(
@@ -111,9 +119,11 @@ fn misplaced_depth(columns: &Columns, rows: &[(u64, &[String])]) -> Option<Strin
     (depth < SHORT_DEPTH_M && makes_many).then(|| {
         format!(
             "{name}: the median is {:.1} in, at the front of the ring, but {makes} of {} shots went in. Depth counts from the front \
-             of the ring; if yours counts from its centre, add 9 in",
+             of the ring; if yours counts from its centre: --map 'depth={name}:{}+{}'",
             depth / INCH_M,
-            made.len()
+            made.len(),
+            column.unit.0,
+            (1e4 * CENTRE_DEPTH_M / column.unit.1).round() / 1e4
         )
     })
 }
@@ -127,5 +137,5 @@ fn median_of(columns: &Columns, rows: &[(u64, &[String])], quantity: Quantity) -
         .filter(|number| number.is_finite());
     let mut numbers: Vec<f64> = numbers.collect();
     numbers.sort_by(f64::total_cmp);
-    (numbers.len() >= LEAST_SHOTS).then(|| numbers[numbers.len() / 2] * column.unit.1)
+    (numbers.len() >= LEAST_SHOTS).then(|| column.value(numbers[numbers.len() / 2]))
 }

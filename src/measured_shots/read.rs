@@ -1,7 +1,7 @@
 //! Measured shots of a file, by shooter.
 
 use super::column_map_proposal::map_proposal;
-use super::columns::{Columns, Label, Quantity, QuantityColumn, parse_made};
+use super::columns::{Columns, Label, Quantity, parse_made};
 use super::court_frame::CourtFrame;
 use super::implausible_columns::implausible_column;
 use super::table::Table;
@@ -345,17 +345,17 @@ impl Reader<'_> {
 
     /// A quantity of a row in SI units; `None` where there is no column.
     fn value(&self, cells: &[String], quantity: Quantity) -> Result<Option<f64>, String> {
-        let Some(QuantityColumn { index, unit }) = self.columns.quantity(quantity) else {
+        let Some(column) = self.columns.quantity(quantity) else {
             return Ok(None);
         };
-        let name = self.columns.name(index);
-        let cell = cells.get(index).map_or("", String::as_str);
+        let name = self.columns.name(column.index);
+        let cell = cells.get(column.index).map_or("", String::as_str);
         if cell.is_empty() {
             return Err(format!("{name}: {IS_MISSING}"));
         }
         let shown: String = cell.chars().take(30).collect();
         match cell.parse::<f64>() {
-            Ok(value) if value.is_finite() && value.abs() < 1e9 => Ok(Some(value * unit.1)),
+            Ok(value) if value.is_finite() && value.abs() < 1e9 => Ok(Some(column.value(value))),
             Ok(_) => Err(format!("{name}: \"{shown}\" is not a finite number")),
             Err(_) => Err(format!("{name}: \"{shown}\" is not a number")),
         }

@@ -81,6 +81,15 @@ impl Table {
         if table.header.is_empty() {
             return Err("is empty".to_owned());
         }
+        let most_cells = table.rows.iter().map(|(_, cells)| cells.len()).max();
+        if let Some(most) = most_cells
+            && most < table.header.len()
+        {
+            return Err(format!(
+                "its first line has {} names, and no other line has more than {most} values; put a name with a comma in quotes",
+                table.header.len()
+            ));
+        }
         let is_split_at = |separator: char| {
             let parts = table
                 .header

@@ -228,7 +228,7 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
         format!("{}, one at a time", windows_text(sensitivity, units)),
     );
     if let Some(difference) = bank_minus_direct(best) {
-        line("bank or direct", comparison_text(&difference));
+        line("compared", comparison_text(&difference));
     }
     text
 }

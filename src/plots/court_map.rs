@@ -67,6 +67,8 @@ pub struct CourtMap<'a> {
     pub units: UnitSystem,
     /// Distance between neighbouring places, m; `None` if the places are not on a square grid.
     pub step_m: Option<f64>,
+    /// Least distance between two places, m; 0 if there are very many.
+    pub least_gap_m: f64,
     /// Greatest x of a place, m.
     pub far_x_m: f64,
     /// What surrounds the court.
@@ -145,7 +147,24 @@ impl CourtMap<'_> {
             svg.rect(corner, (side + 0.2, side + 0.2), &style);
         } else {
             let style = format!("fill=\"{colour}\" stroke=\"{INK}\" stroke-width=\"0.5\"");
-            svg.circle(at, 6.0, &style);
+            svg.circle(at, self.circle_radius(axes), &style);
+        }
+    }
+
+    /// Radius of the circle of a place that is on no grid, px. On a poster a number is read in it,
+    /// from afar, so there it is as large as its neighbours allow.
+    fn circle_radius(&self, axes: &Axes) -> f64 {
+        /// Radius on a plot.
+        const SMALL: f64 = 6.0;
+        /// Greatest radius on a poster.
+        const LARGE: f64 = 17.0;
+        let (_, unit_m) = self.units.length();
+        match self.style {
+            MapStyle::Plot => SMALL,
+            MapStyle::Poster => {
+                let gap = axes.pixels_of_length(self.least_gap_m / unit_m);
+                (0.42 * gap).clamp(SMALL, LARGE)
+            }
         }
     }
 
@@ -161,9 +180,10 @@ impl CourtMap<'_> {
         const NARROWEST: f64 = 12.0;
         let axes = self.axes(corner);
         let (_, unit_m) = self.units.length();
-        let side = self
-            .step_m
-            .map_or(NARROWEST, |step_m| axes.pixels_of_length(step_m / unit_m));
+        let side = match self.step_m {
+            Some(step_m) => axes.pixels_of_length(step_m / unit_m),
+            None => (2.0 * self.circle_radius(&axes)).max(NARROWEST),
+        };
         if side < NARROWEST {
             return;
         }
@@ -185,7 +205,8 @@ impl CourtMap<'_> {
         let Some(step_m) = self.step_m else {
             let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\"");
             for &(x_m, y_m) in area {
-                svg.circle(axes.pixel((y_m / unit_m, x_m / unit_m)), 9.0, &style);
+                let radius = self.circle_radius(&axes) + 3.0;
+                svg.circle(axes.pixel((y_m / unit_m, x_m / unit_m)), radius, &style);
             }
             return;
         };

@@ -35,6 +35,10 @@ impl PlaceResults {
     }
 }
 
+/// With more places than this their circles are small, however far apart they are: all pairs would
+/// take too long.
+const FEW_PLACES: usize = 2000;
+
 /// The results of a sweep by place.
 pub struct SweepResults<'a> {
     config: &'a SweepConfig,
@@ -130,10 +134,22 @@ impl<'a> SweepResults<'a> {
     pub(super) fn court_map(&self) -> CourtMap<'_> {
         let settings = &self.config.settings;
         let places = self.places.iter();
+        let at = |results: &PlaceResults| (results.place.x_m, results.place.y_m);
+        let gap = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).hypot(a.1 - b.1);
+        let gaps = self.places.iter().enumerate().flat_map(|(i, a)| {
+            let before = self.places[..i].iter();
+            before.map(move |b| gap(at(a), at(b)))
+        });
+        let least_gap_m = if self.places.len() > FEW_PLACES {
+            0.0
+        } else {
+            gaps.fold(f64::INFINITY, f64::min)
+        };
         CourtMap {
             court: &self.court,
             physics: &settings.physics,
             units: settings.output.units,
+            least_gap_m,
             step_m: match self.config.region {
                 Region::HalfCourt { step_m, .. } | Region::Rectangle { step_m, .. } => Some(step_m),
                 _ => None,

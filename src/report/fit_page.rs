@@ -46,7 +46,13 @@ pub fn fit_page(
             height_above_hoop_m: profile.height_above_hoop_m(),
             units,
         },
-        tables: vec![parameter_table(fit, source.kind, units)],
+        tables: [
+            Some(parameter_table(fit, source.kind, units)),
+            prediction_table(fit),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
         plots,
         footer: format!(
             "Measured in {}; tracker {} (its noise is {}), physics {}. bankshot {} ({}), profile {}.",
@@ -87,6 +93,44 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         source.kind,
         warnings.concat()
     )
+}
+
+/// How well the chances of the measured shots foretell which went in; `None` without results.
+fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
+    let makes = &fit.makes;
+    if makes.labelled == 0 {
+        return None;
+    }
+    // A forecast that says the share of makes for every shot.
+    let of_constant = makes.share.share * (1.0 - makes.share.share);
+    let bins = makes.bins.iter().map(|bin| {
+        let observed = &bin.observed;
+        let cells = [
+            format_cell(bin.predicted, 3),
+            format_cell(observed.share, 3),
+            format_cell(observed.low, 3),
+            format_cell(observed.high, 3),
+            bin.shots.to_string(),
+        ];
+        (None, cells.to_vec())
+    });
+    Some(HtmlTable {
+        caption: format!(
+            "Predicted against observed. The chance is that of each ball as it was measured, so this tests the physics and the sensor, not \
+             the next shot. Brier score {:.3} (0 is perfect; the share of makes for every shot has {of_constant:.3}), log loss {:.3}, \
+             area under the curve {}",
+            makes.brier,
+            makes.log_loss,
+            makes
+                .area_under_curve
+                .map_or_else(|| "-".to_owned(), |auc| format!("{auc:.2}")),
+        ),
+        columns: ["predicted", "went in", "2.5 %", "97.5 %", "shots"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: bins.collect(),
+        is_detail: false,
+    })
 }
 
 fn parameter_table(fit: &ShooterFit, kind: &str, units: UnitSystem) -> HtmlTable {

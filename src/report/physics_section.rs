@@ -36,7 +36,8 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
     };
     HtmlTable {
         caption: format!(
-            "How much rests on the physics. Same shot: {}, released the same way everywhere",
+            "How much rests on the physics. {} Same shot: {}, released the same way everywhere",
+            comparison.in_words().unwrap_or_default(),
             comparison.same_shot.in_words()
         ),
         columns: columns.to_vec(),

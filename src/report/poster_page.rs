@@ -19,6 +19,7 @@ pub fn poster_page(name: &str, poster: &PlayerPoster) -> String {
          body {{ font: 20px/1.4 sans-serif; max-width: 18cm; margin: 0 auto; padding: 8px; color: #222 }}\n\
          svg {{ width: 100%; height: auto; max-height: 20cm }}\n\
          p {{ margin: 0.4em 0 }}\n\
+         @media print {{ body {{ font-size: 25px }} }}\n\
          </style>\n{}\n{list}</html>\n",
         poster.map_svg
     )

@@ -52,7 +52,7 @@ fn contract_five_questions_make_a_player() {
         child.wait_with_output().unwrap()
     };
     // A wrong answer is asked again.
-    let output = ask("Ann \"Bee\" \\ Lee\n12,5 ft\n12.5 ft\n\n6'4\"\nelite\n");
+    let output = ask("Ann \"Bee\" \\ Lee\n6'4\"\n12,5 ft\n12.5 ft\n\nelite\n");
     assert!(output.status.success(), "{output:?}");
     let remarks = String::from_utf8(output.stderr).unwrap();
     assert!(remarks.contains("has a decimal comma; write 12.5 ft"));

@@ -45,6 +45,9 @@ pub const MOST_NODES: usize = 2000;
 const MARGIN: f64 = 0.75;
 /// Most times that a step between two nodes is halved.
 pub const MOST_HALVINGS: usize = 4;
+/// Most times that a cell is split where the best shot may jump. The branches of both sides do not
+/// always reach its middle, so one split does not find every jump.
+const MOST_SPLITS: usize = 3;
 
 /// The best shots of places; `None` where there is no clean one.
 #[derive(Default)]
@@ -141,18 +144,23 @@ impl ShotTable {
             (table.distances_m, table.angles_rad) = (distances_m, angles_rad);
         }
         if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
-            let costly = |cell: &Cell| {
-                checks
-                    .of(cell)
-                    .any(|check| check.worse() > MARGIN * request.max_loss)
-            };
-            let costly: Vec<bool> = table.cells().iter().map(costly).collect();
-            table.split_at_jumps(&profile, &costly, request.max_loss, &shots)?;
-            let cells = table.cells();
-            let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-            shots.find((&profile, request.kind), middles.iter(), progress)?;
-            checks.find((&profile, &table), &cells, &shots, progress)?;
-            table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
+            for _ in 0..MOST_SPLITS {
+                let costly = |cell: &Cell| {
+                    checks
+                        .of(cell)
+                        .any(|check| check.worse() > MARGIN * request.max_loss)
+                };
+                let costly: Vec<bool> = table.cells().iter().map(costly).collect();
+                if !costly.contains(&true) {
+                    break;
+                }
+                table.split_at_jumps(&profile, &costly, request.max_loss, &shots)?;
+                let cells = table.cells();
+                let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
+                shots.find((&profile, request.kind), middles.iter(), progress)?;
+                checks.find((&profile, &table), &cells, &shots, progress)?;
+                table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
+            }
         }
         let added = |all: &[f64], asked: &[f64]| {
             let is_new = |value: &&f64| !asked.contains(value);
@@ -223,9 +231,12 @@ impl ShotTable {
         max_loss: f64,
         shots: &ShotsOfPlaces,
     ) -> Result<(), ShotTableError> {
+        // A jump of an earlier split has two nodes and no cell between them.
+        let is_cell = |&node: &usize| self.distances_m[node] < self.distances_m[node + 1];
+        let nodes: Vec<usize> = (0..self.distances_m.len() - 1).filter(is_cell).collect();
         let cells = self.cells();
-        for (index, cell) in cells.iter().enumerate().rev() {
-            if !costly[index] || self.distances_m.len() + 2 > MOST_NODES {
+        for ((cell, &is_costly), &index) in cells.iter().zip(costly).zip(&nodes).rev() {
+            if !is_costly || self.distances_m.len() + 2 > MOST_NODES {
                 continue;
             }
             let middle = cell.middle();

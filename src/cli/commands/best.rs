@@ -5,7 +5,7 @@ use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder;
+use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::best_shot_json::best_shots_json;
@@ -57,11 +57,16 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let units = profile.output().units;
     // A plan that is refused is refused before anything is written.
     TablePlan::for_search(&profile)?;
+    // A folder that is no fit is refused before the search.
+    let read = |folder: &PathBuf| -> Result<_, Failure> {
+        Ok((folder.clone(), fit_folder::read_draws_of(folder, &profile)?))
+    };
+    let draws = options.draws.as_ref().map(read).transpose()?;
     let folder = match &options.out {
         Some(folder) => folder.clone(),
         None => run_folder::of_profile(&profile)?,
     };
-    run_folder::prepare(&folder)?;
+    run_folder::prepare(&folder, RunKind::Best)?;
     let best = best_shot::find(&profile, &ProgressBars::new(quiet))?;
     run_folder::write_best_shots(&folder, text, &profile, &best)?;
     if options.out.is_none() {
@@ -81,10 +86,10 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         }
         text
     })?;
-    if let Some(fit) = &options.draws {
+    if let Some((folder, fit)) = &draws {
         for (kind, shot) in best.by_kind() {
             if let Ok(shot) = shot {
-                let text = fit_folder::text_over_draws(fit, &profile, &shot.nominal)?;
+                let text = fit_folder::text_over_draws((folder, fit), &profile, &shot.nominal)?;
                 print_prose(&format!("{}, {text}", kind.name()))?;
             }
         }

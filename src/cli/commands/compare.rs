@@ -7,7 +7,7 @@ use crate::cli::config_files::{load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder::{self, AGAINST_FOLDER, SWEEP_LINK};
+use crate::cli::run_folder::{self, AGAINST_FOLDER, RunKind, SWEEP_LINK};
 use crate::cli::terminal::{print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
@@ -189,7 +189,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     let against_folder = folder.join(AGAINST_FOLDER);
     run_folder::remove_best_shots(&against_folder);
     if let Some((other_text, other, best)) = against {
-        run_folder::prepare(&against_folder)?;
+        run_folder::prepare(&against_folder, RunKind::Best)?;
         run_folder::write_best_shots(&against_folder, other_text, &other, &best)?;
     }
     print_prose(&text)?;

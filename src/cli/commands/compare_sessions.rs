@@ -26,7 +26,8 @@ use std::path::{Path, PathBuf};
 Each session is a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit.
 
 Examples:
-  bankshot compare-sessions september.csv march.csv --distance '13.75 ft' --release-height '7 ft'
+  bankshot compare-sessions september.csv march.csv --distance '13.75 ft' \\
+    --release-height '7 ft'
   bankshot compare-sessions results/september-fit results/march-fit
   bankshot compare-sessions season.csv            (two values in its column session)")]
 pub(crate) struct CompareSessionsOptions {
@@ -156,9 +157,13 @@ fn fit_by_session(file: &MeasuredFile) -> Result<[Session; 2], Failure> {
     }
     let [first, second] = names[..] else {
         return Err(Failure::usage(format!(
-            "{place}: its column session has {} different value{}; two are compared. Or give two files",
-            names.len(),
-            if names.len() == 1 { "" } else { "s" }
+            "{place}: {}; give a file with two sessions, or two files",
+            match &names[..] {
+                [] => "has no shots".to_owned(),
+                [one] if one.is_empty() => "has no column session".to_owned(),
+                [one] => format!("has one session, {one}"),
+                more => format!("has {} sessions", more.len()),
+            }
         )));
     };
     let fit = |session: &String| -> Result<Session, Failure> {

@@ -16,6 +16,7 @@ use crate::fitting::{
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
 use crate::shooter::{Nominal, Profile, ShotKind};
+use crate::units::suggestion;
 use crate::units::{DEGREE_RAD, REV_RAD};
 use clap::Args;
 use serde_json::{Value, json};
@@ -28,7 +29,8 @@ shot comes from the flags, then from the profile's [nominal] table, else it is t
 
 Examples:
   bankshot design results/gym-sensor-fit --tracker noah --target 3
-  bankshot design configs/free_throw.toml --speed '24.2 ft/s' --pitch '51 deg' --shots 25,50,100,200 --tracker noah")]
+  bankshot design configs/free_throw.toml --speed '24.2 ft/s' \\
+    --pitch '51 deg' --shots 25,50,100,200 --tracker noah")]
 pub(crate) struct DesignOptions {
     /// A profile like that of the shooter, or the folder of a fit.
     pub(crate) profile: PathBuf,
@@ -53,7 +55,19 @@ pub(crate) struct DesignOptions {
     pub(crate) repetitions: u64,
 }
 
+fn tracker_named(name: &str) -> Result<Tracker, Failure> {
+    Tracker::named(name).ok_or_else(|| {
+        let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
+        let meant = suggestion(name, names.iter().copied());
+        Failure::usage(format!(
+            "--tracker {name}: must be one of {}{meant}",
+            names.join(", ")
+        ))
+    })
+}
+
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
+    let named = options.tracker.as_deref().map(tracker_named).transpose()?;
     let (profile, nominal, own_tracker) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let usual = nominal_of(&fit.posterior.typical().means[0]);
@@ -67,14 +81,10 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         };
         (profile, nominal, "lab".to_owned())
     };
-    let tracker_name = options.tracker.as_ref().unwrap_or(&own_tracker);
-    let tracker = Tracker::named(tracker_name).ok_or_else(|| {
-        let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
-        Failure::usage(format!(
-            "--tracker {tracker_name}: must be one of {}",
-            names.join(", ")
-        ))
-    })?;
+    let tracker = match named {
+        Some(tracker) => tracker,
+        None => tracker_named(&own_tracker)?,
+    };
     let noise = noise(&tracker, &profile, &nominal)?;
     let bars = ProgressBars::new(quiet);
     let simulate = |sizes: &[usize]| {
@@ -137,7 +147,11 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             100.0 * row.counting_error
         );
     }
-    text += &format!("\n{}\n", shots_for_a_fall(&rows));
+    text += &format!(
+        "\n{}\n{}\n",
+        shots_for_a_fall(&rows),
+        shots_for_a_change(&rows)
+    );
     if let Some((points, shots)) = needed {
         text += &match shots {
             MOST_SHOTS.. => {
@@ -194,10 +208,23 @@ const TWO_SIDED_95: f64 = 1.96;
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
 
+/// The sum of the normal quantiles of 97.5 % and 80 %.
+const POWER: f64 = TWO_SIDED_95 + 0.8416;
+
+/// How many shots show that P changed from one session to the next.
+fn shots_for_a_change(rows: &[DesignRow]) -> String {
+    let shots = [5.0, 10.0].map(|points| {
+        let error = points / 100.0 / (POWER * std::f64::consts::SQRT_2);
+        two_digits(shots_for(rows, error) as f64)
+    });
+    format!(
+        "To see P change by 5 or 10 points takes about {} or {} shots in each.",
+        shots[0], shots[1]
+    )
+}
+
 /// How many shots show that a scatter fell from one session to the next.
 fn shots_for_a_fall(rows: &[DesignRow]) -> String {
-    /// The sum of the normal quantiles of 97.5 % and 80 %.
-    const POWER: f64 = 1.96 + 0.8416;
     // The relative error of a standard deviation falls with the square root of the shots.
     let of_one_shot = rows.last().map_or(0.0, |row| {
         let mean = row.sd_errors.iter().sum::<f64>() / row.sd_errors.len() as f64;

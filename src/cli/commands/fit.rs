@@ -4,7 +4,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder;
+use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
     ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
@@ -42,8 +42,10 @@ shooters, one folder for each and shooters.csv.
 
 Examples:
   bankshot fit docs/data/gym_sensor.csv
-  bankshot fit shots.csv --map 'speed=ReleaseSpeed:mph' --distance '13.75 ft' --release-height '7 ft'
-  bankshot fit tracking.csv --tracker optical_25hz --frame court_94x50 --free drag_coefficient")]
+  bankshot fit shots.csv --map 'speed=ReleaseSpeed:mph' \\
+    --distance '13.75 ft' --release-height '7 ft'
+  bankshot fit tracking.csv --tracker optical_25hz --frame court_94x50 \\
+    --free drag_coefficient")]
 pub(crate) struct FitOptions {
     /// The measured shots: CSV or Parquet.
     pub(crate) shots: PathBuf,
@@ -353,7 +355,7 @@ fn write(
     fit: &ShooterFit,
     options: &FitOptions,
 ) -> Result<(), Failure> {
-    run_folder::prepare(folder)?;
+    run_folder::prepare(folder, RunKind::Fit)?;
     let units = options.measured.unit_system();
     let source = file.source(shots);
     let contents: [(&str, Vec<u8>); 4] = [
@@ -459,7 +461,8 @@ fn free_parameter(
                 fit.typical.means[0][3] / REV_RAD
             ),
             format!(
-                "This fit did not use it. To use it, fit again with --backspin '{best:.2} rev/s'.\n"
+                "This fit did not use it. To use it, fit again with --backspin '{best:.2} rev/s'; \
+                 that takes the value as exact.\n"
             ),
         ),
         UnseenParameter::HoopRestitution => (

@@ -165,6 +165,12 @@ const QUESTIONS: [Question; 4] = [
         dimension: None,
     },
     Question {
+        words: "How high is the ball as it leaves the hand",
+        usual: "6 ft 11 in",
+        line: "release_height = ",
+        dimension: Some(Dimension::Length),
+    },
+    Question {
         words: "How far from the hoop",
         usual: "13 ft 9 in",
         line: "distance = ",
@@ -175,12 +181,6 @@ const QUESTIONS: [Question; 4] = [
         usual: "0 deg",
         line: "angle = ",
         dimension: Some(Dimension::Angle),
-    },
-    Question {
-        words: "How high is the ball as it leaves the hand",
-        usual: "6 ft 11 in",
-        line: "release_height = ",
-        dimension: Some(Dimension::Length),
     },
 ];
 

@@ -3,7 +3,7 @@
 use super::plan_sweep_time_and_memory;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::Failure;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::BatchWorkspace;
 use crate::math::evenly_spaced::CellAxis;
@@ -69,7 +69,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
             "remark: shots outside the search range were made; raise speed_max, or report it",
         );
     }
-    print_answer(&text(&profile, &plan, &forecast))
+    print_prose(&text(&profile, &plan, &forecast))
 }
 
 fn forecast(profile: &Profile, plan: &TablePlan, wide_sample: u64) -> Forecast {

@@ -3,7 +3,7 @@
 use crate::cli::config_files::load_sweep;
 use crate::cli::failure::Failure;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::{print_answer, time_in_words};
 use crate::output::json_object::{number, object, provenance};
 use crate::probability::MAX_BATCH_BYTES;
 use crate::search_space::{PlanError, TablePlan};
@@ -58,8 +58,8 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
     }
     let time = seconds.map_or("unknown".to_owned(), |seconds| {
         format!(
-            "about {seconds:.0} s ({:.2} h) on {threads} threads, from {calibrated} places",
-            seconds / 3600.0
+            "about {} on {threads} threads, from {calibrated} places",
+            time_in_words(seconds)
         )
     });
     let mib = |bytes: f64| bytes / f64::from(1 << 20);

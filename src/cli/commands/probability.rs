@@ -53,8 +53,10 @@ The shot comes from the flags, then from the profile's [nominal] table. The erro
 deviations; [shooter.correlation] gives their correlations.
 
 Examples:
-  bankshot probability configs/free_throw.toml --speed '23.6 ft/s' --pitch '53.5 deg' --backspin '3 rev/s'
-  bankshot probability configs/errors_in_all_nine_variables.toml --target 0.0003 --json
+  bankshot probability configs/free_throw.toml --speed '23.6 ft/s' \\
+    --pitch '53.5 deg' --backspin '3 rev/s'
+  bankshot probability configs/errors_in_all_nine_variables.toml \\
+    --target 0.0003 --json
   bankshot probability configs/errors_in_all_nine_variables.toml --replay 1:2049")]
 pub(crate) struct ProbabilityOptions {
     /// The shooter's profile.
@@ -111,6 +113,10 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
     let nominal = options.nominal.resolve(&profile)?;
+    let read = |folder: &PathBuf| -> Result<_, Failure> {
+        Ok((folder.clone(), fit_folder::read_draws_of(folder, &profile)?))
+    };
+    let draws = options.draws.as_ref().map(read).transpose()?;
     if let Some((seed, index)) = options.replay {
         let release = replayed(options.method, &profile, &nominal, seed, index)?;
         return trace::show(&profile, &release, options.json);
@@ -144,8 +150,12 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         }
         print_prose(&text)?;
     }
-    if let Some(folder) = &options.draws {
-        print_prose(&fit_folder::text_over_draws(folder, &profile, &nominal)?)?;
+    if let Some((folder, fit)) = &draws {
+        print_prose(&fit_folder::text_over_draws(
+            (folder, fit),
+            &profile,
+            &nominal,
+        )?)?;
     }
     if estimate.standard_error <= precision.target {
         return Ok(code::DONE);

@@ -3,7 +3,7 @@
 use super::sweep_summary;
 use crate::best_shot::{compare_physics, physics_variants};
 use crate::cli::config_files::{load_profile, read_text};
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
@@ -43,6 +43,7 @@ const FIT_FILE: &str = "fit.json";
 
 pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = &options.folder;
+    refuse_missing(folder)?;
     let is_best_run = !folder.join(FIT_FILE).exists() && sweep_of(folder).is_none();
     if options.with_physics && !is_best_run {
         return Err(Failure::usage(format!(

@@ -19,7 +19,7 @@ use csv::{ByteRecord, Writer};
 use parquet::basic::Type as Physical;
 use rayon::prelude::*;
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The integrators by name.
@@ -84,7 +84,9 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
     let header = source.header(options)?;
     let columns = ReleaseColumns::new(&header, &options.carry)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
-    let bars = ProgressBars::new(quiet);
+    // A bar between the rows on a terminal would stay there.
+    let shows_rows = options.output == Path::new("-") && io::stdout().is_terminal();
+    let bars = ProgressBars::new(quiet || shows_rows);
     let total = std::fs::metadata(&options.releases).map_or(0, |about| about.len());
     bars.begin("simulating", total);
     let mut stream = Stream {

@@ -2,10 +2,10 @@
 
 use super::sweep_summary::{highlights, job_summary, missing_shards};
 use crate::cli::config_files::load_sweep;
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder;
+use crate::cli::run_folder::{self, RunKind};
 use crate::cli::signals;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{fault_injection, shard};
@@ -77,6 +77,7 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
         Some(path) => path.clone(),
         None => run_folder::of_sweep(&config)?,
     };
+    run_folder::refuse_other_results(&path, RunKind::Sweep)?;
     let run_options = RunOptions {
         retry_failed: options.retry_failed,
         fault: options.fault.clone(),
@@ -158,6 +159,7 @@ pub(super) fn compute(
 }
 
 pub(crate) fn merge(options: &MergeOptions, quiet: bool) -> Result<u8, Failure> {
+    refuse_missing(&options.folder)?;
     let (folder, config) = SweepFolder::existing(&options.folder)?;
     let jobs = Jobs::new(&config);
     write_tables(&folder, &config, &jobs, options.shards, quiet)

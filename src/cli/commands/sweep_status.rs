@@ -1,7 +1,7 @@
 //! `bankshot status`, `missing` and `verify`: the state of a sweep's folder.
 
 use super::sweep_summary::{exit_code, job_summary, missing_shards};
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_answer;
 use crate::cli::value_parsers::fraction;
@@ -47,6 +47,7 @@ pub(crate) struct MissingOptions {
 }
 
 pub(crate) fn status(options: &StatusOptions) -> Result<u8, Failure> {
+    refuse_missing(&options.folder)?;
     let (folder, config) = SweepFolder::open_read_only(&options.folder)?;
     let jobs = Jobs::new(&config);
     let (rows, remarks) = folder.union()?;
@@ -83,6 +84,7 @@ pub(crate) fn status(options: &StatusOptions) -> Result<u8, Failure> {
 }
 
 pub(crate) fn missing(options: &MissingOptions) -> Result<u8, Failure> {
+    refuse_missing(&options.folder)?;
     let (folder, config) = SweepFolder::open_read_only(&options.folder)?;
     let jobs = Jobs::new(&config);
     let (rows, _) = folder.union()?;
@@ -95,6 +97,7 @@ pub(crate) fn missing(options: &MissingOptions) -> Result<u8, Failure> {
 }
 
 pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure> {
+    refuse_missing(&options.folder)?;
     let (folder, config) = SweepFolder::existing(&options.folder)?;
     let jobs = Jobs::new(&config);
     let (rows, remarks) = folder.union()?;
@@ -121,6 +124,9 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
         for job in &differing {
             text.push_str(&format!("differs: job {job}\n"));
         }
+    }
+    if rows.len() < jobs.count() {
+        text.push_str("incomplete; run the sweep's command again to compute the rest\n");
     }
     if options.json {
         let mut answer = jobs_json(&jobs, &rows);

@@ -22,9 +22,12 @@ interpolated. This is checked at the quarters of each step: where it costs more 
 interpolated P errs by more, nodes are added halfway. The table says what is left.
 
 Examples:
-  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --pitch '60 deg' --backspin '2 rev/s'
-  bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' --angles '0 deg to 60 deg by 15 deg' --kind bank
-  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' -o ShotTable.java -o shots.csv")]
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
+    --pitch '60 deg' --backspin '2 rev/s'
+  bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' \\
+    --angles '0 deg to 60 deg by 15 deg' --kind bank
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
+    -o ShotTable.java -o shots.csv")]
 pub(crate) struct TableOptions {
     /// The launcher's profile.
     pub(crate) profile: PathBuf,

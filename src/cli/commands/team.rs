@@ -9,7 +9,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark, time_in_words};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
 use crate::plots::svg::shortened;
@@ -38,8 +38,10 @@ the same command continues.
 
 Examples:
   bankshot team ann.toml bo.toml cy.toml
-  bankshot team ann.toml bo.toml cy.toml --sweep configs/half_court_3ft.toml --plan
-  bankshot team ann.toml bo.toml cy.toml --sweep configs/half_court_3ft.toml --out team")]
+  bankshot team ann.toml bo.toml cy.toml \\
+    --sweep configs/half_court_3ft.toml --plan
+  bankshot team ann.toml bo.toml cy.toml \\
+    --sweep configs/half_court_3ft.toml --out team")]
 pub(crate) struct TeamOptions {
     /// The players' profiles.
     #[arg(required = true, num_args = 1..)]
@@ -274,11 +276,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
 /// What all players take, from the first one's sweep.
 fn forecast_in_words(players: usize, first: &SweepConfig) -> Option<String> {
     let seconds = forecast_s(first, true)? * players as f64;
-    let time = if seconds < 90.0 {
-        format!("{seconds:.0} s")
-    } else {
-        format!("{:.0} min", seconds / 60.0)
-    };
+    let time = time_in_words(seconds);
     let players = match players {
         1 => "1 player".to_owned(),
         more => format!("{more} players"),

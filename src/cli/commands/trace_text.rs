@@ -55,7 +55,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
     }
     let _ = writeln!(
         text,
-        "\n   time s  event                    x, y, z {long}               speed {long}/s"
+        "\n   time s  event                      x, y, z {long}               speed {long}/s"
     );
     for event in &trace.events {
         let [x, y, z] = event.state.position_m.into();
@@ -74,7 +74,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
         };
         let _ = writeln!(
             text,
-            "{:9.4}  {name:24} {:7.3} {:7.3} {:7.3}   {:7.2}",
+            "{:9.4}  {name:26} {:7.3} {:7.3} {:7.3}   {:7.2}",
             event.time_s,
             x / metre,
             y / metre,

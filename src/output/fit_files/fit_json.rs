@@ -102,6 +102,13 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         named("made", makes.made.into()),
         named("share", wilson_json(&makes.share)),
     ]);
+    let reliability = makes.bins.iter().map(|bin| {
+        object(vec![
+            named("shots", bin.shots.into()),
+            named("predicted", number(bin.predicted)),
+            named("observed", wilson_json(&bin.observed)),
+        ])
+    });
     let prediction = object(vec![
         named("expected_makes", number(makes.expected)),
         named("expected_makes_sd", number(makes.expected_sd)),
@@ -113,6 +120,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         ),
         named("predicted_swishes", makes.swishes.0.into()),
         named("predicted_swishes_made", makes.swishes.1.into()),
+        named("reliability", reliability.collect()),
     ]);
     let rejected = source.rejected.iter().map(|(row, reason)| {
         object(vec![

@@ -105,13 +105,13 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         );
     }
     text += &format!(
-        "\n{:<28} {:>9} {:>9} {:>9}  {:<6} {}\n",
+        "\n{:<24} {:>9} {:>9} {:>9}  {:<5} {}\n",
         "", "mean", "2.5 %", "97.5 %", "unit", "source"
     );
     for parameter in parameters(posterior, source.kind, units) {
         let interval = &parameter.interval;
         text += &format!(
-            "{:<28} {:>9.3} {:>9.3} {:>9.3}  {:<6} {}\n",
+            "{:<24} {:>9.3} {:>9.3} {:>9.3}  {:<5} {}\n",
             parameter.name,
             interval.mean,
             interval.low,
@@ -121,7 +121,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         );
     }
     text += &format!(
-        "\n{} draws, R-hat {:.3}, effective sample size {:.0}; weight of the prior (the population): {:.0} % (speed), {:.0} % (pitch), {:.0} % (polar)\n",
+        "\n{} draws, kept from chains with R-hat {:.3} and an effective sample size of {:.0}; weight of the prior (the population): {:.0} % (speed), {:.0} % (pitch), {:.0} % (polar)\n",
         posterior.draws.len(),
         posterior.r_hat,
         posterior.effective_sample_size,

@@ -54,7 +54,7 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
         place.release_height_m / FOOT_M
     ));
     line(format!(
-        "max_backspin = \"{:.3} rev/s\"",
+        "max_backspin = \"{:.3} rev/s\"  # assumed; a search for the best shot goes up to it",
         shooter.max_backspin_rad_s / REV_RAD
     ));
     line(String::new());

@@ -1,6 +1,7 @@
 //! What changed between two sessions of a shooter, as text.
 
 use crate::fitting::SessionComparison;
+use crate::math::normal_distribution::quantile;
 
 /// What changed in one quantity.
 pub struct SessionChange {
@@ -33,6 +34,13 @@ impl SessionChange {
         } else {
             (fell, 1.0 - probability)
         }
+    }
+
+    /// Whether the change is beyond chance although `tested` values were looked at (Bonferroni).
+    fn is_certain_among(&self, tested: usize) -> bool {
+        let change = &self.comparison.change;
+        let quantile = quantile(1.0 - 0.025 / tested as f64);
+        change.mean.abs() > quantile * change.sd
     }
 
     fn is_decided(&self) -> bool {
@@ -110,35 +118,55 @@ fn verdict(changes: &[SessionChange]) -> String {
             format!("The chance of a shot {direction} by {points:.0} {unit} ({interval}).\n")
         } else {
             let sure = 100.0 * probability;
+            if points.round() == 0.0 {
+                return format!(
+                    "These shots do not show that the chance of a shot changed ({interval}).\n"
+                ) + &values_in_words(changes);
+            }
             format!(
                 "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} {unit} \
                  ({interval}). The chance that it {direction} at all is {sure:.0} %.\n"
             )
         };
     }
-    let decided: Vec<String> = changes
-        .iter()
-        .filter(|change| change.name != "P" && change.is_decided())
-        .map(|change| {
-            let by = change.comparison.change.scaled(1.0 / change.size);
-            let (direction, _) = change.direction();
-            let decimals = change.decimals();
-            let amount = format!("{:.decimals$} {}", by.mean.abs(), change.unit);
-            match change.name.as_str() {
-                "polar_mean" => format!("the aim moved {amount} to the {direction}"),
-                name => format!("{} {direction} by {amount}", quantity_in_words(name)),
-            }
-        })
-        .collect();
-    text += &if decided.is_empty() {
-        "No other value changed by more than its uncertainty.\n".to_owned()
-    } else {
-        format!(
-            "Changed, each at the 95 % level: {}. ({} values were tested; where nothing changes, one in twenty seems to.)\n",
-            decided.join(", "),
-            changes.len() - 1
-        )
+    text + &values_in_words(changes)
+}
+
+/// Which of the other values changed.
+fn values_in_words(changes: &[SessionChange]) -> String {
+    let others: Vec<&SessionChange> = changes.iter().filter(|change| change.name != "P").collect();
+    let in_words = |change: &&SessionChange| {
+        let by = change.comparison.change.scaled(1.0 / change.size);
+        let (direction, _) = change.direction();
+        let decimals = change.decimals();
+        let amount = format!("{:.decimals$} {}", by.mean.abs(), change.unit);
+        match change.name.as_str() {
+            "polar_mean" => format!("the aim moved {amount} to the {direction}"),
+            name => format!("{} {direction} by {amount}", quantity_in_words(name)),
+        }
     };
+    let decided = others.iter().copied().filter(|change| change.is_decided());
+    let (certain, possible): (Vec<_>, Vec<_>) =
+        decided.partition(|change| change.is_certain_among(others.len()));
+    let list = |changes: &[&SessionChange]| {
+        let words: Vec<String> = changes.iter().map(in_words).collect();
+        words.join(", ")
+    };
+    if certain.is_empty() && possible.is_empty() {
+        return "No other value changed by more than its uncertainty.\n".to_owned();
+    }
+    let mut text = String::new();
+    if !certain.is_empty() {
+        text += &format!("Changed: {}.\n", list(&certain));
+    }
+    if !possible.is_empty() {
+        text += &format!(
+            "May have changed: {}. (Beyond its own 95 % interval; of {} values that stay the same, one or more seems to change in {:.0} of 100 comparisons.)\n",
+            list(&possible),
+            others.len(),
+            100.0 * (1.0 - libm::pow(0.95, others.len() as f64))
+        );
+    }
     text
 }
 

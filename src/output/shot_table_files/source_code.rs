@@ -99,7 +99,7 @@ pub fn source_code(
         ),
         shooter_note(table, profile, units),
         format!(
-            "{}(distance_{long}, court_angle_deg) gives {}.",
+            "{}(distance_{long}, court_angle_deg) gives {}. Without an angle it takes the first.",
             if language == Language::Java {
                 "lookUp"
             } else {
@@ -169,6 +169,10 @@ const JAVA: &str = "\
         return result;
     }
 
+    public static double[] lookUp(double distance) {
+        return lookUp(distance, ANGLES[0]);
+    }
+
     private static int cell(double[] values, double value) {
         if (!(value >= values[0] && value <= values[values.length - 1])) return -1;
         int i = values.length - 1;
@@ -208,7 +212,7 @@ double part(const double (&values)[N], int i, double value) {
     return i + 1 < static_cast<int>(N) ? (value - values[i]) / (values[i + 1] - values[i]) : 0.0;
 }
 
-inline std::array<double, @VALUES@> look_up(double distance, double angle) {
+inline std::array<double, @VALUES@> look_up(double distance, double angle = angles[0]) {
     std::array<double, @VALUES@> result{};
     constexpr int count = sizeof(distances) / sizeof(distances[0]);
     const int d = cell(distances, distance), a = cell(angles, angle);

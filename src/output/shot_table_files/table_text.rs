@@ -119,9 +119,9 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
         ],
     ];
     let mut text = format!(
-        "Best {} shots. P: the chance of each. range: how far speed and pitch can vary,\n\
-         one at a time and with all else exact, until the shot misses. time, entry:\n\
-         until it falls through.\n",
+        "Best {} shots. P: the chance of each. range: how far speed and pitch can\n\
+         vary, one at a time and with all else exact, until the shot misses. time,\n\
+         entry: until it falls through.\n",
         table.kind.name()
     );
     for cells in header {
@@ -191,6 +191,7 @@ pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
         added_note(table, units),
         jump_note(table, units),
         bounce_note(table),
+        unlikely_note(table, units),
         other_kind_note(table, units),
     ];
     notes.into_iter().flatten().collect()
@@ -310,6 +311,34 @@ fn bounce_note(table: &ShotTable) -> Option<String> {
         )
     })
 }
+
+/// Where even the best shot seldom goes in.
+fn unlikely_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let mut places = Vec::new();
+    for (a, angle_rad) in table.angles_rad.iter().enumerate() {
+        for (d, distance_m) in table.distances_m.iter().enumerate() {
+            let place = Location {
+                distance_m: *distance_m,
+                angle_rad: *angle_rad,
+            };
+            let is_unlikely = |shot: &TableShot| shot.probability < UNLIKELY;
+            if table.at(a, d).is_some_and(is_unlikely) {
+                places.push(place_text(table, &place, units));
+            }
+        }
+    }
+    (!places.is_empty()).then(|| {
+        format!(
+            "At {} {} even the best shot goes in by luck, with P below {UNLIKELY}: {}.",
+            places.len(),
+            if places.len() == 1 { "place" } else { "places" },
+            places.join("; ")
+        )
+    })
+}
+
+/// P below which a shot is luck.
+const UNLIKELY: f64 = 0.1;
 
 /// Where the best shot of the other kind has the higher P.
 fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
