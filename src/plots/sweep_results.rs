@@ -135,7 +135,7 @@ impl<'a> SweepResults<'a> {
         let settings = &self.config.settings;
         let places = self.places.iter();
         let at = |results: &PlaceResults| (results.place.x_m, results.place.y_m);
-        let gap = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).hypot(a.1 - b.1);
+        let gap = |a: (f64, f64), b: (f64, f64)| libm::hypot(a.0 - b.0, a.1 - b.1);
         let gaps = self.places.iter().enumerate().flat_map(|(i, a)| {
             let before = self.places[..i].iter();
             before.map(move |b| gap(at(a), at(b)))
