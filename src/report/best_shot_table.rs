@@ -41,6 +41,7 @@ pub(super) fn shot_table(shots: &[ReportShot], units: UnitSystem) -> HtmlTable {
         caption: "Best shots".to_owned(),
         columns,
         rows,
+        note: String::new(),
         is_detail: false,
     }
 }

@@ -95,10 +95,11 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
     )
 }
 
-/// How well the chances of the measured shots foretell which went in; `None` without results.
+/// How well the chances of the measured shots foretell which went in; `None` with too few results
+/// for a bin.
 fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
     let makes = &fit.makes;
-    if makes.labelled == 0 {
+    if makes.bins.is_empty() {
         return None;
     }
     // A forecast that says the share of makes for every shot.
@@ -115,10 +116,10 @@ fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
         (None, cells.to_vec())
     });
     Some(HtmlTable {
-        caption: format!(
-            "Predicted against observed. The chance is that of each ball as it was measured, so this tests the physics and the sensor, not \
-             the next shot. Brier score {:.3} (0 is perfect; the share of makes for every shot has {of_constant:.3}), log loss {:.3}, \
-             area under the curve {}",
+        caption: "Predicted against observed".to_owned(),
+        note: format!(
+            "The chance is that of each ball as it was measured, so this tests the physics and the sensor, not the next shot. Brier score \
+             {:.3} (0 is perfect; the share of makes for every shot has {of_constant:.3}), log loss {:.3}, area under the curve {}.",
             makes.brier,
             makes.log_loss,
             makes
@@ -137,6 +138,7 @@ fn parameter_table(fit: &ShooterFit, kind: &str, units: UnitSystem) -> HtmlTable
     let columns = ["parameter", "unit", "mean", "2.5 %", "97.5 %", "source"];
     HtmlTable {
         caption: "What was fitted".to_owned(),
+        note: String::new(),
         columns: columns.map(str::to_owned).to_vec(),
         rows: parameters(&fit.posterior, kind, units)
             .into_iter()

@@ -11,6 +11,8 @@ const MOST_PRINTED_ROWS: usize = 30;
 pub struct HtmlTable {
     /// What the table shows.
     pub caption: String,
+    /// What a reader must know of it, above its rows; may be empty.
+    pub note: String,
     /// Names of the columns, with units.
     pub columns: Vec<String>,
     /// The cells of each row, and the index of the shot that the row selects, if any.
@@ -34,8 +36,12 @@ impl HtmlTable {
         } else {
             ("", "h2", "")
         };
+        let note = match escaped(&self.note) {
+            none if none.is_empty() => none,
+            note => format!("<p>{note}</p>\n"),
+        };
         let mut html = format!(
-            "{start}<{heading} id=\"h-table-{number}\">{}</{heading}>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
+            "{start}<{heading} id=\"h-table-{number}\">{}</{heading}>\n{note}<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
             escaped(&self.caption)
         );
         let is_number = |cell: &str| cell.parse::<f64>().is_ok();

@@ -35,8 +35,9 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
         ]
     };
     HtmlTable {
-        caption: format!(
-            "How much rests on the physics. {} Same shot: {}, released the same way everywhere",
+        caption: "How much rests on the physics".to_owned(),
+        note: format!(
+            "{} Same shot: {}, released the same way everywhere.",
             comparison.in_words().unwrap_or_default(),
             comparison.same_shot.in_words()
         ),

@@ -22,6 +22,7 @@ pub(super) fn sensitivity_table(rows: &[Vec<String>]) -> Option<HtmlTable> {
         .map(str::to_owned)
         .to_vec(),
         rows,
+        note: String::new(),
         is_detail: true,
     })
 }

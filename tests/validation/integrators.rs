@@ -183,7 +183,7 @@ fn campaign_bias_of_p_at_the_default_steps() {
             println!(
                 "{name:10} P {p:.5}, at the default steps {difference:+.6} +- {:.6} (100 against 1000 \
                  steps {:+.6})",
-                first.1.hypot(second.1),
+                libm::hypot(first.1, second.1),
                 second.0,
             );
             differences.push(difference);
