@@ -66,8 +66,10 @@ impl Failure {
 
 /// Refuses a path at which there is nothing, with a name in its folder that may have been meant.
 pub(crate) fn refuse_missing(path: &Path) -> Result<(), Failure> {
-    if path.exists() {
-        return Ok(());
+    // What is there and cannot be read has a message of its own.
+    match std::fs::metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        _ => return Ok(()),
     }
     let folder = path
         .parent()
@@ -77,6 +79,8 @@ pub(crate) fn refuse_missing(path: &Path) -> Result<(), Failure> {
         .into_iter()
         .flatten()
         .flatten()
+        // A link that leads nowhere is no help.
+        .filter(|entry| entry.path().exists())
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();

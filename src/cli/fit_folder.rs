@@ -164,8 +164,14 @@ pub(crate) fn probability_over_draws(
     Ok(sample.probabilities(&here, |_| values, |draw| draw.factor_at(0)))
 }
 
-/// Reads the draws of `--draws`, with a warning where they are those of another shooter.
-pub(crate) fn read_draws_of(folder: &Path, profile: &Profile) -> Result<FitFolder, Failure> {
+/// Reads the folder of `--draws`, with a warning where its fit is that of another shooter.
+pub(crate) fn read_draws_of<'a>(
+    folder: Option<&'a Path>,
+    profile: &Profile,
+) -> Result<Option<(&'a Path, FitFolder)>, Failure> {
+    let Some(folder) = folder else {
+        return Ok(None);
+    };
     let fit = read(folder)?;
     let shooter = &fit.profiles[0].shooter().name;
     if *shooter != profile.shooter().name {
@@ -175,7 +181,7 @@ pub(crate) fn read_draws_of(folder: &Path, profile: &Profile) -> Result<FitFolde
             profile.shooter().name
         ));
     }
-    Ok(fit)
+    Ok(Some((folder, fit)))
 }
 
 /// P of a nominal shot over the draws of a fit, in words.

@@ -121,7 +121,9 @@ fn wrapped_remark(text: &str) -> String {
             .find("-->")
             .or_else(|| line.find('|'))
             .is_some_and(|at| is_gutter(&line[..at]));
-        if is_quoted || line.chars().count() <= COLUMNS {
+        // What can be pasted into a shell is not broken inside its quotes.
+        let is_to_paste = line.trim_start().starts_with("--") || line.contains(" > ");
+        if is_quoted || is_to_paste || line.chars().count() <= COLUMNS {
             line.to_owned()
         } else {
             wrapped_line(line, column_of_text(line) + 2)
@@ -234,6 +236,12 @@ mod tests {
         // No space is lost from a table.
         let table = format!("a{}b\n", " ".repeat(60));
         assert_eq!(wrapped(&table), table);
+    }
+
+    #[test]
+    fn contract_times_have_a_unit_that_suits_them() {
+        let words = [12.4, 89.0, 600.0, 5390.0, 11_160.0].map(time_in_words);
+        assert_eq!(words, ["12 s", "89 s", "10 min", "90 min", "3.1 h"]);
     }
 
     #[test]

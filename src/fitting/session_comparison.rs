@@ -21,8 +21,9 @@ pub struct SessionComparison {
     pub shots_to_decide: Option<f64>,
 }
 
-/// The sum of the normal quantiles of 97.5 % and 80 %.
-const POWER: f64 = 1.96 + 0.8416;
+/// The sum of the normal quantiles of 97.5 % and 80 %: a change of so many of its standard errors
+/// is seen at the 95 % level with a power of 80 %.
+pub const POWER: f64 = 1.96 + 0.8416;
 
 /// How often each draw is paired with one of the other fit.
 const PAIRINGS: usize = 16;

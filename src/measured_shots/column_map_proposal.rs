@@ -1,6 +1,6 @@
 //! What to write as `--map` for a file whose columns have other names.
 
-use super::columns::{Columns, Quantity};
+use super::columns::{Columns, Quantity, in_unit};
 use crate::fitting::CENTRE_DEPTH_M;
 
 /// Parts of the names that others give to a quantity or a label, in small letters without spaces.
@@ -11,6 +11,7 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
         &["releaseheight", "releaseht", "heightofrelease"],
     ),
     ("entry_angle", &["entry", "incoming"]),
+    ("depth", &["depth", "longshort", "shortlong"]),
     ("speed", &["speed", "velocity", "velo"]),
     (
         "pitch",
@@ -19,11 +20,13 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
     ("polar", &["polar", "azimuth"]),
     ("aim", &["aim", "direction", "lateral", "horizontalangle"]),
     ("backspin", &["backspin", "spinrate", "spin"]),
-    ("depth", &["depth"]),
-    ("left_right", &["left", "right"]),
+    ("left_right", &["leftright", "leftorright", "offline"]),
     ("court_angle", &["courtangle"]),
     ("distance", &["distance", "dist"]),
-    ("made", &["made", "make", "result", "outcome", "goal"]),
+    (
+        "made",
+        &["made", "make", "result", "outcome", "goal", "basket"],
+    ),
     ("shooter", &["shooter", "player", "athlete", "subject"]),
     ("session", &["session", "date"]),
     ("shot", &["shotid", "shotnumber", "shotno", "trial"]),
@@ -31,15 +34,17 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
 ];
 
 /// Names that are too short to be looked for within others.
-const SHORT_NAMES: [(&str, &str); 4] = [
+const SHORT_NAMES: [(&str, &str); 6] = [
     ("left_right", "lr"),
     ("left_right", "side"),
+    ("left_right", "left"),
+    ("left_right", "right"),
     ("shot", "releaseid"),
     ("shot", "id"),
 ];
 
 /// Units as others write them, longest first, and their suffixes here.
-const OTHER_UNITS: [(&str, &str); 22] = [
+const OTHER_UNITS: [(&str, &str); 24] = [
     ("degrees", "deg"),
     ("inches", "in"),
     ("metres", "m"),
@@ -59,6 +64,8 @@ const OTHER_UNITS: [(&str, &str); 22] = [
     ("deg", "deg"),
     ("rad", "rad"),
     ("cm", "cm"),
+    ("mm", "mm"),
+    ("m", "m"),
     ("in", "in"),
     ("ft", "ft"),
     ("°", "deg"),
@@ -97,6 +104,14 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
                 )
             }
         });
+    }
+    if is_landing && !maps.is_empty() {
+        for quantity in [Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight] {
+            let name = quantity.name();
+            if !taken.contains(&name) && columns.quantity(quantity).is_none() {
+                maps.push(format!("--map '{name}=COLUMN:UNIT'"));
+            }
+        }
     }
     let mut text = format!("\nits columns are {}", columns.names().join(", "));
     let known = columns.names().len() - unused.len();
@@ -152,17 +167,33 @@ fn zero_of(name: &str, quantity: Quantity, unit: Option<&str>) -> (&'static str,
                 .units()
                 .iter()
                 .find(|(name, _)| Some(*name) == unit);
-            let offset = size.map(|(_, size)| (1e4 * CENTRE_DEPTH_M / size).round() / 1e4);
-            (
-                "",
-                offset.map_or_else(String::new, |offset| format!("+{offset}")),
-            )
+            let offset = size.map_or_else(
+                || "+9 IN ITS UNIT".to_owned(),
+                |(_, size)| format!("+{}", in_unit(CENTRE_DEPTH_M, *size)),
+            );
+            ("", offset)
         }
-        Quantity::LeftRight if letters.contains("left") && !letters.contains("right") => {
-            ("-", String::new())
-        }
+        Quantity::LeftRight if is_positive_to_the_left(name) => ("-", String::new()),
         _ => ("", String::new()),
     }
+}
+
+/// Whether a name says that its numbers grow to the left: `Left (in)`, `Side (+ = left)`.
+fn is_positive_to_the_left(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let spaceless: String = lower.chars().filter(|c| !c.is_whitespace()).collect();
+    let says = |left: [&str; 3]| left.iter().any(|words| spaceless.contains(words));
+    let is_left_alone = first_word(&lower) == "left" && !lower.contains("right");
+    let is_negative = says(["-=left", "leftnegative", "negative=left"]);
+    !is_negative && (is_left_alone || says(["+=left", "leftpositive", "positive=left"]))
+}
+
+/// The first word of a name: `left` of `Left (in)`.
+fn first_word(name: &str) -> &str {
+    let name = name.trim();
+    &name[..name
+        .find(|c: char| !c.is_alphabetic())
+        .unwrap_or(name.len())]
 }
 
 /// What a column may hold, if nothing else is taken as that. In a file of landings an arc is that
@@ -173,13 +204,17 @@ fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static st
         .iter()
         .find(|(_, parts)| parts.iter().any(|part| letters.contains(part)))
         .or_else(|| {
-            let short = SHORT_NAMES.iter().find(|(_, short)| *short == letters);
+            // `L/R (in)` is `lr` with a unit.
+            let without_unit = letters_of(name.split(['(', '[']).next().unwrap_or_default());
+            let short = SHORT_NAMES
+                .iter()
+                .find(|(_, short)| *short == letters || *short == without_unit);
             OTHER_NAMES
                 .iter()
                 .find(|(target, _)| short.is_some_and(|(short, _)| short == target))
         })?;
     let target = match found.0 {
-        "pitch" if is_landing && letters.contains("arc") => "entry_angle",
+        "pitch" if is_landing && letters.starts_with("arc") => "entry_angle",
         target => target,
     };
     (!taken.contains(&target)).then_some(target)
@@ -200,6 +235,12 @@ fn unit_of(name: &str, quantity: Quantity) -> Option<&'static str> {
     };
     // In brackets a unit comes first, whatever follows it: `Depth (in, + = long)`.
     let in_brackets = name.rsplit_once(['(', '[']).map(|(_, rest)| {
+        let rest = rest.trim();
+        // `(in mm)`
+        let rest = match rest.strip_prefix("in ") {
+            Some(unit) if unit.starts_with(char::is_alphabetic) => unit,
+            _ => rest,
+        };
         let end = rest.find([',', ';', ' ']).unwrap_or(rest.len());
         rest[..end].trim()
     });
@@ -270,6 +311,20 @@ mod tests {
     #[test]
     fn contract_units_are_read_off_names() {
         assert_eq!(unit_of("Depth (in, + = long)", Quantity::Depth), Some("in"));
+        assert_eq!(unit_of("Depth (in mm)", Quantity::Depth), Some("mm"));
+        assert_eq!(unit_of("Distance (in m)", Quantity::Distance), Some("m"));
+        for (name, target) in [
+            ("Left (in)", Some("left_right")),
+            ("L/R (inches)", Some("left_right")),
+            ("Side (in, - = left)", Some("left_right")),
+            ("Right handed (in)", None),
+            ("Depth (in; positive = long)", Some("depth")),
+        ] {
+            assert_eq!(target_of(name, true, &[]), target, "{name}");
+        }
+        assert!(is_positive_to_the_left("Left (in)") && is_positive_to_the_left("Side (+ = left)"));
+        assert!(!is_positive_to_the_left("Side (in, - = left)"));
+        assert!(!is_positive_to_the_left("Left-right (in)"));
         assert_eq!(unit_of("speed_fps", Quantity::Speed), Some("ft_s"));
         assert_eq!(unit_of("Depth (in)", Quantity::Depth), Some("in"));
         assert_eq!(unit_of("DepthInches", Quantity::Depth), Some("in"));

@@ -170,7 +170,29 @@ impl Zero {
     };
 }
 
+/// A value in a unit, with four decimals at most.
+pub(super) fn in_unit(value: f64, size: f64) -> f64 {
+    (1e4 * value / size).round() / 1e4
+}
+
 impl QuantityColumn {
+    /// What `--map` says of the sign and the number added, in words; empty where it says nothing.
+    #[must_use]
+    pub fn zero_in_words(&self) -> String {
+        let mut words = Vec::new();
+        if self.zero.sign < 0.0 {
+            words.push("its sign is turned".to_owned());
+        }
+        if self.zero.offset != 0.0 {
+            words.push(format!("{} is added", self.zero.offset));
+        }
+        if words.is_empty() {
+            String::new()
+        } else {
+            format!(" (--map: {})", words.join(" and "))
+        }
+    }
+
     /// The quantity in SI units.
     #[must_use]
     pub fn value(&self, number: f64) -> f64 {
@@ -236,7 +258,7 @@ impl Columns {
     /// The columns of a header. `maps` are of the form `speed_ft_s=ReleaseSpeed:mph`: the quantity,
     /// the name of the column, and its unit where that is not the suffix of the quantity. A minus
     /// before the name turns the sign round, a number after the unit is added:
-    /// `depth=-PastCentre:in+9`.
+    /// `depth=PastCentre:in+9`.
     ///
     /// # Errors
     /// A map that cannot be followed, or a quantity given twice.
@@ -326,9 +348,15 @@ impl Columns {
             let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
             if let Some(quantity) = quantity {
                 let names = quantity.unit_names();
+                let sign = if zero.sign < 0.0 { "-" } else { "" };
+                let added = if zero.offset == 0.0 {
+                    String::new()
+                } else {
+                    format!("{:+}", zero.offset)
+                };
                 return format!(
-                    "give its unit: '{target}={}:{}' (or {})",
-                    source.trim(),
+                    "give its unit: '{target}={sign}{}:{}{added}' (or {})",
+                    header[index].trim(),
                     names[0],
                     names[1..].join(", ")
                 );
@@ -484,6 +512,7 @@ mod tests {
         };
         refused(&[], "both give the speed");
         refused(&["pitch=a"], "give its unit: 'pitch=a:deg'");
+        refused(&["pitch=-a:+9"], "give its unit: 'pitch=-a:deg+9'");
         refused(&["loft=a"], "loft is not a quantity");
         refused(&["pitch_deg=b"], "there is no column b");
         refused(&["pitch_deg=a:mph"], "not one of its units (deg, rad)");

@@ -2,7 +2,7 @@
 //!
 //! A single absurd row is kept out. Where the middle of a whole column is absurd, the column is.
 
-use super::columns::{Columns, Label, Quantity, Zero, parse_made};
+use super::columns::{Columns, Label, Quantity, Zero, in_unit, parse_made};
 use crate::fitting::CENTRE_DEPTH_M;
 use crate::units::{DEGREE_RAD, INCH_M};
 
@@ -74,10 +74,7 @@ pub(super) fn implausible_column(
             .find(|(other, size)| *other != unit && is_usual(number * size));
         let fix = likely.map_or_else(String::new, |(other, _)| {
             if column.zero != Zero::OWN {
-                return format!(
-                    " (with its sign and the number added: {:+})",
-                    column.zero.offset
-                );
+                return format!(". The numbers look like {other}");
             }
             format!(
                 ". The numbers look like {other}: --map '{}={name}:{other}'",
@@ -85,7 +82,8 @@ pub(super) fn implausible_column(
             )
         });
         Some(format!(
-            "{name}: the median is {number:.4} {unit}; shots at a hoop have it {}{fix}",
+            "{name}: the median is {number:.4} {unit}{}; shots at a hoop have it {}{fix}",
+            column.zero_in_words(),
             usual.in_words
         ))
     });
@@ -119,11 +117,12 @@ fn misplaced_depth(columns: &Columns, rows: &[(u64, &[String])]) -> Option<Strin
     (depth < SHORT_DEPTH_M && makes_many).then(|| {
         format!(
             "{name}: the median is {:.1} in, at the front of the ring, but {makes} of {} shots went in. Depth counts from the front \
-             of the ring; if yours counts from its centre: --map 'depth={name}:{}+{}'",
+             of the ring; if yours counts from its centre: --map 'depth={}{name}:{}{:+}'",
             depth / INCH_M,
             made.len(),
+            if column.zero.sign < 0.0 { "-" } else { "" },
             column.unit.0,
-            (1e4 * CENTRE_DEPTH_M / column.unit.1).round() / 1e4
+            in_unit(CENTRE_DEPTH_M, column.unit.1) + column.zero.offset
         )
     })
 }

@@ -81,21 +81,13 @@ impl Table {
         if table.header.is_empty() {
             return Err("is empty".to_owned());
         }
-        let most_cells = table.rows.iter().map(|(_, cells)| cells.len()).max();
-        if let Some(most) = most_cells
-            && most < table.header.len()
-        {
-            return Err(format!(
-                "its first line has {} names, and no other line has more than {most} values; put a name with a comma in quotes",
-                table.header.len()
-            ));
-        }
         let is_split_at = |separator: char| {
-            let parts = table
-                .header
-                .iter()
-                .map(|name| name.matches(separator).count());
-            parts.sum::<usize>() >= 2 * table.header.len()
+            // A name may hold a comma, so the rows are looked at too.
+            let is_split = |cells: &[String]| {
+                let parts = cells.iter().map(|cell| cell.matches(separator).count());
+                parts.sum::<usize>() >= 2 * cells.len()
+            };
+            is_split(&table.header) || table.rows.first().is_some_and(|(_, cells)| is_split(cells))
         };
         for (separator, name, command) in [
             (';', "semicolons", "tr ';,' ',.'"),
@@ -107,6 +99,20 @@ impl Table {
                     path.display()
                 ));
             }
+        }
+        // A comma at the end of the first line names no column.
+        while table.header.last().is_some_and(String::is_empty) {
+            table.header.pop();
+        }
+        let most_cells = table.rows.iter().map(|(_, cells)| cells.len()).max();
+        if let Some(most) = most_cells
+            && most < table.header.len()
+        {
+            return Err(format!(
+                "its first line has {} names, and no other line has more than {most} {}; put a name with a comma in quotes",
+                table.header.len(),
+                if most == 1 { "value" } else { "values" }
+            ));
         }
         Ok(table)
     }

@@ -67,7 +67,7 @@ pub struct CourtMap<'a> {
     pub units: UnitSystem,
     /// Distance between neighbouring places, m; `None` if the places are not on a square grid.
     pub step_m: Option<f64>,
-    /// Least distance between two places, m; 0 if there are very many.
+    /// Least distance between two places, m; 0 on a grid, and if there are very many.
     pub least_gap_m: f64,
     /// Greatest x of a place, m.
     pub far_x_m: f64,

@@ -140,7 +140,9 @@ impl<'a> SweepResults<'a> {
             let before = self.places[..i].iter();
             before.map(move |b| gap(at(a), at(b)))
         });
-        let least_gap_m = if self.places.len() > FEW_PLACES {
+        let region = &self.config.region;
+        let is_grid = matches!(region, Region::HalfCourt { .. } | Region::Rectangle { .. });
+        let least_gap_m = if is_grid || self.places.len() > FEW_PLACES {
             0.0
         } else {
             gaps.fold(f64::INFINITY, f64::min)

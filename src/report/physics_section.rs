@@ -37,8 +37,10 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
     HtmlTable {
         caption: "How much rests on the physics".to_owned(),
         note: format!(
-            "{} Same shot: {}, released the same way everywhere.",
-            comparison.in_words().unwrap_or_default(),
+            "{}Same shot: {}, released the same way everywhere.",
+            comparison
+                .in_words()
+                .map_or_else(String::new, |words| words + " "),
             comparison.same_shot.in_words()
         ),
         columns: columns.to_vec(),

@@ -247,6 +247,10 @@ fn contract_unreadable_profiles_are_refused() {
     check(folder.path()).exits(2).says("not a file");
     let missing = folder.path().join("none.toml");
     check(&missing).exits(2).says("there is no such file");
+    write_file(&folder, "player.toml", "");
+    check(&folder.path().join("plyer.toml"))
+        .exits(2)
+        .says("there is no such file or folder; did you mean \"player.toml\"?");
     let huge = folder.path().join("huge.toml");
     fs::File::create(&huge).unwrap().set_len(20 << 20).unwrap();
     check(&huge).exits(2).says("at most");

@@ -191,6 +191,24 @@ fn contract_bad_shots_are_refused_or_named() {
         assert!(answer.stderr.contains(message), "{name}: {}", answer.stderr);
         assert_eq!(out.join("fit.json").exists(), code == 3, "{name}");
     }
+    // A comma inside a name shifts all columns after it; one at the end of the line names none.
+    let path = folder.path().join("names.csv");
+    fs::write(&path, "entry,Depth (in, + = long),made\n45,9,1\n").unwrap();
+    fit(path.to_str().unwrap(), &folder.path().join("names"), &[])
+        .exits(2)
+        .says("has 4 names, and no other line has more than 3 values");
+    fs::write(&path, "entry,made,\n45,1\n").unwrap();
+    fit(path.to_str().unwrap(), &folder.path().join("names"), &[])
+        .exits(2)
+        .says("needs the columns of releases");
+    // The folder of another command is left alone, and nothing is computed for it.
+    let of_best = folder.path().join("of_best");
+    fs::create_dir(&of_best).unwrap();
+    fs::write(of_best.join("curves.csv"), "kept").unwrap();
+    fit("docs/data/lab.csv", &of_best, &[])
+        .exits(2)
+        .says("holds the results of `bankshot best`; name another folder");
+    assert_eq!(fs::read_dir(&of_best).unwrap().count(), 1);
     for (flags, message) in [
         (vec!["--tracker", "nobody"], "is neither a tracker"),
         (vec!["--free", "luck"], "--free luck: must be"),
@@ -310,7 +328,10 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     assert!(
         text.contains("before  Ann (30 shots, ")
             && text.starts_with("These shots do not show that the chance of a shot changed: it ")
-            && text.contains("May have changed: the release angle fell by 0.82 deg."),
+            && text.contains("May have changed: the release angle fell by 0.82 deg.")
+            && text
+                .lines()
+                .any(|line| line.starts_with("pitch_mean") && line.ends_with("maybe")),
         "{text}"
     );
 }

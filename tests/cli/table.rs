@@ -157,7 +157,7 @@ const CPP_MAIN: &str = r#"
 #include <cstdio>
 int main() {
     for (double distance : {11.5, 9.0}) {
-        for (double value : shot_table::look_up(distance, 0.0)) std::printf("%.9g ", value);
+        for (double value : shot_table::look_up(distance)) std::printf("%.9g ", value);
         std::printf("\n");
     }
 }

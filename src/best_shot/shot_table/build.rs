@@ -33,8 +33,8 @@ pub struct ShotTableRequest {
     /// Values that the shooter cannot change.
     pub fixed: Vec<(NominalVariable, f64)>,
     /// The most that interpolation may cost in P, and the most by which the interpolated P may err.
-    /// Where a check finds more, nodes are added halfway, at most [`MOST_HALVINGS`] times and up to
-    /// [`MOST_NODES`] nodes; 1 adds none.
+    /// Where a check finds more, nodes are added halfway, at most [`MOST_HALVINGS`] times (with one
+    /// angle three times more where that did not help) and up to [`MOST_NODES`] nodes; 1 adds none.
     pub max_loss: f64,
 }
 

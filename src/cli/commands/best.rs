@@ -58,10 +58,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     // A plan that is refused is refused before anything is written.
     TablePlan::for_search(&profile)?;
     // A folder that is no fit is refused before the search.
-    let read = |folder: &PathBuf| -> Result<_, Failure> {
-        Ok((folder.clone(), fit_folder::read_draws_of(folder, &profile)?))
-    };
-    let draws = options.draws.as_ref().map(read).transpose()?;
+    let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     let folder = match &options.out {
         Some(folder) => folder.clone(),
         None => run_folder::of_profile(&profile)?,

@@ -160,7 +160,7 @@ fn fit_by_session(file: &MeasuredFile) -> Result<[Session; 2], Failure> {
             "{place}: {}; give a file with two sessions, or two files",
             match &names[..] {
                 [] => "has no shots".to_owned(),
-                [one] if one.is_empty() => "has no column session".to_owned(),
+                [one] if one.is_empty() => "has no session in any row".to_owned(),
                 [one] => format!("has one session, {one}"),
                 more => format!("has {} sessions", more.len()),
             }

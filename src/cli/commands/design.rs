@@ -10,14 +10,13 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{self, PhysicsArg};
 use crate::fitting::{
-    Covariance, DesignRow, FitError, Landing, Place, Tracker, design, landing_of, nominal_of,
-    release_of_landing, values_of,
+    Covariance, DesignRow, FitError, Landing, POWER, Place, Tracker, design, landing_of,
+    nominal_of, release_of_landing, values_of,
 };
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
 use crate::shooter::{Nominal, Profile, ShotKind};
-use crate::units::suggestion;
-use crate::units::{DEGREE_RAD, REV_RAD};
+use crate::units::{DEGREE_RAD, REV_RAD, suggestion};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -207,9 +206,6 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
 const TWO_SIDED_95: f64 = 1.96;
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
-
-/// The sum of the normal quantiles of 97.5 % and 80 %.
-const POWER: f64 = TWO_SIDED_95 + 0.8416;
 
 /// How many shots show that P changed from one session to the next.
 fn shots_for_a_change(rows: &[DesignRow]) -> String {

@@ -83,6 +83,7 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
         code::INCOMPLETE
     };
     if let [shots] = &file.shooters[..] {
+        run_folder::refuse_other_results(&out, RunKind::Fit)?;
         let fit = file
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;

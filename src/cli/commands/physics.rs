@@ -100,7 +100,7 @@ fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String 
         ]);
     }
     let summary = comparison.in_words().map_or_else(String::new, |words| {
-        format!("{words} `bankshot fit SHOTS --free hoop_restitution` finds the ring's by made and missed.\n")
+        format!("{words} `bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed.\n")
     });
     format!(
         "{table}\n{summary}The first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere. (A profile that was fitted to landings changes with the physics: fit the shots again with --physics.)\n",

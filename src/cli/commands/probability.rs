@@ -113,10 +113,7 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
     let nominal = options.nominal.resolve(&profile)?;
-    let read = |folder: &PathBuf| -> Result<_, Failure> {
-        Ok((folder.clone(), fit_folder::read_draws_of(folder, &profile)?))
-    };
-    let draws = options.draws.as_ref().map(read).transpose()?;
+    let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     if let Some((seed, index)) = options.replay {
         let release = replayed(options.method, &profile, &nominal, seed, index)?;
         return trace::show(&profile, &release, options.json);

@@ -1,7 +1,7 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
 use crate::cli::config_files::load_physics;
-use crate::cli::failure::{Failure, code, io_in_words};
+use crate::cli::failure::{Failure, code, io_in_words, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::cli::value_parsers::PhysicsArg;
@@ -80,6 +80,9 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
         )));
     }
     let simulator = simulator(options)?;
+    if options.releases != Path::new("-") {
+        refuse_missing(&options.releases)?;
+    }
     let mut source = Source::open(&options.releases)?;
     let header = source.header(options)?;
     let columns = ReleaseColumns::new(&header, &options.carry)

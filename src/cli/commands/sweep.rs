@@ -77,7 +77,6 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
         Some(path) => path.clone(),
         None => run_folder::of_sweep(&config)?,
     };
-    run_folder::refuse_other_results(&path, RunKind::Sweep)?;
     let run_options = RunOptions {
         retry_failed: options.retry_failed,
         fault: options.fault.clone(),
@@ -130,6 +129,7 @@ pub(super) fn compute(
     options: RunOptions,
     quiet: bool,
 ) -> Result<(SweepFolder, RunSummary), Failure> {
+    run_folder::refuse_other_results(path, RunKind::Sweep)?;
     let jobs = Jobs::new(config);
     let folder = SweepFolder::open(path, config, texts)?;
     let lock = folder.lock(options.shard)?;

@@ -91,17 +91,18 @@ pub fn session_changes_text(
         "", "before", "after", "change", "95 %", "unit", "direction", "decide"
     );
     for change in changes {
-        text += &line(change);
+        text += &line(change, changes.len() - 1);
     }
     text += "\n\
         direction: the chance that it changed this way at all. 50 % says nothing. Above\n\
         \x20 97.5 % the 95 % interval does not hold zero.\n\
         decide: about how many shots a session would decide a change of this size. yes:\n\
-        \x20 decided now. -: less than its own uncertainty, so that its size says nothing.\n";
+        \x20 decided now. maybe: beyond its own 95 % interval, which one of several values can\n\
+        \x20 be by chance. -: less than its own uncertainty, so that its size says nothing.\n";
     text
 }
 
-/// Two or three sentences: what became of P, and what has changed for certain.
+/// Two or three sentences: what became of P, which other values changed, and which may have.
 fn verdict(changes: &[SessionChange]) -> String {
     let mut text = String::new();
     if let Some(p) = changes.iter().find(|change| change.name == "P") {
@@ -161,7 +162,7 @@ fn values_in_words(changes: &[SessionChange]) -> String {
     }
     if !possible.is_empty() {
         text += &format!(
-            "May have changed: {}. (Beyond its own 95 % interval; of {} values that stay the same, one or more seems to change in {:.0} of 100 comparisons.)\n",
+            "May have changed: {}. (Each is beyond its own 95 % interval. Of {} values, were all of them the same, one or more would seem to change in {:.0} of 100 comparisons.)\n",
             list(&possible),
             others.len(),
             100.0 * (1.0 - libm::pow(0.95, others.len() as f64))
@@ -184,11 +185,14 @@ fn quantity_in_words(name: &str) -> &str {
     }
 }
 
-fn line(change: &SessionChange) -> String {
+/// `tested` is how many values were looked at beside P.
+fn line(change: &SessionChange, tested: usize) -> String {
     let (direction, probability) = change.direction();
     let comparison = &change.comparison;
     let decide = match comparison.shots_to_decide {
-        _ if change.is_decided() => "yes".to_owned(),
+        _ if change.name == "P" && change.is_decided() => "yes".to_owned(),
+        _ if change.is_certain_among(tested) && change.is_decided() => "yes".to_owned(),
+        _ if change.is_decided() => "maybe".to_owned(),
         Some(needed) => two_digits(needed),
         None => "-".to_owned(),
     };

@@ -327,6 +327,8 @@ fn unlikely_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
             }
         }
     }
+    // A jump has two rows.
+    places.dedup();
     (!places.is_empty()).then(|| {
         format!(
             "At {} {} even the best shot goes in by luck, with P below {UNLIKELY}: {}.",
