@@ -122,7 +122,7 @@ fn wrapped_remark(text: &str) -> String {
             .or_else(|| line.find('|'))
             .is_some_and(|at| is_gutter(&line[..at]));
         // What can be pasted into a shell is not broken inside its quotes.
-        let is_to_paste = line.trim_start().starts_with("--") || line.contains(" > ");
+        let is_to_paste = line.starts_with("  --") || line.contains(" > ");
         if is_quoted || is_to_paste || line.chars().count() <= COLUMNS {
             line.to_owned()
         } else {
@@ -247,6 +247,11 @@ mod tests {
     #[test]
     fn contract_remarks_fit_a_terminal_and_quoted_lines_stay() {
         let quoted = format!("3 | {}\n  | {}^^^^", "long = 1 ".repeat(12), " ".repeat(90));
+        // A message may start with an option; the option itself, to be copied, is indented.
+        let message = format!("--pitch is missing{}", "; give it".repeat(9));
+        assert_eq!(wrapped_remark(&message).lines().count(), 2);
+        let option = format!("  --map '{}'", "a long name ".repeat(8));
+        assert_eq!(wrapped_remark(&option), option);
         let error = format!("error: {}\n{quoted}", "a word or two ".repeat(8).trim_end());
         let text = wrapped_remark(&error);
         assert!(text.ends_with(&quoted), "{text}");
