@@ -82,11 +82,15 @@ impl DrawProbabilities {
         Interval::of(self.of_draws.clone())
     }
 
-    /// The standard error of the mean by the simulation alone.
+    /// The numerical standard error of the mean: that of the simulation, and that of a finite
+    /// number of draws (which are nearly independent).
     #[must_use]
     pub fn numerical_standard_error(&self) -> f64 {
-        let spread = Interval::of(self.replicate_means.clone());
-        spread.sd / (self.replicate_means.len() as f64).sqrt()
+        let variance_of_mean = |values: &[f64]| {
+            let spread = Interval::of(values.to_vec());
+            spread.sd * spread.sd / values.len() as f64
+        };
+        (variance_of_mean(&self.replicate_means) + variance_of_mean(&self.of_draws)).sqrt()
     }
 
     /// Draw by draw, this less `other`.

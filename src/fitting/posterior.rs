@@ -397,20 +397,17 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
                 chain
             })
             .collect();
+        // Walk by walk, so that evenly spaced points come from every walker.
+        let points: Vec<&Vec<f64>> = chains
+            .iter()
+            .flat_map(|chain| {
+                (0..walkers).flat_map(move |walker| chain.iter().skip(walker).step_by(walkers))
+            })
+            .collect();
         let (mut r_hat, mut effective) = (1.0_f64, f64::INFINITY);
-        let parameters = 0..dimension;
-        for parameter in parameters {
-            let walk = |chain: &'_ Vec<Vec<f64>>, walker: usize| {
-                let of_walker = chain.iter().skip(walker).step_by(walkers);
-                of_walker
-                    .map(|point| point[parameter])
-                    .collect::<Vec<f64>>()
-            };
-            let all = chains
-                .iter()
-                .flat_map(|chain| (0..walkers).flat_map(move |walker| walk(chain, walker)));
+        for parameter in 0..dimension {
             let of_parameter = ParameterChains {
-                values: all.collect(),
+                values: points.iter().map(|point| point[parameter]).collect(),
                 chains: CHAINS,
                 steps,
             };
@@ -421,7 +418,6 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
             return Err(FitError::NoScatter);
         }
         if r_hat <= LARGEST_R_HAT && effective >= LEAST_EFFECTIVE_SIZE {
-            let points: Vec<&Vec<f64>> = chains.iter().flatten().collect();
             let draws = draws_of(model, &points, options)?;
             let weights = prior_weights::<D>(&points, &priors);
             return Ok(Posterior {

@@ -359,6 +359,41 @@ fn val_intervals_of_a_small_test_cover_their_truths() {
     }
 }
 
+/// Fits of the same shots that differ only in the seed. Authority: the mean of n independent draws
+/// has the variance of the draws over n. Were the draws worth half of independent ones, the ratio
+/// of both variances would be above 6 for 1 of 500,000 sets of 24 seeds (chi-square); nine
+/// quantities are looked at.
+#[test]
+fn val_draws_tell_their_means_as_independent_ones_would() {
+    const FITS: u64 = 24;
+    let cell = cell(100, Noise::None, 1);
+    let mut random = ChaCha12Rng::seed_from_u64(8);
+    let truth = shooter_of_population(1, &mut random);
+    let simulator = Simulator::new(&Preset::named("ncaa").unwrap().physics()).unwrap();
+    let shots = shots(&cell, &truth, &simulator, &mut random);
+    let posteriors: Vec<Posterior> = (0..FITS)
+        .into_par_iter()
+        .map(|seed| {
+            let options = FitOptions {
+                prior: PRIOR,
+                spin: SpinSource::Assumed,
+                tails: Tails::Normal,
+                draws: 1000,
+                seed,
+            };
+            fit(&shots, 1, &options).unwrap()
+        })
+        .collect();
+    for (name, value) in quantities() {
+        let summaries: Vec<Interval> = posteriors.iter().map(|one| one.summary(value)).collect();
+        let variance = summaries.iter().map(|one| one.sd * one.sd).sum::<f64>() / FITS as f64;
+        let of_means = Interval::of(summaries.iter().map(|one| one.mean).collect());
+        let ratio = of_means.sd * of_means.sd / (variance / 1000.0);
+        println!("{name}: {ratio:.2} times the variance of independent draws");
+        assert!(ratio < 6.0, "{name}: {ratio}");
+    }
+}
+
 #[test]
 #[ignore = "two hours: cargo test --test validation campaign_shooters_test -- --ignored --nocapture"]
 fn campaign_shooters_test_covers() {
