@@ -59,27 +59,37 @@ impl PhysicsComparison {
         changes
     }
 
-    /// One sentence: how far P of the best direct shot rests on what nobody measured in this gym.
+    /// One sentence or two: how far P of the best direct shot rests on what nobody measured in this
+    /// gym, and how far that of [`Self::same_shot`] does.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
+        let list = |changes: Vec<(&str, f64)>| {
+            let words = changes.iter().map(|(name, by)| {
+                let name = name.split_once(' ').map_or(*name, |(_, change)| change);
+                format!("{name} {:+.1}", 100.0 * by)
+            });
+            words.collect::<Vec<_>>().join(", ")
+        };
         let direct = |row: &PhysicsRow| {
             let shot = row.direct.as_ref().ok()?;
             Some(shot.estimate.probability)
         };
-        let changes = self.unmeasured_changes(direct);
-        let words: Vec<String> = changes
-            .iter()
-            .map(|(name, by)| {
-                let name = name.split_once(' ').map_or(*name, |(_, change)| change);
-                format!("{name} {:+.1}", 100.0 * by)
-            })
-            .collect();
-        (!words.is_empty()).then(|| {
-            format!(
-                "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {}.",
-                words.join(", ")
-            )
-        })
+        let best = list(self.unmeasured_changes(direct));
+        if best.is_empty() {
+            return None;
+        }
+        let same = |row: &PhysicsRow| Some(row.same_shot.as_ref()?.probability);
+        let same = list(self.unmeasured_changes(same));
+        let mut text = format!(
+            "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {best}."
+        );
+        if !same.is_empty() {
+            text += &format!(
+                " To {}, which is not aimed again: {same}.",
+                self.same_shot.in_words()
+            );
+        }
+        Some(text)
     }
 }
 
@@ -97,7 +107,7 @@ impl SameShot {
     #[must_use]
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::OfProfile => "the shot of the profile's [nominal] table",
+            Self::OfProfile => "the usual shot (the profile's [nominal] table)",
             Self::BestOfFirstRow => "the best direct shot of the first row",
         }
     }

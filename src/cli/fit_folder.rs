@@ -14,7 +14,7 @@ use crate::output::fit_files::fit_text::probability_text;
 use crate::shooter::{Location, Nominal, Profile};
 use crate::units::{DEGREE_RAD, FOOT_M};
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A fit that was written to a folder.
 pub(crate) struct FitFolder {
@@ -57,15 +57,41 @@ pub(crate) fn refuse_options_of_files(
     }
 }
 
+/// The folders of the shooters in a folder that a fit of several wrote, by name.
+pub(crate) fn of_shooters(folder: &Path) -> Vec<PathBuf> {
+    if folder.join("fit.json").exists() {
+        return Vec::new();
+    }
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let paths = entries.map(|entry| entry.path());
+    let mut fits: Vec<PathBuf> = paths
+        .filter(|path| path.join("fit.json").exists())
+        .collect();
+    fits.sort();
+    fits
+}
+
 /// Reads the folder of a fit.
 pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     refuse_missing(folder)?;
     let json_path = folder.join("fit.json");
     if !json_path.exists() {
-        return Err(Failure::usage(format!(
-            "{}: holds no fit (it has no fit.json); name a folder that `bankshot fit` wrote",
-            folder.display()
-        )));
+        let place = folder.display();
+        let names = of_shooters(folder);
+        return Err(Failure::usage(if names.is_empty() {
+            format!(
+                "{place}: holds no fit (it has no fit.json); name a folder that `bankshot fit` wrote"
+            )
+        } else {
+            let names: Vec<String> = names
+                .iter()
+                .map(|name| name.display().to_string())
+                .collect();
+            format!(
+                "{place}: holds a fit of each shooter; name one: {}",
+                names.join(", ")
+            )
+        }));
     }
     let json: serde_json::Value = serde_json::from_str(&read_text(&json_path)?)
         .map_err(|error| damaged(&json_path, error))?;

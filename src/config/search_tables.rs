@@ -3,7 +3,7 @@
 use super::diagnostics::Diagnostic;
 use super::toml_reader::TableReader;
 use crate::shooter::{NominalVariable, OutputSettings, SearchChoice, SearchSettings, TableGrid};
-use crate::units::{Dimension, UnitSystem};
+use crate::units::{Dimension, UnitSystem, suggestion};
 
 pub(super) fn read_grid(
     root: &mut TableReader<'_, '_>,
@@ -50,8 +50,16 @@ fn read_choice(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic
         return SearchChoice::default();
     };
     let known = NominalVariable::SEARCHABLE.map(NominalVariable::name);
-    if names.is_empty() || names.iter().any(|name| !known.contains(&name.as_str())) {
-        let message = format!("must name one or more of {}", known.join(", "));
+    let unknown = names.iter().find(|name| !known.contains(&name.as_str()));
+    if names.is_empty() || unknown.is_some() {
+        let what = unknown.map_or(String::new(), |name| {
+            let hint = suggestion(name, known);
+            format!(
+                "; \"{}\" is none of them{hint}",
+                name.chars().take(60).collect::<String>()
+            )
+        });
+        let message = format!("must name one or more of {}{what}", known.join(", "));
         diagnostics.push(table.diagnostic("choose", message));
         return SearchChoice::default();
     }

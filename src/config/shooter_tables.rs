@@ -5,11 +5,13 @@ use super::toml_reader::TableReader;
 use crate::shooter::{
     Correlation, NominalOverrides, NominalVariable, ReleaseDispersion, ReleaseVariable, Shooter,
 };
-use crate::units::Dimension;
+use crate::units::{Dimension, REV_RAD};
 use std::sync::LazyLock;
 
 /// Release height if it is missing or wrong, m.
 const PLACEHOLDER_HEIGHT_M: f64 = 2.0;
+/// Most backspin if it is missing or wrong, rad/s: no nominal spin is more than this.
+const PLACEHOLDER_BACKSPIN_RAD_S: f64 = 20.0 * REV_RAD;
 
 pub(super) fn read_shooter(
     root: &mut TableReader<'_, '_>,
@@ -28,7 +30,7 @@ pub(super) fn read_shooter(
     Shooter {
         name: name.unwrap_or_else(|| "shooter".to_owned()),
         release_height_m: height.unwrap_or(PLACEHOLDER_HEIGHT_M),
-        max_backspin_rad_s: backspin.unwrap_or(0.0),
+        max_backspin_rad_s: backspin.unwrap_or(PLACEHOLDER_BACKSPIN_RAD_S),
         max_side_spin_rad_s: side_spin.unwrap_or(0.0),
         dispersion,
     }
@@ -38,34 +40,32 @@ fn read_dispersion(
     table: &mut TableReader<'_, '_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> ReleaseDispersion {
-    let before = diagnostics.len();
+    // An error in percent is the part that grows with the value.
+    let of_speed = grown_error(table, ["c10", "speed"], "c11", diagnostics);
+    let of_backspin = grown_error(table, ["c40", "backspin"], "c41", diagnostics);
     let mut required = |keys, dimension| {
         let value = table.required_as(keys, dimension, diagnostics);
         value.unwrap_or(0.0)
     };
-    let c10_m_s = required(["c10", "speed"], Dimension::Speed);
+    let c10_m_s = match of_speed {
+        Some(_) => 0.0,
+        None => required(["c10", "speed"], Dimension::Speed),
+    };
     let c20_rad = required(["c20", "pitch"], Dimension::Angle);
     let c30_rad = required(["c30", "polar"], Dimension::Angle);
-    let c40_rad_s = required(["c40", "backspin"], Dimension::Spin);
-    for diagnostic in &mut diagnostics[before..] {
-        let (part, of) = match diagnostic.key.rsplit('.').next() {
-            Some("c10" | "speed") => ("c11", "speed"),
-            Some("c40" | "backspin") => ("c41", "backspin"),
-            _ => continue,
-        };
-        if diagnostic.message.contains('%') {
-            diagnostic.message += &format!("; an error in percent of the {of} is {part}");
-        }
-    }
+    let c40_rad_s = match of_backspin {
+        Some(_) => 0.0,
+        None => required(["c40", "backspin"], Dimension::Spin),
+    };
     let mut optional = |key, dimension| table.quantity(key, dimension, diagnostics).unwrap_or(0.0);
     ReleaseDispersion {
         c10_m_s,
-        c11: optional("c11", Dimension::Number),
+        c11: of_speed.unwrap_or_else(|| optional("c11", Dimension::Number)),
         c12_s_m: optional("c12", Dimension::PerSpeed),
         c20_rad,
         c30_rad,
         c40_rad_s,
-        c41: optional("c41", Dimension::Number),
+        c41: of_backspin.unwrap_or_else(|| optional("c41", Dimension::Number)),
         c42_s_rad: optional("c42", Dimension::PerSpin),
         rifle_spin_rad_s: optional("rifle_spin", Dimension::Spin),
         side_spin_rad_s: optional("side_spin", Dimension::Spin),
@@ -74,6 +74,31 @@ fn read_dispersion(
         height_m: optional("height", Dimension::Length),
         correlation: Correlation::NONE,
     }
+}
+
+/// The growth `c11` or `c41` of an error, where the error itself is written in percent of its value
+/// (`speed = "1.5 %"`), or is left out beside the growth.
+fn grown_error(
+    table: &mut TableReader<'_, '_>,
+    names: [&'static str; 2],
+    growth: &'static str,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<f64> {
+    if let Some(share) = table.percentage_as(names) {
+        if table.has(growth) {
+            let message = format!(
+                "is given twice: {} in percent and {growth} are the same",
+                names[1]
+            );
+            diagnostics.push(table.diagnostic(growth, message));
+            table.quantity(growth, Dimension::Number, &mut Vec::new());
+        }
+        return Some(share);
+    }
+    let is_left_out = table.has(growth) && !names.iter().any(|name| table.has(name));
+    is_left_out
+        .then(|| table.quantity(growth, Dimension::Number, diagnostics))
+        .flatten()
 }
 
 /// `[shooter.correlation]`: keys such as `speed_pitch`, each a number from -1 to 1.

@@ -1,13 +1,37 @@
 //! Reads TOML tables key by key. It collects the errors instead of stopping at the first.
 
 use super::diagnostics::{ConfigError, Diagnostic};
-use crate::units::{Dimension, parse, suggestion};
+use crate::units::{Dimension, meant_by, parse};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Known keys are listed up to this number.
 const MOST_KNOWN_NAMES: usize = 40;
+/// How the message about a missing key begins.
+const IS_MISSING: &str = "is missing";
+
+/// Two names of one key: the paper's and the plain one, which messages use.
+const PLAIN_NAMES: [(&str, &str); 4] = [
+    ("c10", "speed"),
+    ("c20", "pitch"),
+    ("c30", "polar"),
+    ("c40", "backspin"),
+];
+
+/// Words that others use for a key.
+const OTHER_WORDS: [(&str, &str); 10] = [
+    ("left_right", "polar"),
+    ("leftright", "polar"),
+    ("aim", "polar"),
+    ("yaw", "polar"),
+    ("azimuth", "polar"),
+    ("angle", "pitch"),
+    ("launch_angle", "pitch"),
+    ("spin", "backspin"),
+    ("height", "release_height"),
+    ("drag", "drag_coefficient"),
+];
 
 /// A table that is being read. A key that is never asked for is reported as unknown.
 #[derive(Clone)]
@@ -111,7 +135,12 @@ impl<'t, 'i> TableReader<'t, 'i> {
         let mut span = self.span.clone();
         let mut table = self.table;
         for part in dotted_key.split('.') {
-            let Some(value) = table.and_then(|table| table.get(part)) else {
+            let plain = PLAIN_NAMES.iter().find(|(name, _)| *name == part);
+            let found = table.and_then(|table| {
+                let value = table.get(part);
+                value.or_else(|| table.get(plain?.1))
+            });
+            let Some(value) = found else {
                 break;
             };
             span = value.span();
@@ -220,11 +249,23 @@ impl<'t, 'i> TableReader<'t, 'i> {
             (true, false) => self.quantity(key, dimension, diagnostics),
             (false, false) => {
                 let example = dimension.units().first().map_or("", |(name, _)| name);
-                let message = format!("is missing; write {key} (or {other}) = \"... {example}\"");
-                diagnostics.push(self.diagnostic(key, message));
+                let message = format!("is missing; write {other} (or {key}) = \"... {example}\"");
+                diagnostics.push(self.diagnostic(other, message));
                 None
             }
         }
+    }
+
+    /// A share that is written as a text in percent under one of two names, if it is so.
+    pub(crate) fn percentage_as(&mut self, names: [&'static str; 2]) -> Option<f64> {
+        let name = names.into_iter().find(|name| self.has(name))?;
+        let text = match self.table?.get(name)?.get_ref() {
+            DeValue::String(text) if text.trim_end().ends_with('%') => text.to_string(),
+            _ => return None,
+        };
+        let share = parse(&text, Dimension::Number).ok()?;
+        self.asked.extend(names);
+        Some(share)
     }
 
     /// A text, if it is given.
@@ -332,11 +373,33 @@ impl<'t, 'i> TableReader<'t, 'i> {
                 continue;
             }
             let radius = name.replace("diameter", "radius");
-            let meant = match known.binary_search(&radius.as_str()) {
-                Ok(_) => format!("; did you mean \"{radius}\", half of it?"),
-                Err(_) => suggestion(name, known.iter().copied()),
+            let is_known = |name: &str| known.binary_search(&name).is_ok();
+            let other_word = OTHER_WORDS
+                .iter()
+                .find(|(word, meant)| *word == name.to_lowercase() && is_known(meant));
+            let meant = match other_word {
+                Some((_, meant)) => Some(*meant),
+                None => meant_by(name, known.iter().copied()),
             };
-            let message = format!("is not a key here; known are {known_names}{meant}");
+            let hint = match meant {
+                _ if is_known(&radius) => format!("; did you mean \"{radius}\", half of it?"),
+                Some(meant) => {
+                    // The key that was meant, or those below it, are then not missing.
+                    let meant = self.full_name(meant);
+                    let below = format!("{meant}.");
+                    diagnostics.retain(|diagnostic| {
+                        let is_meant =
+                            diagnostic.key == meant || diagnostic.key.starts_with(&below);
+                        !(is_meant && diagnostic.message.starts_with(IS_MISSING))
+                    });
+                    format!(
+                        "; did you mean \"{}\"?",
+                        meant.rsplit('.').next().unwrap_or_default()
+                    )
+                }
+                None => String::new(),
+            };
+            let message = format!("is not a key here; known are {known_names}{hint}");
             let shown: String = name.chars().take(60).collect();
             diagnostics.push(Diagnostic {
                 span: key.span(),

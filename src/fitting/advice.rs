@@ -3,7 +3,8 @@
 use super::advice_steps::{AdviceSteps, Cause, Shooting};
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
-use super::measured_release::{VALUE_NAMES, Values, nominal_of, values_of};
+use super::landing::{Landing, landing_of};
+use super::measured_release::{Place, VALUE_NAMES, Values, nominal_of, values_of};
 use super::posterior::{Draw, Posterior, SpinSource};
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::{BestShot, BestShotError, find_kinds};
@@ -22,7 +23,7 @@ const TRAINED: f64 = 0.9;
 pub struct TrainingGain {
     /// The value.
     pub cause: Cause,
-    /// The gain in P of the usual shot.
+    /// The gain in P of the advised shot: the usual one where no change is advised.
     pub gain: Interval,
 }
 
@@ -62,6 +63,9 @@ pub struct Advice {
     pub steps: Option<AdviceSteps>,
     /// What to train, largest gain first.
     pub training: Vec<TrainingGain>,
+    /// Where the usual and the advised release fall to the height of the hoop, for direct shots
+    /// that do.
+    pub landings: Option<[Landing; 2]>,
     /// Bank or direct, where both can be made.
     pub kinds: Option<KindComparison>,
 }
@@ -118,10 +122,6 @@ pub fn advise(
     let usual_shots = simulate(&usual_means);
     let usual_p = usual_shots.probabilities(&draws, |draw| draw.means[place], factor);
     let keeps_backspin = posterior.spin != SpinSource::Measured;
-    let mut training = training_gains(&usual_shots, &usual_p, &draws, place);
-    // Nothing is known of a scatter that was not measured.
-    training.retain(|gain| !(keeps_backspin && gain.cause == Cause::BACKSPIN));
-
     let usual = typical.means[place];
     let kind = ShotKind::of(profile, &nominal_of(&usual));
     let searched = if keeps_backspin {
@@ -166,6 +166,27 @@ pub fn advise(
         place,
     };
     let steps = best.map(|best| shooting.steps(&usual, &values_of(&best.nominal), !keeps_backspin));
+    let advised = |draw: &Draw| {
+        let own = draw.means[place];
+        steps
+            .as_ref()
+            .map_or(own, |steps| steps.advised_of(draw, place))
+    };
+    let advised_means: Vec<Values> = draws.iter().map(advised).collect();
+    let mut training = training_gains(&simulate(&advised_means), &draws, place, advised);
+    // Nothing is known of a scatter that was not measured.
+    training.retain(|gain| !(keeps_backspin && gain.cause == Cause::BACKSPIN));
+    let fall = |values: &Values| {
+        let from = Place {
+            location: profile.location(),
+            release_height_m: profile.shooter().release_height_m,
+        };
+        landing_of(profile.simulator(), &from, values)
+    };
+    let landings = match (kind, fall(&usual), fall(&advised(&typical))) {
+        (ShotKind::Direct, Some(usual), Some(advised)) => Some([usual, advised]),
+        _ => None,
+    };
     let told = usual_probabilities(profile, posterior, place, USUAL_SHOTS);
     Ok(Advice {
         kind,
@@ -181,6 +202,7 @@ pub fn advise(
         best: best.cloned(),
         steps,
         training,
+        landings,
         kinds,
     })
 }
@@ -201,26 +223,24 @@ fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
         .unwrap_or_else(|_| profile.clone())
 }
 
+/// What 10 % less scatter of each value gains about the aim `mean`.
 fn training_gains(
     shots: &WeightedShots,
-    usual: &DrawProbabilities,
     draws: &[Draw],
     place: usize,
+    mean: impl Fn(&Draw) -> Values + Sync,
 ) -> Vec<TrainingGain> {
+    let untrained = shots.probabilities(draws, &mean, |draw| draw.factors[place]);
     let mut gains: Vec<TrainingGain> = (0..VALUE_NAMES.len())
         .map(|i| {
-            let trained = shots.probabilities(
-                draws,
-                |draw| draw.means[place],
-                |draw| {
-                    let mut factor = draw.factors[place];
-                    factor.row_mut(i).scale_mut(TRAINED);
-                    factor
-                },
-            );
+            let trained = shots.probabilities(draws, &mean, |draw| {
+                let mut factor = draw.factors[place];
+                factor.row_mut(i).scale_mut(TRAINED);
+                factor
+            });
             TrainingGain {
                 cause: Cause(i),
-                gain: trained.minus(usual).interval(),
+                gain: trained.minus(&untrained).interval(),
             }
         })
         .collect();

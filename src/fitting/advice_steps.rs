@@ -74,6 +74,8 @@ pub struct AdviceSteps {
     pub steps: Vec<AdviceStep>,
     /// The release after the sure steps alone: the usual one if no step is sure.
     pub advised: Values,
+    /// Which values of it differ from the usual ones.
+    pub is_changed: [bool; VALUE_NAMES.len()],
     /// P of the advised release less that of the usual one.
     pub gain: Interval,
     /// What the advised speed alone and the advised angle alone gain, if both change.
@@ -102,6 +104,17 @@ impl Change {
                 draw.means[place][i]
             }
         })
+    }
+}
+
+impl AdviceSteps {
+    /// The advised release of a draw: its own but for what changes.
+    pub(super) fn advised_of(&self, draw: &Draw, place: usize) -> Values {
+        let change = Change {
+            target: self.advised,
+            changed: self.is_changed,
+        };
+        change.of_draw(draw, place)
     }
 }
 
@@ -233,6 +246,7 @@ impl Shooting<'_> {
         let is_two = advised.changed[0] && advised.changed[1];
         AdviceSteps {
             advised: advised.of_draw(self.typical, self.place),
+            is_changed: advised.changed,
             gain: self.probabilities(&advised).minus(&usual_p).interval(),
             alone: is_two.then(|| {
                 [0, 1].map(|i| {

@@ -91,6 +91,12 @@ pub struct ExpectedMakes {
     pub brier: f64,
     /// Mean logarithmic loss.
     pub log_loss: f64,
+    /// Both losses of a forecast that gives every shot the share of makes.
+    pub losses_of_share: [f64; 2],
+    /// By how many of its standard deviations the squared error is greater than chances that are
+    /// right would give (Spiegelhalter, Stat. Med. 5 (1986) 421). About standard normal if they
+    /// are; positive for chances that are too sure.
+    pub calibration_z: f64,
     /// The probability that a made shot had the greater chance than a missed one; where there are
     /// both.
     pub area_under_curve: Option<f64>,
@@ -211,6 +217,23 @@ fn summary(shots: Vec<ShotChance>) -> ExpectedMakes {
         / count;
     // A chance from few simulated releases is not 0 or 1.
     let least = 0.5 / f64::from(RELEASES);
+    let (mut excess, mut excess_variance) = (0.0, 0.0);
+    for (p, made) in &labelled {
+        let p = p.clamp(least, 1.0 - least);
+        excess += (f64::from(u8::from(*made)) - p) * (1.0 - 2.0 * p);
+        excess_variance += (1.0 - 2.0 * p) * (1.0 - 2.0 * p) * p * (1.0 - p);
+    }
+    let calibration_z = if excess_variance > 0.0 {
+        excess / excess_variance.sqrt()
+    } else {
+        0.0
+    };
+    let share = made as f64 / count;
+    let entropy = [share, 1.0 - share]
+        .into_iter()
+        .filter(|part| *part > 0.0)
+        .map(|part| -part * libm::log(part))
+        .sum();
     let log_loss = labelled
         .iter()
         .map(|(p, made)| {
@@ -236,6 +259,8 @@ fn summary(shots: Vec<ShotChance>) -> ExpectedMakes {
         share: wilson_interval(made, labelled.len()),
         brier,
         log_loss,
+        losses_of_share: [share * (1.0 - share), entropy],
+        calibration_z,
         area_under_curve: area_under_curve(&labelled),
         swishes: (swishes, swishes_made),
         bins: (0..bins)
@@ -288,6 +313,29 @@ mod tests {
         assert!((wilson.low - 0.490).abs() < 5e-4, "{wilson:?}");
         assert!((wilson.high - 0.943).abs() < 5e-4, "{wilson:?}");
         assert_eq!(wilson_interval(0, 10).low, 0.0);
+    }
+
+    /// By hand: chances of 0.8 and 0.2 that are wrong once in five are right; that are always wrong,
+    /// too sure.
+    #[test]
+    fn val_calibration_z() {
+        let shot = |chance: f64, made: bool| ShotChance {
+            row: 0,
+            release: [0.0; 4],
+            release_sd: [0.0; 4],
+            chance,
+            swish_chance: 0.0,
+            distance: 0.0,
+            made: Some(made),
+        };
+        let right = (0..50).map(|k| shot(0.8, k % 5 != 0));
+        assert!(summary(right.collect()).calibration_z.abs() < 1e-12);
+        let wrong = (0..50).map(|k| shot(if k % 2 == 0 { 0.8 } else { 0.2 }, k % 2 == 1));
+        // Each adds 0.8 * 0.6 with a variance of 0.36 * 0.16.
+        let expected = 50.0 * 0.48 / (50.0 * 0.36 * 0.16_f64).sqrt();
+        let found = summary(wrong.collect());
+        assert!((found.calibration_z - expected).abs() < 1e-9, "{found:?}");
+        assert_eq!(found.losses_of_share, [0.25, libm::log(2.0)]);
     }
 
     /// By hand: of the four pairs of a made and a missed shot, three are in order and one is tied.

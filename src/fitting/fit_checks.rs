@@ -79,6 +79,8 @@ pub enum FitWarning {
     Drift(&'static str, f64),
     /// The number of makes is not what these shots give: seen, expected, its standard deviation.
     OtherMakes(usize, f64, f64),
+    /// The chances are too sure: see [`ExpectedMakes::calibration_z`](super::ExpectedMakes).
+    TooSure(f64),
     /// Neighbouring shots are alike: value, p-value.
     SerialCorrelation(&'static str, f64),
 }
@@ -112,7 +114,11 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::OtherMakes(made, expected, sd) => write!(
                 out,
-                "{made} shots went in where {expected:.1} \u{b1} {sd:.1} were expected of the measured releases; look at the columns (units, left and right, what depth is counted from, made), the physics (this ring may be softer or harder) and the tracker"
+                "{made} shots went in where {expected:.1} \u{b1} {sd:.1} were expected of the measured releases; {LOOK_AT}"
+            ),
+            Self::TooSure(z) => write!(
+                out,
+                "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in; {LOOK_AT}"
             ),
             Self::Drift(name, p) => write!(out, "{name} drifts over the session (p = {p:.4})"),
             Self::SerialCorrelation(name, p) => write!(
@@ -122,6 +128,9 @@ impl std::fmt::Display for FitWarning {
         }
     }
 }
+
+/// What makes chances wrong.
+const LOOK_AT: &str = "look at the place (a free throw is 13.75 ft from the hoop's centre) and the height of the release, the columns (units, left and right, what depth is counted from, made), the physics (air, and this ring may be softer or harder) and the tracker's noise";
 
 /// Shots for each unknown.
 const LEAST_SHOTS: usize = 10;

@@ -12,6 +12,8 @@ use crate::shooter::{Profile, ProfileError};
 
 /// Makes farther from what is expected, in standard deviations, are worth a word.
 const FAR_MAKES: f64 = 3.0;
+/// See [`ExpectedMakes::calibration_z`].
+const FAR_CALIBRATION: f64 = 3.0;
 
 /// A fitted shooter.
 #[derive(Clone, Debug)]
@@ -102,6 +104,8 @@ pub fn fit_shooter(
             makes.expected,
             makes.expected_sd,
         ));
+    } else if makes.calibration_z > FAR_CALIBRATION {
+        warnings.push(FitWarning::TooSure(makes.calibration_z));
     }
     Ok(ShooterFit {
         name: test.name.to_owned(),

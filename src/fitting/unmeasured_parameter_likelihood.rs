@@ -52,6 +52,16 @@ impl UnseenParameter {
             Self::HoopRestitution => (0.3, 0.9),
         }
     }
+
+    /// The values that sources give: rad/s, or none. (Rule books let the ring absorb 35 to 50 % of
+    /// the energy; for backspin see [`PopulationPrior::MEASURED`](super::PopulationPrior).)
+    #[must_use]
+    pub fn usual_range(self) -> (f64, f64) {
+        match self {
+            Self::Backspin => (0.5 * REV_RAD, 4.0 * REV_RAD),
+            Self::HoopRestitution => (0.45, 0.70),
+        }
+    }
 }
 
 /// The likelihood of the made and missed shots.
@@ -168,21 +178,22 @@ fn curve(parameter: UnseenParameter, mut points: Vec<(f64, f64)>) -> LikelihoodC
         point.1 -= greatest;
     }
     let level = -0.5 * RATIO_95;
-    let crossing = |mut side: Box<dyn Iterator<Item = (f64, f64)> + '_>| {
-        let mut previous = (best, 0.0);
-        loop {
-            let next = side.next()?;
-            if next.1 < level {
-                let share = (level - previous.1) / (next.1 - previous.1);
-                return Some(previous.0 + share * (next.0 - previous.0));
+    // From the ends inwards: a curve of few shots can dip below the level and rise again, and the
+    // interval holds all of it.
+    let crossing = |from_end: &mut dyn Iterator<Item = (f64, f64)>| {
+        let mut outside: Option<(f64, f64)> = None;
+        for point in from_end.chain([(best, 0.0)]) {
+            if point.1 >= level {
+                let (value, logarithm) = outside?;
+                let share = (level - logarithm) / (point.1 - logarithm);
+                return Some(value + share * (point.0 - value));
             }
-            previous = next;
+            outside = Some(point);
         }
+        None
     };
-    let below = crossing(Box::new(
-        points.iter().rev().copied().filter(|p| p.0 < best),
-    ));
-    let above = crossing(Box::new(points.iter().copied().filter(|p| p.0 > best)));
+    let below = crossing(&mut points.iter().copied().filter(|point| point.0 < best));
+    let above = crossing(&mut points.iter().rev().copied().filter(|point| point.0 > best));
     let (low, high) = parameter.range();
     LikelihoodCurve {
         parameter,
@@ -211,5 +222,20 @@ mod tests {
         assert!((curve.interval[0] - 0.14).abs() < 0.01, "{curve:?}");
         assert!((curve.interval[1] - 4.06).abs() < 0.01);
         assert!(curve.is_decided);
+    }
+
+    /// A curve with two maxima whose valley is below the level.
+    #[test]
+    fn contract_the_interval_holds_every_likely_value() {
+        let logarithms = [-9.0, -4.0, -0.5, -3.0, 0.0, -4.0, -9.0];
+        let points = logarithms.iter().enumerate();
+        let points = points
+            .map(|(k, &logarithm)| (k as f64, logarithm))
+            .collect();
+        let [low, high] = curve(UnseenParameter::Backspin, points).interval;
+        assert!(
+            (1.0..2.0).contains(&low) && (4.0..5.0).contains(&high),
+            "{low} {high}"
+        );
     }
 }

@@ -28,7 +28,7 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
         &["made", "make", "result", "outcome", "goal", "basket"],
     ),
     ("shooter", &["shooter", "player", "athlete", "subject"]),
-    ("session", &["session", "date"]),
+    ("session", &["session", "date", "day"]),
     ("shot", &["shotid", "shotnumber", "shotno", "trial"]),
     ("time", &["time"]),
 ];
@@ -130,6 +130,18 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
             quantity.unit_names().join(", ")
         );
     }
+    for (quantity, side, other) in [
+        (Quantity::Aim, "left", "right"),
+        (Quantity::LeftRight, "right", "left"),
+    ] {
+        let name = quantity.name();
+        if taken.contains(&name) {
+            text += &format!(
+                "\n  {name} is positive to the shooter's {side}: for a column that is positive to \
+                 the {other}, write a minus before its name"
+            );
+        }
+    }
     let is_known = |quantity: Quantity| {
         taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
     };
@@ -173,19 +185,26 @@ fn zero_of(name: &str, quantity: Quantity, unit: Option<&str>) -> (&'static str,
             );
             ("", offset)
         }
-        Quantity::LeftRight if is_positive_to_the_left(name) => ("-", String::new()),
+        Quantity::LeftRight if is_positive_to(name, "left") => ("-", String::new()),
+        Quantity::Aim if is_positive_to(name, "right") => ("-", String::new()),
         _ => ("", String::new()),
     }
 }
 
-/// Whether a name says that its numbers grow to the left: `Left (in)`, `Side (+ = left)`.
-fn is_positive_to_the_left(name: &str) -> bool {
+/// Whether a name says that its numbers grow to a side: `Left (in)`, `Side (+ = left)`.
+fn is_positive_to(name: &str, side: &str) -> bool {
+    let other = if side == "left" { "right" } else { "left" };
     let lower = name.to_lowercase();
     let spaceless: String = lower.chars().filter(|c| !c.is_whitespace()).collect();
-    let says = |left: [&str; 3]| left.iter().any(|words| spaceless.contains(words));
-    let is_left_alone = first_word(&lower) == "left" && !lower.contains("right");
-    let is_negative = says(["-=left", "leftnegative", "negative=left"]);
-    !is_negative && (is_left_alone || says(["+=left", "leftpositive", "positive=left"]))
+    let says = |words: String| spaceless.contains(&words);
+    let is_alone = first_word(&lower) == side && !lower.contains(other);
+    let is_negative = says(format!("-={side}"))
+        || says(format!("{side}negative"))
+        || says(format!("negative={side}"));
+    let is_positive = says(format!("+={side}"))
+        || says(format!("{side}positive"))
+        || says(format!("positive={side}"));
+    !is_negative && (is_alone || is_positive)
 }
 
 /// The first word of a name: `left` of `Left (in)`.
@@ -215,9 +234,16 @@ fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static st
         })?;
     let target = match found.0 {
         "pitch" if is_landing && letters.starts_with("arc") => "entry_angle",
+        // `Side (deg)` is a direction.
+        "left_right" if says_degrees(name) => "aim",
         target => target,
     };
     (!taken.contains(&target)).then_some(target)
+}
+
+/// Whether a name says that its numbers are degrees.
+fn says_degrees(name: &str) -> bool {
+    name.contains('°') || name.to_lowercase().contains("deg")
 }
 
 /// The unit that the name of a column ends with or has in brackets; degrees for an angle without
@@ -262,7 +288,7 @@ mod tests {
             "Player",
             "Release Speed (mph)",
             "LaunchAngle",
-            "Aim [deg]",
+            "Side (deg)",
             "Result",
             "Depth",
             "note",
@@ -274,7 +300,8 @@ mod tests {
             "--map 'shooter=Player'",
             "--map 'speed=Release Speed (mph):mph'",
             "--map 'pitch=LaunchAngle:deg'",
-            "--map 'aim=Aim [deg]:deg'",
+            "--map 'aim=Side (deg):deg'",
+            "write a minus before its name",
             "--map 'made=Result'",
             "--map 'depth=Depth:UNIT'",
             "UNIT of depth: ft, in, m, cm, mm",
@@ -322,9 +349,16 @@ mod tests {
         ] {
             assert_eq!(target_of(name, true, &[]), target, "{name}");
         }
-        assert!(is_positive_to_the_left("Left (in)") && is_positive_to_the_left("Side (+ = left)"));
-        assert!(!is_positive_to_the_left("Side (in, - = left)"));
-        assert!(!is_positive_to_the_left("Left-right (in)"));
+        for (name, side, expected) in [
+            ("Left (in)", "left", true),
+            ("Side (+ = left)", "left", true),
+            ("Side (in, - = left)", "left", false),
+            ("Left-right (in)", "left", false),
+            ("Side (deg, + = right)", "right", true),
+            ("Side (deg)", "right", false),
+        ] {
+            assert_eq!(is_positive_to(name, side), expected, "{name}");
+        }
         assert_eq!(unit_of("speed_fps", Quantity::Speed), Some("ft_s"));
         assert_eq!(unit_of("Depth (in)", Quantity::Depth), Some("in"));
         assert_eq!(unit_of("DepthInches", Quantity::Depth), Some("in"));

@@ -3,7 +3,7 @@
 //! A column is `QUANTITY_UNIT`, such as `speed_ft_s`; columns of other names are named with
 //! `--map`, which can also turn a sign round and move the zero.
 
-use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
+use crate::units::{DEGREE_RAD, Dimension, FOOT_M, INCH_M, REV_RAD};
 
 /// A unit: its suffix and its size in SI units.
 type Unit = (&'static str, f64);
@@ -106,6 +106,11 @@ impl Quantity {
     #[must_use]
     pub fn unit_names(self) -> Vec<&'static str> {
         self.units().iter().map(|(name, _)| *name).collect()
+    }
+
+    /// The dimension of texts with units of their own, such as `6 ft 11 in`; lengths alone have any.
+    pub(super) fn dimension_of_texts(self) -> Option<Dimension> {
+        (self.units() == LENGTH_UNITS).then_some(Dimension::Length)
     }
 
     /// Its units.

@@ -12,7 +12,7 @@ use crate::fitting::{
     fit_flight, landing_of, release_of_landing,
 };
 use crate::shooter::Location;
-use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
+use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -329,8 +329,9 @@ impl Reader<'_> {
         }
         if !missing.is_empty() {
             return Err(format!(
-                "does not say where the shots are from: give {}",
-                missing.join("; and ")
+                "does not say where the shots are from: give {}{}",
+                missing.join("; and "),
+                map_proposal(self.columns)
             ));
         }
         // What is given once for all rows is refused once.
@@ -357,7 +358,14 @@ impl Reader<'_> {
         match cell.parse::<f64>() {
             Ok(value) if value.is_finite() && value.abs() < 1e9 => Ok(Some(column.value(value))),
             Ok(_) => Err(format!("{name}: \"{shown}\" is not a finite number")),
-            Err(_) => Err(format!("{name}: \"{shown}\" is not a number")),
+            // `6 ft 11 in` in a column of heights.
+            Err(_) => match quantity
+                .dimension_of_texts()
+                .map(|dimension| parse(cell, dimension))
+            {
+                Some(Ok(si)) => Ok(Some(column.value(si / column.unit.1))),
+                _ => Err(format!("{name}: \"{shown}\" is not a number")),
+            },
         }
     }
 

@@ -23,3 +23,4 @@ pub mod sweep_bank_direct_map;
 pub mod sweep_best_shot_maps;
 pub mod sweep_difference_map;
 pub mod sweep_results;
+pub mod team_maps;

@@ -52,21 +52,34 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let outlined: Vec<(f64, f64)> = bank.iter().map(|place| at(place)).collect();
     let numbers: Vec<((f64, f64), String, bool)> = found
         .iter()
-        .map(|(p, place)| (at(place), format!("{:.0}", 100.0 * p), is_bank(place)))
+        .map(|(p, place)| (at(place), shown(*p), is_bank(place)))
         .collect();
     let units = results.units();
-    let all: Vec<&PlaceProbabilities> = found.iter().map(|(_, place)| *place).collect();
+    // The mirror image of a place is named with it where the map shows the same number there.
+    let alike = |p: f64| -> Vec<&PlaceProbabilities> {
+        let same = found.iter().filter(|(other, _)| shown(*other) == shown(p));
+        same.map(|(_, place)| *place).collect()
+    };
+    let as_sure = found.iter().filter(|(p, _)| best.0 - p < AS_SURE).count();
+    let named = best.1.in_words_with_mirror(&alike(best.0), units);
+    let is_both = named != best.1.in_words(units);
+    let others = as_sure - if is_both { 2 } else { 1 };
     let sentences = [
-        format!(
-            "Your surest place is {}: {:.0} of 100 go in.",
-            best.1.in_words_with_mirror(&all, units),
-            100.0 * best.0
-        ),
+        match others {
+            0 => format!(
+                "Your surest place is {named}: {} of 100 go in.",
+                shown(best.0)
+            ),
+            _ => format!(
+                "Your surest place is {named}: {} of 100 go in; {others} more are as sure.",
+                shown(best.0)
+            ),
+        },
         bank_in_words(&bank, units),
         format!(
-            "Your hardest place is {}: {:.0} of 100 go in.",
-            worst.1.in_words_with_mirror(&all, units),
-            100.0 * worst.0
+            "Your hardest place is {}: {} of 100 go in.",
+            worst.1.in_words_with_mirror(&alike(worst.0), units),
+            shown(worst.0)
         ),
     ];
     let drawing = |words: &[String]| {
@@ -81,7 +94,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
             .collect();
         let words_top = MAP_TOP + height;
         let mut svg = Svg::new(width, words_top + LINE_HEIGHT * lines.len() as f64);
-        let title = format!("{}: makes in 100 shots", results.shooter_name());
+        let title = format!("{}: makes in 100 of the best shots", results.shooter_name());
         svg.heading((10.0, 26.0), 22.0, Anchor::Start, &title);
         let corner = (0.0, MAP_TOP);
         let no_key = ColourKey::Legend(&[]);
@@ -107,6 +120,14 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     })
 }
 
+/// Places whose P is less than this below the greatest are as sure.
+const AS_SURE: f64 = 0.01;
+
+/// A chance as the map shows it.
+fn shown(p: f64) -> String {
+    format!("{:.0}", 100.0 * p)
+}
+
 /// The colour of a probability, so pale that black numbers stand out on it.
 fn pale(p: f64) -> Rgb {
     sequential(p).map(|part| 140 + (u16::from(part) * 115 / 255) as u8)
@@ -121,9 +142,13 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
     let Some(most) = most else {
         return "Shoot direct: from no place does the bank shot make 1 of 100 more.".to_owned();
     };
-    let in_hundred = |p: Option<Difference>| p.map(|p| format!("{:.0}", 100.0 * p.value));
+    let in_hundred = |p: Option<Difference>| p.map(|p| shown(p.value));
     let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));
-    let place = most.in_words_with_mirror(bank, units);
+    let alike = bank
+        .iter()
+        .filter(|place| in_hundred(place.bank) == in_hundred(most.bank));
+    let alike: Vec<&PlaceProbabilities> = alike.copied().collect();
+    let place = most.in_words_with_mirror(&alike, units);
     let aim = most.board_aim_in_words(units).map(|aim| {
         // Of a place and its mirror image, the aim is on the same side of the board as the shooter,
         // or on the other.

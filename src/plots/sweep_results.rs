@@ -130,6 +130,16 @@ impl<'a> SweepResults<'a> {
         )
     }
 
+    /// As [`Self::source_note`], for several players on the same places.
+    pub(super) fn team_note(&self, players: usize) -> String {
+        format!(
+            "bankshot {}, {players} players, {} court, {} places. Each profile is taken as exact.",
+            env!("CARGO_PKG_VERSION"),
+            self.config.league.name().to_uppercase(),
+            self.places.len(),
+        )
+    }
+
     /// A map of the court that shows every place.
     pub(super) fn court_map(&self) -> CourtMap<'_> {
         let settings = &self.config.settings;

@@ -6,6 +6,7 @@ mod quantity;
 mod unit_system;
 
 pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
+pub(crate) use quantity::meant_by;
 pub use quantity::{Dimension, QuantityError, parse, suggestion};
 pub use unit_system::UnitSystem;
 

@@ -105,7 +105,12 @@ impl Dimension {
             ],
             Self::Speed => &[("fps", "ft/s"), ("kph", "km/h")],
             Self::Angle => &[("degrees", "deg"), ("degree", "deg"), ("\u{b0}", "deg")],
-            Self::Spin => &[("Hertz", "Hz"), ("rev/min", "rpm"), ("\u{b0}/s", "deg/s")],
+            Self::Spin => &[
+                ("Hertz", "Hz"),
+                ("rev/min", "rpm"),
+                ("rps", "rev/s"),
+                ("\u{b0}/s", "deg/s"),
+            ],
             _ => &[],
         }
     }
@@ -239,7 +244,12 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
             .size_of(&unit)
             .ok_or_else(|| QuantityError::WrongUnit {
                 unit: unit.chars().take(40).collect(),
-                suggestion: suggestion(&unit, dimension.units().iter().map(|(name, _)| *name)),
+                suggestion: match unit.strip_prefix("ft ") {
+                    Some(inches) if inches.parse::<f64>().is_ok() => {
+                        format!("; did you mean \"{number} ft {inches} in\"?")
+                    }
+                    _ => suggestion(&unit, dimension.units().iter().map(|(name, _)| *name)),
+                },
                 allowed: dimension.unit_names(),
             })?
     };
@@ -288,6 +298,14 @@ fn feet_and_inches(
 /// is like it.
 #[must_use]
 pub fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    meant_by(name, known).map_or_else(String::new, |known| format!("; did you mean \"{known}\"?"))
+}
+
+/// The known name that is most like a name that is not known, if any is like it.
+pub(crate) fn meant_by<'a>(
+    name: &str,
+    known: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
     /// Names less alike than this, from 0 to 1, have nothing in common.
     const LEAST_LIKENESS: f64 = 0.75;
     let name: String = name.chars().take(60).collect::<String>().to_lowercase();
@@ -299,9 +317,7 @@ pub fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> S
         })
         .filter(|(likeness, _)| *likeness >= LEAST_LIKENESS)
         .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or_else(String::new, |(_, known)| {
-            format!("; did you mean \"{known}\"?")
-        })
+        .map(|(_, known)| known)
 }
 
 /// Whether character `i` belongs to the number: a digit, a sign, or an exponent. An `e` belongs to
@@ -384,6 +400,7 @@ mod tests {
         );
         assert!(message("1 FT").ends_with("did you mean \"ft\"?"));
         assert!(message("1 parsec").ends_with("cm or mm"));
+        assert!(message("6 ft 8").ends_with("did you mean \"6 ft 8 in\"?"));
     }
 
     #[test]

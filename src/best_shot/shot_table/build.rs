@@ -8,7 +8,8 @@ use super::interpolation_check::{
 use super::lookup::{ShotTable, TableShot};
 use crate::analysis::sensitivity::{self, SensitivityTopics};
 use crate::best_shot::search::{BestShotError, climb_from_shots, find_beside_other_kind};
-use crate::dynamics::Outcome;
+use crate::dynamics::{Event, EventKind, Outcome};
+use crate::model::SolidId;
 use crate::probability::{Estimate, Progress, Sampler, Silent};
 use crate::search_space::PlanError;
 use crate::shooter::{
@@ -371,17 +372,44 @@ fn table_shot(
     outcome: &Outcome,
 ) -> TableShot {
     let windows = sensitivity::analyse(here, nominal, WINDOWS, &Silent).windows;
+    let tolerances = [NominalVariable::Speed, NominalVariable::Pitch].map(|variable| {
+        let ends = windows.iter().find(|window| window.variable == variable);
+        let here = nominal.get(variable);
+        ends.and_then(|window| window.ends)
+            .map_or([0.0; 2], |(low, high)| [here - low, high - here])
+    });
+    let (time_s, entry_rad) = fall_to_hoop(here, nominal).unzip();
     TableShot {
         nominal: *nominal,
         aim_rad: nominal.polar_rad - here.location().angle_rad,
         probability: estimate.probability,
         standard_error: estimate.standard_error,
         outcome: outcome.kind,
-        time_s: outcome.verdict.time_s,
-        entry_rad: outcome.entry.map(|entry| entry.angle_rad),
-        tolerances: [0, 1].map(|i| windows[i].width()),
+        time_s: time_s.unwrap_or(outcome.verdict.time_s),
+        entry_rad,
+        tolerances,
         other_kind: None,
     }
+}
+
+/// When an error-free shot first falls to the height of the hoop, s, and its angle below the
+/// horizontal then, rad. The ring is left out: times after bounces off it would jump from place to
+/// place. A shot that meets the board first is followed from where it leaves it.
+fn fall_to_hoop(here: &Profile, nominal: &Nominal) -> Option<(f64, f64)> {
+    let simulator = here.simulator();
+    let release = here.release(nominal);
+    let (start, before_s) = if simulator.first_touch(&release) == Some(SolidId::Board) {
+        let trace = simulator.trace(&release, f64::INFINITY).ok()?;
+        let parts = |event: &&Event| matches!(event.kind, EventKind::Part { .. });
+        let part = trace.events.iter().find(parts)?;
+        (part.state, part.time_s)
+    } else {
+        (release.state(), 0.0)
+    };
+    let (state, fall_s) = simulator.undisturbed_fall_to_hoop(&start)?;
+    let v = state.velocity_m_s;
+    let entry_rad = libm::atan2(-v.z, libm::hypot(v.x, v.y));
+    Some((before_s + fall_s, entry_rad))
 }
 
 /// The shot of a neighbour, moved to a place and climbed there; `None` if it leads to nothing that

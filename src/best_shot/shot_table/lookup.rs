@@ -17,13 +17,14 @@ pub struct TableShot {
     pub standard_error: f64,
     /// How the error-free shot goes in.
     pub outcome: OutcomeKind,
-    /// Time from the release until the error-free shot is made, s. It includes all bounces.
+    /// Time from the release until the error-free shot first falls to the height of the hoop, as if
+    /// there were no ring, s: a bank shot after it leaves the board.
     pub time_s: f64,
-    /// Angle at which the error-free shot falls through the hoop at last, rad.
+    /// Its angle below the horizontal then, rad; `None` if it is not defined.
     pub entry_rad: Option<f64>,
-    /// Widths of the ranges of speed (m/s) and pitch angle (rad) in which an otherwise exact shot
-    /// is made.
-    pub tolerances: [f64; 2],
+    /// How far speed (m/s) and pitch angle (rad) can be below and above their values until an
+    /// otherwise exact shot misses.
+    pub tolerances: [[f64; 2]; 2],
     /// P of the other kind's optimum that climbs alone find; `None` where no shot of it is made.
     pub other_kind: Option<f64>,
 }

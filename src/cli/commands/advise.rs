@@ -15,7 +15,8 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The shots can be a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit.
+The shots can be a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit, of one \
+shooter or of several.
 
 Examples:
   bankshot advise docs/data/gym_sensor.csv
@@ -33,14 +34,21 @@ pub(crate) struct AdviseOptions {
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
         fit_folder::refuse_options_of_files(&options.shots, &options.measured)?;
-        let fit = fit_folder::read(&options.shots)?;
-        answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;
-        print_warnings(&fit.warnings);
+        let folders = match &fit_folder::of_shooters(&options.shots)[..] {
+            [] => vec![options.shots.clone()],
+            several => several.to_vec(),
+        };
+        for (number, folder) in folders.iter().enumerate() {
+            let fit = fit_folder::read(folder)?;
+            separate(options, number)?;
+            print_warnings(&fit.warnings);
+            answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;
+        }
         return Ok(code::DONE);
     }
     let file = options.measured.read(&options.shots)?;
     let mut worst = code::DONE;
-    for shots in &file.shooters {
+    for (number, shots) in file.shooters.iter().enumerate() {
         report_rejected(&file, shots, true);
         if !shots.rejected.is_empty() {
             worst = code::INCOMPLETE;
@@ -49,13 +57,22 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         let observed = (fit.makes.made, fit.makes.labelled);
-        answer(options, &fit.profiles, &fit.posterior, observed, quiet)?;
+        separate(options, number)?;
         print_warnings(&fit.warnings);
+        answer(options, &fit.profiles, &fit.posterior, observed, quiet)?;
     }
     Ok(worst)
 }
 
-/// Advice is no better than the fit that it rests on.
+/// An empty line between the answers for two shooters.
+fn separate(options: &AdviseOptions, number: usize) -> Result<(), Failure> {
+    if number > 0 && !options.json {
+        print_answer("\n")?;
+    }
+    Ok(())
+}
+
+/// Advice is no better than the fit that it rests on: these come first.
 fn print_warnings<W: std::fmt::Display>(warnings: &[W]) {
     for warning in warnings {
         print_remark(&format!("warning: {warning}"));

@@ -29,7 +29,10 @@ Examples:
   bankshot compare-sessions september.csv march.csv --distance '13.75 ft' \\
     --release-height '7 ft'
   bankshot compare-sessions results/september-fit results/march-fit
-  bankshot compare-sessions season.csv            (two values in its column session)")]
+  bankshot compare-sessions season.csv
+  bankshot compare-sessions season.csv --session September --session March
+
+A file with a column session needs no second one; with several shooters, each is compared.")]
 pub(crate) struct CompareSessionsOptions {
     /// The first session, or a file with a column session that has two values.
     pub(crate) before: PathBuf,
@@ -37,6 +40,9 @@ pub(crate) struct CompareSessionsOptions {
     pub(crate) after: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
+    /// Of a file with more than two sessions, one of the two to compare; give it twice.
+    #[arg(long, value_name = "NAME", conflicts_with = "after")]
+    pub(crate) session: Vec<String>,
     /// Print one JSON object.
     #[arg(long)]
     pub(crate) json: bool,
@@ -71,26 +77,48 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
     }
-    let sessions = match &options.after {
-        Some(after) => [read(&options.before, options)?, read(after, options)?],
+    let compared: Vec<[Session; 2]> = match &options.after {
+        Some(after) => vec![[read(&options.before, options)?, read(after, options)?]],
         None if options.before.is_dir() => {
-            return Err(Failure::usage(
-                "the folder of a fit is one session; name the second one too",
-            ));
+            return Err(Failure::usage(format!(
+                "{}: the folder of a fit is one session; name the second one too, or the file of the shots if it has a column session",
+                options.before.display()
+            )));
         }
-        None => fit_by_session(&options.measured.read(&options.before)?)?,
+        None => {
+            let file = options.measured.read(&options.before)?;
+            let of_shooter = |shots| fit_by_session(&file, shots, &options.session);
+            file.shooters
+                .iter()
+                .map(of_shooter)
+                .collect::<Result<_, _>>()?
+        }
     };
-    check_conditions(&sessions)?;
-    let changes = changes(&sessions, options);
-    if options.json {
-        print_answer(&format!("{:#}\n", json(&sessions, &changes)))?;
-    } else {
+    let mut jsons = Vec::new();
+    for (number, sessions) in compared.iter().enumerate() {
+        check_conditions(sessions)?;
+        let changes = changes(sessions, options);
+        if options.json {
+            jsons.push(json(sessions, &changes));
+            continue;
+        }
+        if compared.len() > 1 {
+            let space = if number == 0 { "" } else { "\n" };
+            print_prose(&format!("{space}{}\n", sessions[0].profile.shooter().name))?;
+        }
         let summaries = sessions.each_ref().map(|session| SessionSummary {
             name: &session.name,
             shots: session.posterior.shots,
             makes: session.makes,
         });
         print_prose(&session_changes_text(summaries, &changes))?;
+    }
+    if options.json {
+        let all = match jsons.len() {
+            1 => jsons.swap_remove(0),
+            _ => Value::Array(jsons),
+        };
+        print_answer(&format!("{all:#}\n"))?;
     }
     Ok(code::DONE)
 }
@@ -125,6 +153,12 @@ fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
             before.name, after.name
         )));
     }
+    let [first, second] = [before, after].map(|session| &session.profile.shooter().name);
+    if first != second && !first.is_empty() && !second.is_empty() {
+        print_remark(&format!(
+            "warning: {first} and {second} have different names; two shooters differ in more than what changed"
+        ));
+    }
     let place = |session: &Session| {
         let location = session.profile.location();
         let height_m = session.profile.shooter().release_height_m;
@@ -145,26 +179,48 @@ fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
 /// Places nearer than this are the same, m.
 const SAME_PLACE_M: f64 = 0.15;
 
-fn fit_by_session(file: &MeasuredFile) -> Result<[Session; 2], Failure> {
+/// The two sessions of a shooter: those that are `wanted`, or all.
+fn fit_by_session(
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    wanted: &[String],
+) -> Result<[Session; 2], Failure> {
     let place = file.file.display().to_string();
-    let shots = file.only_shooter()?;
-    report_rejected(file, shots, true);
+    report_rejected(file, shots, file.shooters.len() == 1);
     let mut names: Vec<&String> = Vec::new();
     for session in &shots.sessions {
         if !names.contains(&session) {
             names.push(session);
         }
     }
-    let [first, second] = names[..] else {
+    let listed = names
+        .iter()
+        .map(|name| name.as_str())
+        .collect::<Vec<_>>()
+        .join(", ");
+    if let Some(missing) = wanted.iter().find(|wanted| !names.contains(wanted)) {
         return Err(Failure::usage(format!(
-            "{place}: {}; give a file with two sessions, or two files",
-            match &names[..] {
-                [] => "has no shots".to_owned(),
-                [one] if one.is_empty() => "has no session in any row".to_owned(),
-                [one] => format!("has one session, {one}"),
-                more => format!("has {} sessions", more.len()),
-            }
+            "{place}: has no session {missing}; it has {listed}"
         )));
+    }
+    if !wanted.is_empty() {
+        names = wanted.iter().collect();
+    }
+    let [first, second] = names[..] else {
+        return Err(Failure::usage(match &names[..] {
+            [] => format!("{place}: has no shots"),
+            [one] if one.is_empty() => format!(
+                "{place}: has no session in any row; name its column with --map 'session=COLUMN', or give two files"
+            ),
+            [one] if !wanted.is_empty() => {
+                format!("--session {one}: name two sessions; {place} has {listed}")
+            }
+            [one] => format!("{place}: has one session, {one}; give a file with two, or two files"),
+            more => format!(
+                "{place}: has {} sessions ({listed}); choose two with --session NAME --session NAME",
+                more.len()
+            ),
+        }));
     };
     let fit = |session: &String| -> Result<Session, Failure> {
         let keep: Vec<bool> = shots.sessions.iter().map(|name| name == session).collect();
@@ -249,6 +305,7 @@ fn json([before, after]: &[Session; 2], changes: &[SessionChange]) -> Value {
         })
     });
     json!({
+        "shooter": before.profile.shooter().name,
         "before": session(before),
         "after": session(after),
         "changes": listed.collect::<Value>(),

@@ -38,11 +38,12 @@ aim from the line to the hoop's centre, polar from the court's long axis. left_r
 ft_s m_s mph km_h, deg rad, rev_s rpm rad_s, ft in m cm mm, s ms.
 
 Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv, report.html and plots; with several \
-shooters, one folder for each and shooters.csv.
+shooters, one folder for each and shooters.csv. docs/formats.md explains every column.
 
 Examples:
   bankshot fit docs/data/gym_sensor.csv
   bankshot fit shots.csv --map 'speed=ReleaseSpeed:mph' \\
+    --map 'shooter=Player' --map 'session=Day' \\
     --distance '13.75 ft' --release-height '7 ft'
   bankshot fit tracking.csv --tracker optical_25hz --frame court_94x50 \\
     --free drag_coefficient")]
@@ -51,7 +52,8 @@ pub(crate) struct FitOptions {
     pub(crate) shots: PathBuf,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
-    /// Folder of the results [default: results/<name of the file>-fit].
+    /// Folder of the results [default: results/<name of the file>-fit, with --shooter a folder in
+    /// it].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Also ask the shots for what no sensor sees: backspin or hoop_restitution (from made and
@@ -69,10 +71,14 @@ const MOST_NAMED: usize = 20;
 pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     check_free(&options.free)?;
     let file = options.measured.read(&options.shots)?;
-    let out = options
-        .out
-        .clone()
-        .unwrap_or_else(|| default_folder(&options.shots));
+    let out = options.out.clone().unwrap_or_else(|| {
+        let folder = default_folder(&options.shots);
+        // Where a fit of all shooters puts this one.
+        match &options.measured.shooter {
+            Some(name) => folder.join(run_folder::safe_name(name)),
+            None => folder,
+        }
+    });
     for shots in &file.shooters {
         report_rejected(&file, shots, file.shooters.len() == 1);
     }
@@ -359,6 +365,10 @@ fn write(
     run_folder::prepare(folder, RunKind::Fit)?;
     let units = options.measured.unit_system();
     let source = file.source(shots);
+    let rows = shots.shots.iter().map(|shot| shot.row);
+    let sessions = rows
+        .zip(shots.sessions.iter().map(String::as_str))
+        .collect();
     let contents: [(&str, Vec<u8>); 4] = [
         (
             "fit.json",
@@ -370,9 +380,12 @@ fn write(
         ),
         (
             "draws.parquet",
-            draws_parquet(&fit.posterior).map_err(Failure::bug)?,
+            draws_parquet(&fit.posterior, &fit.probabilities).map_err(Failure::bug)?,
         ),
-        ("shots.csv", shots_csv(fit, &shots.rejected, units)),
+        (
+            "shots.csv",
+            shots_csv(fit, &sessions, &shots.rejected, units),
+        ),
     ];
     for (name, bytes) in contents {
         let path = folder.join(name);
@@ -484,13 +497,22 @@ fn free_parameter(
             "; the interval reaches the end of the range: these shots cannot tell"
         }
     );
+    let usual = parameter.usual_range();
+    let is_usual = (usual.0..=usual.1).contains(&curve.best);
+    if curve.is_decided && !is_usual {
+        text += &format!(
+            "That is not what sources give ({:.2} to {:.2}{unit}). Makes and misses answer for all that is wrong here: look first at distance, release height, air, tracker, and how a make was recorded.\n",
+            usual.0 / size,
+            usual.1 / size
+        );
+    }
     for (value, logarithm) in &curve.points {
         text += &format!(
-            "  {:>6.2}{unit}  log-likelihood {logarithm:>8.2}\n",
+            "  {:>7.3}{unit}  log-likelihood {logarithm:>8.2}\n",
             value / size
         );
     }
-    if curve.is_decided && !(parameter == UnseenParameter::Backspin && is_measured) {
+    if curve.is_decided && is_usual && !(parameter == UnseenParameter::Backspin && is_measured) {
         text += &use_it;
     }
     Ok(text)

@@ -3,7 +3,7 @@
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::config::parse_profile;
-use crate::shooter::{Profile, is_control_or_direction};
+use crate::shooter::{Profile, implausible_values, is_control_or_direction};
 use crate::units::{self, Dimension};
 use clap::{Args, ValueEnum};
 use std::io::{BufRead, Write};
@@ -198,30 +198,67 @@ fn ask(input: &mut impl BufRead) -> Result<String, Failure> {
     let mut text = Template::Player.text().to_owned();
     for question in &QUESTIONS {
         let answer = answer_to(input, question.words, question.usual, |answer| {
-            question.dimension.map_or(Ok(()), |dimension| {
-                units::parse(answer, dimension)
-                    .map(drop)
-                    .map_err(|error| error.to_string())
-            })
+            if let Some(dimension) = question.dimension {
+                units::parse(answer, dimension).map_err(|error| error.to_string())?;
+            }
+            profile_with(&text, &[(question.line, answer)]).map(drop)
         })?;
         text = with_value(&text, question.line, &answer);
     }
     let names = LEVELS.map(|(name, _)| name).join(", ");
-    let words = format!("How steady are they ({names})");
-    let level = answer_to(input, &words, "college", |answer| {
-        let is_known = LEVELS.iter().any(|(name, _)| *name == answer);
-        is_known.then_some(()).ok_or(format!("one of {names}"))
+    let words = format!(
+        "How steady are they: {names}; or your own scatter in speed, release angle, and left and right, such as {}",
+        LEVELS[2].1.join(", ")
+    );
+    let answer = answer_to(input, &words, "college", |answer| {
+        let values = scatter_of(answer)
+            .ok_or_else(|| format!("one of {names}, or three values with commas between"))?;
+        let lines = SCATTER_LINES
+            .into_iter()
+            .zip(values.iter().map(String::as_str));
+        profile_with(&text, &lines.collect::<Vec<_>>()).map(drop)
     })?;
-    for (name, values) in LEVELS {
-        if name == level {
-            for (line, value) in ["speed = ", "pitch = ", "polar = "].iter().zip(values) {
-                text = with_value(&text, line, value);
-            }
-        }
+    let values = scatter_of(&answer).unwrap_or_default();
+    for (line, value) in SCATTER_LINES.into_iter().zip(&values) {
+        text = with_value(&text, line, value);
     }
-    let checked: Result<Profile, _> = parse_profile(&text, "the answers");
-    checked?;
+    let profile: Result<Profile, _> = parse_profile(&text, "the answers");
+    for warning in implausible_values(&profile?) {
+        print_remark(&format!("warning: {warning}"));
+    }
     Ok(text)
+}
+
+/// The lines of the scatter in speed, pitch and polar angle, up to their values.
+const SCATTER_LINES: [&str; 3] = ["speed = ", "pitch = ", "polar = "];
+
+/// The scatter of a level by name, or three values.
+fn scatter_of(answer: &str) -> Option<Vec<String>> {
+    let level = LEVELS
+        .iter()
+        .find(|(name, _)| name.eq_ignore_ascii_case(answer));
+    if let Some((_, values)) = level {
+        return Some(values.map(str::to_owned).to_vec());
+    }
+    let values: Vec<String> = answer
+        .split(',')
+        .map(|value| value.trim().to_owned())
+        .collect();
+    (values.len() == SCATTER_LINES.len()).then_some(values)
+}
+
+/// The profile with other values in some lines of its text.
+fn profile_with(text: &str, values: &[(&str, &str)]) -> Result<Profile, String> {
+    let text = values.iter().fold(text.to_owned(), |text, (line, value)| {
+        with_value(&text, line, value)
+    });
+    parse_profile(&text, "the answers").map_err(|error| {
+        let first = error.diagnostics.first();
+        first.map_or_else(
+            || error.to_string(),
+            |first| format!("{}: {}", first.key, first.message),
+        )
+    })
 }
 
 /// Asks until the answer makes sense.

@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
 interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
-interpolated P errs by more, nodes are added halfway. The table says what is left.
+interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, the checks as much \
+again: with --max-loss 1 a table is a quick draft.
 
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
@@ -187,7 +188,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let text_of = |output: &Output| {
         let source = |language| source_code(&table, (language, &output.class), (&profile, units));
         match output.format {
-            TableFormat::Text => table_text(&table, units),
+            TableFormat::Text => table_text(&table, &profile, units),
             TableFormat::Csv => table_csv(&table, units),
             TableFormat::Json => format!("{:#}\n", table_json(&table, &profile, units)),
             TableFormat::Java => source(Language::Java),
@@ -225,7 +226,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let missing = missing_places(&table);
     if missing > 0 && !quiet {
         print_remark(&format!(
-            "no clean shot at {missing} of the places that were asked for (exit code {})",
+            "no shot goes in from {missing} of the places that were asked for (exit code {})",
             code::INCOMPLETE
         ));
     }

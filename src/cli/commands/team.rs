@@ -14,7 +14,7 @@ use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
 use crate::plots::svg::shortened;
 use crate::plots::sweep_results::SweepResults;
-use crate::plots::{player_poster, sweep_bank_direct_map};
+use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
 use crate::report::poster_page::poster_page;
 use crate::shooter::Profile;
 use crate::sweep::SweepConfig;
@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 Without --sweep each player shoots from the location of their profile, and one table is printed.
 
 With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.csv has every place and \
-player. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
+player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
 the same command continues.
 
 Examples:
@@ -229,7 +229,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         });
     }
     let units = sweeps[0].1.settings.output.units;
-    let mut players = Vec::new();
+    let (mut players, mut finished) = (Vec::new(), Vec::new());
     let count = sweeps.len();
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
         forecast_in_words(count, &sweeps[0].1)
@@ -251,15 +251,22 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
             name,
             places: PlaceProbabilities::of_sweep(&config, &rows),
         });
+        finished.push((config, rows));
     }
+    let results: Vec<SweepResults<'_>> = finished
+        .iter()
+        .map(|(config, rows)| SweepResults::new(config, rows))
+        .collect();
+    let maps = team_maps::draw(&results, &best_players(&players));
+    plot_files::write(&options.out, &maps.into_iter().collect::<Vec<_>>())?;
     let csv = team_csv(&players, units);
     let file = options.out.join("team.csv");
     atomic_file::write(&file, csv.as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
-    print_answer(&team_text(&players, units))?;
+    print_prose(&team_text(&players, units))?;
     if !quiet {
         print_remark(&format!(
-            "written: {}, and in each player's folder bank_and_direct.svg and poster.html",
+            "written: {}, team.svg beside it, and in each player's folder bank_and_direct.svg and poster.html",
             file.display()
         ));
         if let [first, second, ..] = &folders[..] {
@@ -303,8 +310,11 @@ fn write_pictures(
     plot_files::write(folder, &plots)
 }
 
-/// The players with the greatest P at each place: those who are not surely worse than the best one,
-/// by twice the error of the difference.
+/// Players whose P differs by less than this are level.
+const LEVEL: f64 = 0.01;
+
+/// The players with the greatest P at each place: those who are not surely worse than the best one
+/// by a shot in 100, or by twice the error of the difference.
 fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
     (0..players[0].places.len())
         .map(|place| {
@@ -319,7 +329,7 @@ fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
             };
             let is_level = |(_, p): &&(usize, Difference)| {
                 let error = libm::hypot(p.standard_error, best.standard_error);
-                best.value - p.value <= 2.0 * error
+                best.value - p.value <= LEVEL.max(2.0 * error)
             };
             found.iter().filter(is_level).map(|(i, _)| *i).collect()
         })
@@ -409,10 +419,11 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     let level = best.iter().filter(|of| of.len() > 1).count();
     if level > 0 {
         text += &format!(
-            "At {level} of {} places two or more are level (team.csv names them).\n",
+            "At {level} of {} places two or more are level: within 1 in 100 (team.csv names them).\n",
             best.len()
         );
     }
+    text += "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n";
     for player in order.iter().map(|(number, _)| &players[*number]) {
         let bank = player.bank_places();
         text += &format!("{}: ", shortened(&player.name, LONGEST_NAME));

@@ -4,7 +4,8 @@ use super::fit_json::interval_json;
 use super::fit_text::percent;
 use super::parameters::value_units;
 use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, Cause, Interval, SpinSource, TrainingGain, Values, values_of,
+    Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, SpinSource, TrainingGain, Values,
+    values_of,
 };
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
@@ -84,6 +85,19 @@ impl ChangeWords {
         }
     }
 
+    /// Where a ball falls, as a line of the answer: what a gym sensor shows.
+    fn landing(&self, title: &str, landing: &Landing) -> String {
+        let (unit, size) = self.units.short_length();
+        let right = landing.right_m / size;
+        let side = if right < 0.0 { "left" } else { "right" };
+        format!(
+            "{title:<12} entry {:.1} deg, depth {:.1} {unit}, {:.1} {unit} to the {side}\n",
+            landing.entry_angle_rad / DEGREE_RAD,
+            landing.depth_m / size,
+            right.abs()
+        )
+    }
+
     /// A release as a line of the answer.
     fn release(&self, title: &str, values: &Values) -> String {
         let units = value_units(self.units);
@@ -103,9 +117,12 @@ impl ChangeWords {
 fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -> String {
     let p = advice.usual_probability.mean;
     let changes = words.of_releases(&advice.usual, &steps.advised);
+    let gain = &steps.gain;
     let mut text = format!(
-        "With the same scatter you can make {:.0} %: {changes}.",
-        100.0 * (p + steps.gain.mean)
+        "With the same scatter you can make {:.0} % (95 %: {:+.0} to {:+.0} points): {changes}.",
+        100.0 * (p + gain.mean),
+        100.0 * gain.low,
+        100.0 * gain.high
     );
     if let Some([speed, pitch]) = &steps.alone
         && (speed.mean < 0.0 || pitch.mean < 0.0)
@@ -230,16 +247,27 @@ pub fn advice_text(
             text += &words.release("advised shot", &steps.advised);
         }
         text += &words.release("best shot", &values_of(&best.nominal));
+        if let Some([usual, advised]) = &advice.landings {
+            text += "at the height of the hoop; depth from the front of the ring\n";
+            text += &words.landing("usual shot", usual);
+            text += &words.landing("advised shot", advised);
+        }
     }
     if let Some(steps) = &advice.steps {
-        text += "\nstep by step, each on top of those before\n";
+        text += "\nstep by step, each on top of those before";
+        if !steps.steps.iter().all(AdviceStep::is_sure) {
+            text += " (in brackets: too little or too unsure to be advised)";
+        }
+        text += "\n";
         let mut from = advice.usual;
         for step in &steps.steps {
-            text += &format!(
-                "  {:<42} {}\n",
-                words.of_step(step, &from),
-                points(&step.gain)
-            );
+            let what = words.of_step(step, &from);
+            let what = if step.is_sure() {
+                what
+            } else {
+                format!("({what})")
+            };
+            text += &format!("  {what:<42} {}\n", points(&step.gain));
             from = step.release;
         }
     }
@@ -250,7 +278,15 @@ pub fn advice_text(
             advice.spin.name()
         );
     }
-    text += "\n10 % less scatter\n";
+    let is_changed = advice
+        .steps
+        .as_ref()
+        .is_some_and(|steps| steps.is_changed.contains(&true));
+    text += if is_changed {
+        "\n10 % less scatter, at the advised shot\n"
+    } else {
+        "\n10 % less scatter, at the usual shot\n"
+    };
     for training in &advice.training {
         text += &format!(
             "  {:<38} {}\n",
@@ -268,6 +304,7 @@ pub fn advice_text(
             100.0 * kinds.bank_is_better
         );
     }
+    text += "\nThe intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.\n";
     text
 }
 
@@ -337,6 +374,29 @@ pub fn advice_json(
             named("made", made.into()),
         ])
     });
+    let (short, inch) = units.short_length();
+    let landing = |landing: &Landing| {
+        object(vec![
+            named(
+                "entry_angle_deg",
+                number(landing.entry_angle_rad / DEGREE_RAD),
+            ),
+            named(&format!("depth_{short}"), number(landing.depth_m / inch)),
+            named(
+                &format!("left_right_{short}"),
+                number(landing.right_m / inch),
+            ),
+        ])
+    };
+    let landings = advice
+        .landings
+        .as_ref()
+        .map_or(Value::Null, |[usual, advised]| {
+            object(vec![
+                named("usual", landing(usual)),
+                named("advised", landing(advised)),
+            ])
+        });
     let (long, metre) = units.length();
     object(vec![
         named("shooter", name.into()),
@@ -369,6 +429,7 @@ pub fn advice_json(
         named("advised_gain", of_steps(&|steps| interval(&steps.gain))),
         named("advised_alone", alone),
         named("training", training.collect()),
+        named("landings", landings),
         named("bank_or_direct", kinds),
     ])
 }

@@ -1,6 +1,8 @@
 //! `draws.parquet`: the draws of a posterior, one a row, in SI units.
 
-use crate::fitting::{Draw, Posterior, SpinSource, VALUE_NAMES, Values, pair_name};
+use crate::fitting::{
+    Draw, DrawProbabilities, Posterior, SpinSource, VALUE_NAMES, Values, pair_name,
+};
 use crate::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
 use nalgebra::SMatrix;
 use parquet::basic::Type as Physical;
@@ -31,23 +33,36 @@ fn names(places: usize) -> Vec<String> {
     names
 }
 
-/// The bytes of the file.
+/// The columns that are written for readers alone: P of the usual shot of each draw.
+fn probability_names(places: usize) -> Vec<String> {
+    (1..=places)
+        .map(|place| format!("place_{place}_probability"))
+        .collect()
+}
+
+/// The bytes of the file. `probabilities` are those of the draws at each place.
 ///
 /// # Errors
 /// The writer failed.
-pub fn draws_parquet(posterior: &Posterior) -> parquet::errors::Result<Vec<u8>> {
-    let names = names(posterior.draws[0].means.len());
+pub fn draws_parquet(
+    posterior: &Posterior,
+    probabilities: &[DrawProbabilities],
+) -> parquet::errors::Result<Vec<u8>> {
+    let places = posterior.draws[0].means.len();
+    let mut names = names(places);
+    names.extend(probability_names(places));
     let columns = names
         .iter()
         .map(|name| column(name, Physical::DOUBLE))
         .collect::<parquet::errors::Result<Vec<_>>>()?;
     let mut sink = ParquetSink::new(Vec::new(), &columns)?;
-    for draw in &posterior.draws {
+    for (k, draw) in posterior.draws.iter().enumerate() {
         let mut values: Vec<f64> = draw.means.iter().flatten().copied().collect();
         values.extend(draw.sds);
         values.extend(draw.speed_coefficients);
         values.push(draw.tail_weight);
         values.extend(pairs().map(|(i, j)| draw.correlation[(i, j)]));
+        values.extend(probabilities.iter().map(|place| place.of_draws[k]));
         let cells: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
         sink.push(cells.into())?;
     }
@@ -69,7 +84,8 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
         .iter()
         .filter(|name| name.ends_with("_speed_mean_m_s"))
         .count();
-    let wanted = names(places);
+    let mut wanted = names(places);
+    wanted.extend(probability_names(places));
     if places == 0 || header != wanted {
         return Err("is not a file of draws that `bankshot fit` wrote".to_owned());
     }

@@ -114,6 +114,9 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         named("expected_makes_sd", number(makes.expected_sd)),
         named("brier", number(makes.brier)),
         named("log_loss", number(makes.log_loss)),
+        named("brier_of_share", number(makes.losses_of_share[0])),
+        named("log_loss_of_share", number(makes.losses_of_share[1])),
+        named("calibration_z", number(makes.calibration_z)),
         named(
             "area_under_curve",
             makes.area_under_curve.map_or(Value::Null, number),

@@ -87,8 +87,8 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             (all, made) => format!("{made} of {all} predicted swishes went in"),
         };
         text += &format!(
-            "chances Brier {:.3}, log loss {:.3}, area under the curve {auc}; {swishes}\n",
-            makes.brier, makes.log_loss
+            "chances Brier {:.3} ({:.3} for the share of makes alone), log loss {:.3} ({:.3}), area under the curve {auc}; {swishes}\n",
+            makes.brier, makes.losses_of_share[0], makes.log_loss, makes.losses_of_share[1]
         );
     }
     let of_value = value_units(units);

@@ -94,11 +94,8 @@ pub fn session_changes_text(
         text += &line(change, changes.len() - 1);
     }
     text += "\n\
-        direction: the chance that it changed this way at all. 50 % says nothing. Above\n\
-        \x20 97.5 % the 95 % interval does not hold zero.\n\
-        decide: about how many shots a session would decide a change of this size. yes:\n\
-        \x20 decided now. maybe: beyond its own 95 % interval, which one of several values can\n\
-        \x20 be by chance. -: less than its own uncertainty, so that its size says nothing.\n";
+        direction  the chance that it changed this way at all; 50 % says nothing\n\
+        decide     about how many shots a session would decide a change of this size. yes: decided now. maybe: its own 95 % interval leaves out zero, but among several values one can do so by chance. -: less than its own uncertainty, so its size says nothing\n";
     text
 }
 
@@ -154,7 +151,7 @@ fn values_in_words(changes: &[SessionChange]) -> String {
         words.join(", ")
     };
     if certain.is_empty() && possible.is_empty() {
-        return "No other value changed by more than its uncertainty.\n".to_owned();
+        return "No value of the release changed by more than its uncertainty.\n".to_owned();
     }
     let mut text = String::new();
     if !certain.is_empty() {
@@ -162,8 +159,9 @@ fn values_in_words(changes: &[SessionChange]) -> String {
     }
     if !possible.is_empty() {
         text += &format!(
-            "May have changed: {}. (Each is beyond its own 95 % interval. Of {} values, were all of them the same, one or more would seem to change in {:.0} of 100 comparisons.)\n",
+            "May have changed: {}. ({} own 95 % interval leaves out zero. But of {} values that stay the same, one or more seem to change in {:.0} of 100 comparisons.)\n",
             list(&possible),
+            if possible.len() == 1 { "Its" } else { "Their" },
             others.len(),
             100.0 * (1.0 - libm::pow(0.95, others.len() as f64))
         );

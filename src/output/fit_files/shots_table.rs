@@ -3,19 +3,26 @@
 use super::parameters::value_units;
 use crate::fitting::{ShooterFit, VALUE_NAMES};
 use crate::units::UnitSystem;
+use std::collections::BTreeMap;
 
-/// The bytes of the table. `rejected` are the rows kept out.
+/// The bytes of the table. `sessions` are those of the shots by row, `rejected` the rows kept out.
 #[must_use]
-pub fn shots_csv(fit: &ShooterFit, rejected: &[(u64, String)], units: UnitSystem) -> Vec<u8> {
+pub fn shots_csv(
+    fit: &ShooterFit,
+    sessions: &BTreeMap<u64, &str>,
+    rejected: &[(u64, String)],
+    units: UnitSystem,
+) -> Vec<u8> {
     let of_value = value_units(units);
-    let mut out = String::from("row");
+    let mut out = String::from("row,session");
     for (name, (unit, _)) in VALUE_NAMES.iter().zip(of_value) {
         let unit = unit.replace('/', "_");
         out += &format!(",{name}_{unit},{name}_error_{unit}");
     }
     out += ",chance,swish_chance,made,distance_from_aim_sd,flag\n";
     for shot in &fit.makes.shots {
-        out += &shot.row.to_string();
+        let session = sessions.get(&shot.row).copied().unwrap_or_default();
+        out += &format!("{},{}", shot.row, quoted(session));
         for (i, (_, size)) in of_value.iter().enumerate() {
             out += &format!(
                 ",{:.4},{:.4}",
@@ -35,9 +42,18 @@ pub fn shots_csv(fit: &ShooterFit, rejected: &[(u64, String)], units: UnitSystem
     for (row, reason) in rejected {
         out += &format!(
             "{row}{},\"kept out: {}\"\n",
-            ",".repeat(12),
+            ",".repeat(13),
             reason.replace('"', "'")
         );
     }
     out.into_bytes()
+}
+
+/// A cell with quotes where it needs them.
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
 }

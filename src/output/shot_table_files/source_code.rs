@@ -1,10 +1,9 @@
 //! A table of best shots as source that looks a shot up: Java, C++ and Python.
 //!
 //! Each has one function of distance and court angle, linear between the nodes. It gives NaN
-//! outside the table and beside a place without a shot. Time and entry angle are NaN beside a shot
-//! that is not clean: between different bounces they jump.
+//! outside the table and beside a place without a shot.
 
-use super::table_text::{notes, shooter_note};
+use super::table_text::{notes, physics_note, shooter_note};
 use crate::best_shot::{ShotTable, TableShot};
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
@@ -21,7 +20,8 @@ pub enum Language {
 }
 
 /// The values that a lookup returns: name and value in units of the results.
-fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 7] {
+fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 9] {
+    const SMALLER: fn([f64; 2]) -> f64 = |[below, above]| below.min(above);
     let (long, metre) = units.length();
     [
         (format!("speed_{long}_s"), |s| s.nominal.speed_m_s, metre),
@@ -39,12 +39,17 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 7] {
             |s| s.entry_rad.unwrap_or(f64::NAN),
             DEGREE_RAD,
         ),
+        (
+            format!("speed_tolerance_{long}_s"),
+            |s| SMALLER(s.tolerances[0]),
+            metre,
+        ),
+        (
+            "pitch_tolerance_deg".to_owned(),
+            |s| SMALLER(s.tolerances[1]),
+            DEGREE_RAD,
+        ),
     ]
-}
-
-/// Whether a value is given for clean shots alone.
-fn needs_clean(name: &str) -> bool {
-    matches!(name, "time_s" | "entry_deg")
 }
 
 /// The source in a language (Java: with the name of the class).
@@ -80,8 +85,7 @@ pub fn source_code(
         .map(|shot| {
             let cells: Vec<String> = values
                 .iter()
-                .map(|(name, value, size)| match shot {
-                    Some(shot) if needs_clean(name) && !table.is_clean(shot) => nan.to_owned(),
+                .map(|(_, value, size)| match shot {
                     Some(shot) if value(shot).is_finite() => format!("{:.6}", value(shot) / size),
                     _ => nan.to_owned(),
                 })
@@ -98,6 +102,7 @@ pub fn source_code(
             profile.hash(),
         ),
         shooter_note(table, profile, units),
+        physics_note(profile, units),
         format!(
             "{}(distance_{long}, court_angle_deg) gives {}. Without an angle it takes the first.",
             if language == Language::Java {
@@ -108,9 +113,10 @@ pub fn source_code(
             names.join(", ")
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
-        "NaN outside the table, and beside a place without a shot. Time and entry angle are NaN \
-         also beside a shot that touches the ring, or the board twice, on its way in."
+        "Time and entry angle are those where the ball falls to the height of the hoop. A tolerance \
+         is how far speed or pitch can be off, up or down, alone, until the shot misses."
             .to_owned(),
+        "NaN outside the table, and beside a place without a shot.".to_owned(),
     ];
     about.extend(notes(table, units));
     let comment = |prefix: &str| {

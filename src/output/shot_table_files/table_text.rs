@@ -1,6 +1,7 @@
 //! A table of best shots as text, CSV and JSON.
 
 use crate::best_shot::{InterpolationCheck, ShotKind, ShotTable, TableShot};
+use crate::model::SolidId;
 use crate::output::json_object::{number, object, provenance};
 use crate::shooter::{Location, Profile, ReleaseVariable};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
@@ -44,15 +45,27 @@ fn columns(kind: ShotKind, units: UnitSystem) -> Vec<TableColumn> {
         (in_unit("probability", ""), 3, |s| s.probability, 1.0),
         (in_unit("standard_error", ""), 4, |s| s.standard_error, 1.0),
         (
-            in_unit("speed_tolerance", &speed),
+            in_unit("speed_tolerance_below", &speed),
             2,
-            |s| s.tolerances[0],
+            |s| s.tolerances[0][0],
             metre,
         ),
         (
-            in_unit("pitch_tolerance", "deg"),
+            in_unit("speed_tolerance_above", &speed),
+            2,
+            |s| s.tolerances[0][1],
+            metre,
+        ),
+        (
+            in_unit("pitch_tolerance_below", "deg"),
             1,
-            |s| s.tolerances[1],
+            |s| s.tolerances[1][0],
+            DEGREE_RAD,
+        ),
+        (
+            in_unit("pitch_tolerance_above", "deg"),
+            1,
+            |s| s.tolerances[1][1],
             DEGREE_RAD,
         ),
         (
@@ -95,13 +108,13 @@ fn without_rounding(value: f64) -> f64 {
 
 /// The table for people, at most 80 columns wide.
 #[must_use]
-pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
+pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> String {
     let (long, _) = units.length();
     let speed_unit = format!("{long}/s");
     let tolerance_unit = format!("{long}/s, deg");
     let header = [
         [
-            "from", "angle", "speed", "pitch", "aim", "spin", "time", "entry", "P", "range",
+            "from", "angle", "speed", "pitch", "aim", "spin", "time", "entry", "P", "margin",
             "goes in",
         ],
         [
@@ -118,12 +131,20 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
             "",
         ],
     ];
-    let mut text = format!(
-        "Best {} shots. P: the chance of each. range: how far speed and pitch can\n\
-         vary, one at a time and with all else exact, until the shot misses. time,\n\
-         entry: until it falls through.\n",
-        table.kind.name()
-    );
+    let mut text = String::new();
+    for sentence in [
+        shooter_note(table, profile, units),
+        physics_note(profile, units),
+        format!(
+            "Best {} shots. from: distance from the hoop's centre. aim: positive to the left. P: \
+             the chance of each. margin: by how much speed and pitch can be off, up or down, one \
+             at a time and with all else exact, until the shot misses. time, entry: where it falls \
+             to the height of the hoop.",
+            table.kind.name()
+        ),
+    ] {
+        text += &wrapped(&sentence);
+    }
     for cells in header {
         text += &line(&cells.map(str::to_owned));
     }
@@ -140,6 +161,12 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
                 text.starts_with('-') && !text.contains(|c: char| ('1'..='9').contains(&c));
             if is_zero { text[1..].to_owned() } else { text }
         }
+    };
+    // The smaller side.
+    let margin = |shot: &TableShot, i: usize| {
+        let [below, above] = shot.tolerances[i];
+        let (decimals, size) = [(2, units.length().1), (1, DEGREE_RAD)][i];
+        format!("{:.decimals$}", below.min(above) / size)
     };
     for TableNode {
         distance,
@@ -159,10 +186,10 @@ pub fn table_text(table: &ShotTable, units: UnitSystem) -> String {
                 cell(shot, 4),
                 cell(shot, 5),
                 cell(shot, 6),
-                format!("{}, {}", cell(shot, 8), cell(shot, 9)),
+                format!("{}, {}", margin(shot, 0), margin(shot, 1)),
                 shot.outcome.name().to_owned(),
             ]),
-            None => format!("{:>6} {angle:>5.1} no clean shot\n", short(distance)),
+            None => format!("{:>6} {angle:>5.1} no shot goes in\n", short(distance)),
         };
     }
     let notes = notes(table, units);
@@ -217,8 +244,17 @@ pub fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> 
     if let Some((index, shot)) = first.and_then(|i| Some((i, table.shots[i].as_ref()?))) {
         let sd = |variable| shooter.dispersion.sigma(variable, &shot.nominal);
         let distance_m = table.distances_m[index % table.distances_m.len()];
+        let of_speed = shooter.dispersion.c11;
+        let percent = if of_speed > 0.0 {
+            format!(
+                " ({} % of the speed)",
+                short(100.0 * sd(ReleaseVariable::Speed) / shot.nominal.speed_m_s)
+            )
+        } else {
+            String::new()
+        };
         note += &format!(
-            ", with standard deviations (at {} {long}) of {} {long}/s, {} deg up, {} deg sideways, {} rev/s",
+            ", with standard deviations (at {} {long}) of {} {long}/s{percent}, {} deg up, {} deg sideways, {} rev/s",
             short(distance_m / metre),
             short(sd(ReleaseVariable::Speed) / metre),
             short(sd(ReleaseVariable::Pitch) / DEGREE_RAD),
@@ -227,6 +263,29 @@ pub fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> 
         );
     }
     note + "."
+}
+
+/// Ball, hoop and air, so that tables for two balls can be told apart.
+#[must_use]
+pub fn physics_note(profile: &Profile, units: UnitSystem) -> String {
+    let physics = profile.physics();
+    let (unit, size) = units.short_length();
+    let air = if physics.air.density_kg_m3 > 0.0 {
+        format!(
+            "drag coefficient {} in air of {} kg/m3",
+            short(physics.air.drag_coefficient),
+            short(physics.air.density_kg_m3)
+        )
+    } else {
+        "no air".to_owned()
+    };
+    format!(
+        "Physics: a ball of {} kg and {:.2} {unit}, restitution {:.2} on the hoop and {:.2} on the board, {air}.",
+        short(physics.ball_mass_kg),
+        2.0 * physics.ball_radius_m / size,
+        physics.restitution_on(SolidId::Ring),
+        physics.restitution_on(SolidId::Board)
+    )
 }
 
 /// What interpolation costs, and by how much the interpolated P errs.
@@ -385,7 +444,7 @@ fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
 /// Least gain in P for which the other kind is named.
 const LEAST_GAIN: f64 = 0.005;
 
-/// The table as CSV; empty values where there is no clean shot.
+/// The table as CSV; empty values where no shot goes in.
 #[must_use]
 pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
     let (long, _) = units.length();
@@ -435,6 +494,7 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
         let mut record = vec![
             named(&format!("distance_{long}"), number(distance)),
             named("court_angle_deg", number(angle)),
+            named("has_shot", shot.is_some().into()),
             named(
                 "is_clean_shot",
                 shot.is_some_and(|shot| table.is_clean(shot)).into(),
@@ -469,6 +529,7 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
     let mut record = provenance(profile.hash());
     record.extend([
         named("shooter", shooter_note(table, profile, units).into()),
+        named("physics", physics_note(profile, units).into()),
         named("kind", table.kind.name().into()),
         named("shots", shots.collect()),
         named("checks", checks.collect()),
