@@ -95,10 +95,12 @@ fn grown_error(
         }
         return Some(share);
     }
-    let is_left_out = table.has(growth) && !names.iter().any(|name| table.has(name));
-    is_left_out
-        .then(|| table.quantity(growth, Dimension::Number, diagnostics))
-        .flatten()
+    let is_left_out = !names.iter().any(|name| table.has(name));
+    let share = is_left_out
+        .then(|| table.quantity(growth, Dimension::Number, &mut Vec::new()))
+        .flatten();
+    // Without any growth the error itself is missing.
+    share.filter(|share| *share != 0.0)
 }
 
 /// `[shooter.correlation]`: keys such as `speed_pitch`, each a number from -1 to 1.

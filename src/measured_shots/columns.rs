@@ -108,7 +108,7 @@ impl Quantity {
         self.units().iter().map(|(name, _)| *name).collect()
     }
 
-    /// The dimension of texts with units of their own, such as `6 ft 11 in`; lengths alone have any.
+    /// The dimension of texts with units of their own, such as `6 ft 11 in`: of lengths alone.
     pub(super) fn dimension_of_texts(self) -> Option<Dimension> {
         (self.units() == LENGTH_UNITS).then_some(Dimension::Length)
     }

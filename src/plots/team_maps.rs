@@ -8,14 +8,14 @@ use super::svg::{Anchor, Plot, Svg, shortened};
 use super::sweep_results::SweepResults;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 
-/// Maps in a row.
+/// Most maps in a row.
 const COLUMNS: usize = 3;
 /// y of the first maps, px.
 const MAPS_TOP: f64 = 34.0;
 /// Longest name in a title and in the legend, in characters.
 const LONGEST_NAME: usize = 24;
 /// See [`LONGEST_NAME`]: beside a map there is less space.
-const LONGEST_IN_LEGEND: usize = 12;
+const LONGEST_IN_LEGEND: usize = 14;
 /// Where several players are level.
 const LEVEL: Rgb = [225, 225, 225];
 /// Colours of players that can be told apart, also by most of those who are colour-blind (Okabe and
@@ -38,7 +38,10 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
     let first = players.first()?;
     let map = first.court_map();
     let (width, height) = map.size();
-    let columns = COLUMNS.min(players.len() + 1);
+    // As square as it goes.
+    let columns = (1..COLUMNS)
+        .find(|columns| columns * columns > players.len())
+        .unwrap_or(COLUMNS);
     let lines = (players.len() + 1).div_ceil(columns);
     let note_top = MAPS_TOP + lines as f64 * height + 6.0;
     let mut svg = Svg::new(columns as f64 * width, note_top + 34.0);

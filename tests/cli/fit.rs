@@ -314,7 +314,7 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     let sessions = Answer::of(bankshot().arg("compare-sessions").arg(&path));
     sessions
         .exits(2)
-        .says("2 shooters (Ann, Bob); choose one with --shooter NAME");
+        .says("has no session in any row; name its column with --map 'session=COLUMN'");
     fit(path.to_str().unwrap(), &one, &["--shooter", "Cy"])
         .exits(2)
         .says("has no shooter \"Cy\"; it has Ann, Bob");

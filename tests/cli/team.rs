@@ -44,7 +44,10 @@ fn contract_a_team_has_a_table_maps_and_posters() {
     team(&[]).exits(0).prints("Ann").prints("13.75 ft, 0 deg");
     let first = team(&["--sweep", "court.toml", "--out", "out"]).exits(0);
     let out = folder.path().join("out");
-    assert_eq!(file_names(&out), ["ann", "bo-b", "team.csv"]);
+    assert_eq!(
+        file_names(&out),
+        ["ann", "bo-b", "team.csv", "team.png", "team.svg"]
+    );
     for player in ["ann", "bo-b"] {
         let files = file_names(&out.join(player));
         for file in ["bank_and_direct.svg", "poster.html", "poster.png"] {
@@ -53,6 +56,8 @@ fn contract_a_team_has_a_table_maps_and_posters() {
         let html = fs::read_to_string(out.join(player).join("poster.html")).unwrap();
         assert!(html.contains("Your surest place is") && !html.contains("<b>"));
     }
+    let maps = fs::read_to_string(out.join("team.svg")).unwrap();
+    assert!(maps.contains(">the best of the team<") && maps.contains(">level<"));
     let csv = fs::read_to_string(out.join("team.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + 6);
     // The steady player is the better one everywhere.

@@ -214,7 +214,7 @@ fn shots_for_a_change(rows: &[DesignRow]) -> String {
         two_digits(shots_for(rows, error) as f64)
     });
     format!(
-        "To see P change by 5 or 10 points takes about {} or {} shots in each.",
+        "To see P change by 5 or 10 points takes about {} or {} shots in each. (A player also differs from day to day: that is not in these numbers.)",
         shots[0], shots[1]
     )
 }
@@ -232,7 +232,7 @@ fn shots_for_a_fall(rows: &[DesignRow]) -> String {
         two_digits(needed * needed)
     });
     format!(
-        "To see a scatter fall by 10, 20 or 30 % between two sessions takes about {}, {} or {} shots in each (95 % level, power 80 %).",
+        "To see one scatter (speed, pitch or polar) fall by 10, 20 or 30 % between two sessions takes about {}, {} or {} shots in each (95 % level, power 80 %).",
         shots[0], shots[1], shots[2]
     )
 }
