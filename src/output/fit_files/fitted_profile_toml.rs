@@ -42,7 +42,7 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
         "# Tracker: {} (its noise is {}). Physics: {}. The profile holds for this physics.",
         source.tracker.0, source.tracker.1, source.physics
     ));
-    line("# Each value is the root mean square of all draws; its interval and its source are beside it.".to_owned());
+    line("# An error is the root mean square over all draws; its interval and its source are beside it.".to_owned());
     for warning in &fit.warnings {
         line(format!("# Warning: {warning}."));
     }
@@ -60,24 +60,26 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     line(String::new());
     line("[shooter.errors]".to_owned());
     line(format!(
-        "c10 = \"{:.5} ft/s\"  {}",
+        "speed = \"{:.5} ft/s\"  {}",
         errors.c10_m_s / FOOT_M,
         comment("speed_sd")
     ));
-    line(format!("c11 = {:.6}", errors.c11));
-    line(format!("c12 = \"{:.7} s/ft\"", errors.c12_s_m * FOOT_M));
+    if fit.posterior.growth_terms > 0 {
+        line(format!("c11 = {:.6}", errors.c11));
+        line(format!("c12 = \"{:.7} s/ft\"", errors.c12_s_m * FOOT_M));
+    }
     line(format!(
-        "c20 = \"{:.5} deg\"  {}",
+        "pitch = \"{:.5} deg\"  {}",
         errors.c20_rad / DEGREE_RAD,
         comment("pitch_sd")
     ));
     line(format!(
-        "c30 = \"{:.5} deg\"  {}",
+        "polar = \"{:.5} deg\"  {}",
         errors.c30_rad / DEGREE_RAD,
         comment("polar_sd")
     ));
     line(format!(
-        "c40 = \"{:.5} rev/s\"  {}",
+        "backspin = \"{:.5} rev/s\"  {}",
         errors.c40_rad_s / REV_RAD,
         comment("backspin_sd")
     ));
