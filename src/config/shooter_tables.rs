@@ -172,3 +172,69 @@ pub(super) fn read_nominal(
     table.report_unknown_keys(diagnostics);
     overrides
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::config::parse_profile;
+
+    const PROFILE: &str = "\
+[shooter]
+release_height = \"7 ft\"
+max_backspin = \"3 rev/s\"
+[shooter.errors]
+speed = \"0.25 ft/s\"
+pitch = \"1.2 deg\"
+polar = \"1.2 deg\"
+backspin = \"0.3 rev/s\"
+[location]
+distance = \"12 ft\"
+angle = \"0 deg\"
+";
+
+    #[test]
+    fn contract_an_error_in_percent_grows_with_the_value() {
+        let percent = PROFILE
+            .replace("0.25 ft/s", "1.5 %")
+            .replace("0.3 rev/s", "5 %");
+        let percent = parse_profile(&percent, "a").unwrap();
+        let written = PROFILE
+            .replace("speed = \"0.25 ft/s\"", "c10 = \"0 ft/s\"\nc11 = 0.015")
+            .replace("backspin = \"0.3 rev/s\"", "c41 = \"5 %\"");
+        let written = parse_profile(&written, "b").unwrap();
+        assert_eq!(percent.shooter().dispersion, written.shooter().dispersion);
+        let twice = PROFILE.replace("\"0.25 ft/s\"", "\"1 %\"\nc11 = 0.01");
+        let error = parse_profile(&twice, "c").unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("speed in percent and c11 are the same")
+        );
+    }
+
+    #[test]
+    fn contract_a_misspelt_key_is_one_error_at_its_line() {
+        for (from, to, words) in [
+            ("pitch =", "pich =", "did you mean \"pitch\"?"),
+            ("polar =", "left_right =", "did you mean \"polar\"?"),
+            (
+                "[shooter.errors]",
+                "[shooter.error]",
+                "did you mean \"errors\"?",
+            ),
+            (
+                "max_backspin = \"3",
+                "max_backspin = \"3 x",
+                "is not a unit",
+            ),
+        ] {
+            let text = PROFILE.replace(from, to) + "[nominal]\nbackspin = \"2 rev/s\"\n";
+            let error = parse_profile(&text, "a").unwrap_err();
+            assert_eq!(error.diagnostics.len(), 1, "{error}");
+            assert!(error.to_string().contains(words), "{error}");
+        }
+        // A value out of range is marked where it stands.
+        let text = PROFILE.replace("polar = \"1.2", "polar = \"-1.2");
+        let error = parse_profile(&text, "a").unwrap_err();
+        assert_eq!(error.line_and_column(&error.diagnostics[0]).0, 7, "{error}");
+    }
+}

@@ -315,8 +315,8 @@ mod tests {
         assert_eq!(wilson_interval(0, 10).low, 0.0);
     }
 
-    /// By hand: chances of 0.8 and 0.2 are right if they are wrong once in five, and too sure if they
-    /// are always wrong.
+    /// By hand: chances of 0.8 and 0.2 are right if they are wrong once in five, and too sure if
+    /// they are always wrong.
     #[test]
     fn val_calibration_z() {
         let shot = |chance: f64, made: bool| ShotChance {

@@ -85,7 +85,7 @@ const ERRORS: [(&str, &str, &[&str]); 30] = [
     (
         "c10 = \"0.25 ft/s\"",
         "",
-        &["shooter.errors.c10", "missing"],
+        &["shooter.errors.speed", "missing", "(or c10)"],
     ),
     ("c11 = 0.0", "c11 = nan", &["shooter.errors.c11", "finite"]),
     ("c11 = 0.0", "c11 = -1.0", &["c10 + c11 v"]),
