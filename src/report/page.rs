@@ -2,7 +2,7 @@
 
 use super::html_table::HtmlTable;
 use super::page_data::Scene;
-use super::shot_in_words::ReportShot;
+use super::shot_in_words::{ReportShot, most_probable};
 use crate::dynamics::StateError;
 use crate::plots::svg::Plot;
 use crate::plots::svg::{escaped, shortened};
@@ -39,9 +39,17 @@ impl Page {
     /// Adds the answer, the tables and the plots of another page, and a plot of the difference if
     /// there is one.
     pub fn add_comparison(&mut self, other: Self, difference: Option<Plot>) {
+        let compared = match &difference {
+            Some(_) => None,
+            None => self.best_shots_compared(&other),
+        };
         self.answer = format!(
-            "{0}: {1}\n{2}: {3}\nThe shots that move are those of {0}.",
-            self.title, self.answer, other.title, other.answer
+            "{4}{0}: {1}\n{2}: {3}\nThe shots that move are those of {0}.",
+            self.title,
+            self.answer,
+            other.title,
+            other.answer,
+            compared.unwrap_or_default()
         );
         if let Some(plot) = &difference {
             self.answer = format!("{}\n{}", self.answer, plot.caption);
@@ -74,6 +82,32 @@ impl Page {
         }
         self.title = format!("{} against {}", self.title, other.title);
         self.footer = format!("{} {}", self.footer, other.footer);
+    }
+
+    /// Whose best shot makes more, of two pages of one place each.
+    fn best_shots_compared(&self, other: &Self) -> Option<String> {
+        let best = |page: &Self| most_probable(&page.shots).map(|shot| shot.shot.probability);
+        let (own, others) = (best(self)?, best(other)?);
+        let points = 100.0 * (own - others);
+        Some(if points.abs() < 1.0 {
+            format!(
+                "{} and {} are level: their best shots make {:.1} and {:.1} of 100.\n",
+                self.title,
+                other.title,
+                100.0 * own,
+                100.0 * others
+            )
+        } else {
+            let (more, less) = if points > 0.0 {
+                (&self.title, &other.title)
+            } else {
+                (&other.title, &self.title)
+            };
+            format!(
+                "{more} makes {:.1} of 100 more than {less}, each with their best shot.\n",
+                points.abs()
+            )
+        })
     }
 
     /// The page as one HTML file.
