@@ -122,7 +122,15 @@ impl SweepFolder {
                 ));
             }
             ManifestFile::Missing => {
-                return Err(no_sweep("holds no sweep (there is no configuration.json)"));
+                let within = sweeps_within(path);
+                return Err(no_sweep(&if within.is_empty() {
+                    "holds no sweep (there is no configuration.json)".to_owned()
+                } else {
+                    format!(
+                        "holds a sweep in each of its folders; name one: {}",
+                        within.join(", ")
+                    )
+                }));
             }
         };
         let config = parse_sweep(&manifest.texts, &file.display().to_string())?;
@@ -326,4 +334,14 @@ fn files_with_extension(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, 
     }
     found.sort();
     Ok(found)
+}
+
+/// The folders in a folder that hold a sweep, as `bankshot team` makes them.
+fn sweeps_within(path: &Path) -> Vec<String> {
+    let entries = fs::read_dir(path).into_iter().flatten().flatten();
+    let folders = entries.map(|entry| entry.path());
+    let sweeps = folders.filter(|folder| folder.join(manifest::FILE_NAME).exists());
+    let mut names: Vec<String> = sweeps.map(|folder| folder.display().to_string()).collect();
+    names.sort();
+    names
 }

@@ -7,7 +7,7 @@ use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::signals;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{fault_injection, shard};
 use crate::fitting::{Draw, DrawProbabilities, Interval};
 use crate::output::atomic_file;
@@ -185,7 +185,7 @@ fn write_tables(
             ),
             None => "incomplete; run the command of the sweep again (or give --shards to see which shards to submit again)\n".to_owned(),
         };
-        print_answer(&(job_summary(jobs, &rows) + &next))?;
+        print_prose(&(job_summary(jobs, &rows) + &next))?;
         return Ok(code::INCOMPLETE);
     }
     let tables = ResultTables::new(config, folder.hash(), jobs, &rows);

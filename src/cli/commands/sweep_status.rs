@@ -3,7 +3,7 @@
 use super::sweep_summary::{exit_code, job_summary, missing_shards};
 use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::{print_answer, print_prose};
 use crate::cli::value_parsers::fraction;
 use crate::probability::Progress;
 use crate::sweep::job_list::Jobs;
@@ -70,17 +70,23 @@ pub(crate) fn status(options: &StatusOptions) -> Result<u8, Failure> {
         ));
     }
     for remark in &remarks {
-        text.push_str(&format!("remark: {remark}\n"));
+        text.push_str(&format!("remark: {}\n", one_line(remark)));
     }
     if options.json {
         let mut answer = jobs_json(&jobs, &rows);
         answer["sweep"] = config.name.clone().into();
         answer["stores"] = stores.into();
         answer["remarks"] = texts(&remarks);
-        text = format!("{answer:#}\n");
+        print_answer(&format!("{answer:#}\n"))?;
+    } else {
+        print_prose(&text)?;
     }
-    print_answer(&text)?;
     Ok(exit_code(&jobs, &rows))
+}
+
+/// A message of the database, which may have several lines, as one.
+fn one_line(message: &impl std::fmt::Display) -> String {
+    message.to_string().replace('\n', " ")
 }
 
 pub(crate) fn missing(options: &MissingOptions) -> Result<u8, Failure> {
@@ -103,7 +109,7 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
     let (rows, remarks) = folder.union()?;
     let mut text = job_summary(&jobs, &rows);
     for remark in &remarks {
-        text.push_str(&format!("damaged: {remark}\n"));
+        text.push_str(&format!("damaged: {}\n", one_line(remark)));
     }
     let mut differing = Vec::new();
     let mut recomputed = 0;
@@ -133,9 +139,10 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
         answer["damaged"] = texts(&remarks);
         answer["recomputed"] = recomputed.into();
         answer["differing_jobs"] = differing.clone().into();
-        text = format!("{answer:#}\n");
+        print_answer(&format!("{answer:#}\n"))?;
+    } else {
+        print_prose(&text)?;
     }
-    print_answer(&text)?;
     Ok(if !remarks.is_empty() || !differing.is_empty() {
         code::DAMAGED
     } else {
