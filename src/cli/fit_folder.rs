@@ -12,7 +12,7 @@ use crate::fitting::{
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
 use crate::shooter::{Location, Nominal, Profile};
-use crate::units::{DEGREE_RAD, FOOT_M};
+use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -27,6 +27,8 @@ pub(crate) struct FitFolder {
     pub(crate) warnings: Vec<String>,
     /// The name of the tracker, or the path of its file.
     pub(crate) tracker: String,
+    /// The units that it was written in.
+    pub(crate) units: UnitSystem,
 }
 
 fn damaged(path: &Path, message: impl std::fmt::Display) -> Failure {
@@ -50,6 +52,10 @@ pub(crate) fn refuse_options_of_files(
 ) -> Result<(), Failure> {
     match options.first_about_a_file() {
         None => Ok(()),
+        Some("--shooter") if !of_shooters(folder).is_empty() => Err(Failure::usage(format!(
+            "--shooter: {} has a folder of each shooter; name that folder",
+            folder.display()
+        ))),
         Some(option) => Err(Failure::usage(format!(
             "{option}: {} is a fit already; fit the shots again with it",
             folder.display()
@@ -132,6 +138,11 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
             .as_str()
             .unwrap_or_default()
             .to_owned(),
+        units: if json["places"][0].get("distance_m").is_some() {
+            UnitSystem::Metric
+        } else {
+            UnitSystem::Imperial
+        },
         warnings: json["warnings"]
             .as_array()
             .into_iter()

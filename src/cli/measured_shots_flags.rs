@@ -65,9 +65,9 @@ pub(crate) struct MeasuredShotsOptions {
     /// Seed of the posterior's draws.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Units of the results.
-    #[arg(long, default_value = "imperial")]
-    pub(crate) units: UnitsArg,
+    /// Units of the results [default: those of the fit for its folder, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
 }
 
 /// The values of `--tails`.
@@ -144,7 +144,12 @@ impl MeasuredFile {
 
 impl MeasuredShotsOptions {
     pub(crate) fn unit_system(&self) -> UnitSystem {
-        self.units.into()
+        self.units_or(UnitSystem::Imperial)
+    }
+
+    /// The units that are asked for, or those of what was read.
+    pub(crate) fn units_or(&self, of_input: UnitSystem) -> UnitSystem {
+        self.units.map_or(of_input, UnitSystem::from)
     }
 
     /// The first option given that says something about a file, or about how to fit it.

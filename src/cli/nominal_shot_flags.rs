@@ -1,8 +1,9 @@
-//! The nominal shot of a command: from the flags, then from the profile's `[nominal]` table.
+//! The nominal shot of a command and its place: from the flags, then from the profile's tables
+//! `[nominal]` and `[location]`.
 
 use super::failure::Failure;
-use crate::shooter::{Nominal, NominalVariable, Profile};
-use crate::units::{self, DEGREE_RAD};
+use crate::shooter::{Location, Nominal, NominalVariable, Profile};
+use crate::units::{self, DEGREE_RAD, Dimension};
 use clap::Args;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -37,6 +38,50 @@ pub(crate) struct NominalOptions {
     /// Spin about the vertical [default: the profile's, else none].
     #[arg(long, allow_hyphen_values = true)]
     side_spin: Option<String>,
+}
+
+/// The flags of a place. Each overrides the profile's `[location]` table.
+#[derive(Args, Debug)]
+pub(crate) struct PlaceOptions {
+    /// Distance from the hoop's centre, such as '12 ft' [default: the profile's].
+    #[arg(long, allow_hyphen_values = true)]
+    distance: Option<String>,
+    /// Court angle, such as '30 deg' [default: the profile's].
+    #[arg(long, allow_hyphen_values = true)]
+    angle: Option<String>,
+}
+
+impl PlaceOptions {
+    /// The profile at this place.
+    pub(crate) fn moved(&self, profile: Profile) -> Result<Profile, Failure> {
+        if self.distance.is_none() && self.angle.is_none() {
+            return Ok(profile);
+        }
+        let value = |flag: &str, text: &Option<String>, dimension, own: f64| match text {
+            None => Ok(own),
+            Some(text) => units::parse(text, dimension)
+                .map_err(|error| Failure::usage(format!("--{flag}: {error}"))),
+        };
+        let own = profile.location();
+        let place = Location {
+            distance_m: value(
+                "distance",
+                &self.distance,
+                Dimension::Length,
+                own.distance_m,
+            )?,
+            angle_rad: value("angle", &self.angle, Dimension::Angle, own.angle_rad)?,
+        };
+        place.check(profile.physics()).map_err(|error| {
+            let given = if self.distance.is_some() {
+                "distance"
+            } else {
+                "angle"
+            };
+            Failure::usage(format!("--{given}: {error}"))
+        })?;
+        Ok(profile.moved_to(place)?)
+    }
 }
 
 impl NominalOptions {

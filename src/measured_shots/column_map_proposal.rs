@@ -1,6 +1,6 @@
 //! What to write as `--map` for a file whose columns have other names.
 
-use super::columns::{Columns, Quantity, in_unit};
+use super::columns::{Columns, OTHER_UNITS, Quantity, in_unit};
 use crate::fitting::CENTRE_DEPTH_M;
 
 /// Parts of the names that others give to a quantity or a label, in small letters without spaces.
@@ -12,7 +12,7 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
     ),
     ("entry_angle", &["entry", "incoming"]),
     ("depth", &["depth", "longshort", "shortlong"]),
-    ("speed", &["speed", "velocity", "velo"]),
+    ("speed", &["speed", "velocity", "velo", "v0"]),
     (
         "pitch",
         &["pitch", "releaseangle", "launch", "elevation", "arc"],
@@ -34,41 +34,15 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
 ];
 
 /// Names that are too short to be looked for within others.
-const SHORT_NAMES: [(&str, &str); 6] = [
+const SHORT_NAMES: [(&str, &str); 8] = [
+    ("release_height", "height"),
+    ("pitch", "angle"),
     ("left_right", "lr"),
     ("left_right", "side"),
     ("left_right", "left"),
     ("left_right", "right"),
     ("shot", "releaseid"),
     ("shot", "id"),
-];
-
-/// Units as others write them, longest first, and their suffixes here.
-const OTHER_UNITS: [(&str, &str); 24] = [
-    ("degrees", "deg"),
-    ("inches", "in"),
-    ("metres", "m"),
-    ("meters", "m"),
-    ("km/h", "km_h"),
-    ("feet", "ft"),
-    ("ft/s", "ft_s"),
-    ("ft_s", "ft_s"),
-    ("kmh", "km_h"),
-    ("kph", "km_h"),
-    ("mph", "mph"),
-    ("fps", "ft_s"),
-    ("m/s", "m_s"),
-    ("m_s", "m_s"),
-    ("mps", "m_s"),
-    ("rpm", "rpm"),
-    ("deg", "deg"),
-    ("rad", "rad"),
-    ("cm", "cm"),
-    ("mm", "mm"),
-    ("m", "m"),
-    ("in", "in"),
-    ("ft", "ft"),
-    ("°", "deg"),
 ];
 
 /// The columns of a file, and maps for those whose names say what they may hold. `UNIT` stands
@@ -233,7 +207,9 @@ fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static st
                 .find(|(target, _)| short.is_some_and(|(short, _)| short == target))
         })?;
     let target = match found.0 {
-        "pitch" if is_landing && letters.starts_with("arc") => "entry_angle",
+        "pitch" if is_landing && (letters.starts_with("arc") || letters.starts_with("angle")) => {
+            "entry_angle"
+        }
         // `Side (deg)` is a direction.
         "left_right" if says_degrees(name) => "aim",
         target => target,
@@ -346,6 +322,7 @@ mod tests {
             ("Side (in, - = left)", Some("left_right")),
             ("Right handed (in)", None),
             ("Depth (in; positive = long)", Some("depth")),
+            ("angle (deg)", Some("entry_angle")),
         ] {
             assert_eq!(target_of(name, true, &[]), target, "{name}");
         }

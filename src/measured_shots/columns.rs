@@ -220,6 +220,47 @@ enum Meaning {
     Label(Label),
 }
 
+/// Units as others write them, longest first, and their suffixes here.
+pub(super) const OTHER_UNITS: [(&str, &str); 24] = [
+    ("degrees", "deg"),
+    ("inches", "in"),
+    ("metres", "m"),
+    ("meters", "m"),
+    ("km/h", "km_h"),
+    ("feet", "ft"),
+    ("ft/s", "ft_s"),
+    ("ft_s", "ft_s"),
+    ("kmh", "km_h"),
+    ("kph", "km_h"),
+    ("mph", "mph"),
+    ("fps", "ft_s"),
+    ("m/s", "m_s"),
+    ("m_s", "m_s"),
+    ("mps", "m_s"),
+    ("rpm", "rpm"),
+    ("deg", "deg"),
+    ("rad", "rad"),
+    ("cm", "cm"),
+    ("mm", "mm"),
+    ("m", "m"),
+    ("in", "in"),
+    ("ft", "ft"),
+    ("°", "deg"),
+];
+
+/// The unit that is written as its suffix or as others write it: `m_s`, `m/s`, `inches`.
+fn known_as_written(given: &str, units: &[Unit]) -> Option<Unit> {
+    let known = |suffix: &str| units.iter().find(|(name, _)| *name == suffix).copied();
+    let other = || {
+        let lower = given.to_lowercase();
+        let found = OTHER_UNITS.iter().find(|(other, _)| *other == lower)?;
+        known(found.1)
+    };
+    known(given)
+        .or_else(|| known(&given.replace('/', "_")))
+        .or_else(other)
+}
+
 /// The meaning of a name: a label, or a quantity with or without its unit.
 fn meaning(name: &str, unit: Option<&str>) -> Result<Option<Meaning>, String> {
     if let Some((_, label)) = LABELS.iter().find(|(label, _)| *label == name) {
@@ -244,7 +285,7 @@ fn meaning(name: &str, unit: Option<&str>) -> Result<Option<Meaning>, String> {
             None => None,
         };
         let chosen = match (unit, own) {
-            (Some(given), _) => known(given).ok_or_else(|| {
+            (Some(given), _) => known_as_written(given, units).ok_or_else(|| {
                 format!(
                     "{}: {given} is not one of its units ({})",
                     quantity.name(),
@@ -520,6 +561,17 @@ mod tests {
         refused(&["pitch=-a:+9"], "give its unit: 'pitch=-a:deg+9'");
         refused(&["loft=a"], "loft is not a quantity");
         refused(&["pitch_deg=b"], "there is no column b");
+        for map in [
+            "speed=a:m/s",
+            "speed=a:km/h",
+            "pitch=a:degrees",
+            "backspin=a:rev/s",
+        ] {
+            assert!(
+                Columns::new(&header(&["a"]), &[map.to_owned()]).is_ok(),
+                "{map}"
+            );
+        }
         refused(&["pitch_deg=a:mph"], "not one of its units (deg, rad)");
         refused(&["pitch_deg"], "must be QUANTITY=COLUMN");
         refused(&["pitch=a:deg+x"], "+x is not a number to add");

@@ -85,7 +85,8 @@ impl Source {
         }
         Err(format!(
             "needs the columns of releases (speed, pitch and polar or aim), of landings (entry_angle, depth, left_right) or of \
-             trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s{}",
+             trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s{}{}",
+            some_missing(columns).unwrap_or_default(),
             map_proposal(columns)
         ))
     }
@@ -110,6 +111,30 @@ fn one_missing(columns: &Columns) -> Option<String> {
             missing.name(),
             missing.name()
         ))
+    })
+}
+
+/// What is missing where a file has some columns of a source.
+fn some_missing(columns: &Columns) -> Option<String> {
+    let has = |quantity: &&Quantity| columns.quantity(**quantity).is_some();
+    let sources = [Source::Releases, Source::Landings];
+    let begun = sources.into_iter().max_by_key(|source| {
+        let present = source.quantities().iter().filter(has);
+        present.count()
+    })?;
+    let names = |quantities: Vec<&Quantity>| {
+        let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name()).collect();
+        names.join(" and ")
+    };
+    let (present, missing): (Vec<&Quantity>, Vec<&Quantity>) =
+        begun.quantities().iter().partition(has);
+    (!present.is_empty()).then(|| {
+        format!(
+            "; of {} it has {}, but not {}",
+            begun.name(),
+            names(present),
+            names(missing)
+        )
     })
 }
 

@@ -336,6 +336,70 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     );
 }
 
+/// Several shooters or sessions in one file: pairs of sessions, the folder of all, its units.
+#[test]
+fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let write = |name: &str, columns: &str, of_row: &dyn Fn(usize) -> String| {
+        let mut all = format!("{header},{columns}\n");
+        for (i, row) in rows.lines().enumerate() {
+            all += &format!("{row},{}\n", of_row(i));
+        }
+        let path = folder.path().join(name);
+        fs::write(&path, all).unwrap();
+        path
+    };
+    let compare = |path: &Path, sessions: &[&str]| {
+        let mut command = bankshot();
+        command.arg("compare-sessions").arg(path).arg("--quiet");
+        Answer::of(command.args(sessions.iter().flat_map(|name| ["--session", name])))
+    };
+    let season = write("season.csv", "session", &|i| {
+        ["May", "June", "July"][i / 20].to_owned()
+    });
+    compare(&season, &[])
+        .exits(2)
+        .says("has 3 sessions (May, June, July); choose two with --session");
+    compare(&season, &["May"])
+        .exits(2)
+        .says("name two sessions");
+    compare(&season, &["May", "March"])
+        .exits(2)
+        .says("has no session March; it has May, June, July");
+    let pair = compare(&season, &["July", "May"]).exits(0);
+    assert!(pair.stdout().contains("before  July (20 shots"), "{pair:?}");
+    let team = write("team.csv", "shooter,session", &|i| {
+        format!("{},{}", ["Ann", "Bob"][i % 2], ["May", "June"][i / 30])
+    });
+    let both = compare(&team, &[]).exits(0);
+    let text = both.stdout();
+    assert!(
+        text.starts_with("Ann\n") && text.contains("\nBob\n"),
+        "{text}"
+    );
+    assert!(text.contains("the makes themselves went from"), "{text}");
+    let out = folder.path().join("out");
+    fit(team.to_str().unwrap(), &out, &["--units", "metric"]).exits(0);
+    let mut advise = bankshot();
+    let answer = Answer::of(advise.arg("advise").arg(&out).arg("--quiet")).exits(0);
+    let text = answer.stdout();
+    assert!(
+        text.starts_with("Ann: now") && text.contains("\nBob: now"),
+        "{text}"
+    );
+    // In the units of the fit.
+    assert!(
+        text.contains(" m/s, pitch") && !text.contains("ft/s"),
+        "{text}"
+    );
+    let mut design = bankshot();
+    Answer::of(design.arg("design").arg(&out))
+        .exits(2)
+        .says("holds a fit of each shooter; name one");
+}
+
 /// The folder of a fit holds what its file tells.
 #[test]
 fn contract_sessions_are_the_same_from_files_and_from_their_fits() {

@@ -30,6 +30,48 @@ fn contract_probability_prints_p_with_its_error_and_shares() {
     assert!(short.stdout().starts_with("P = 0.0000"));
 }
 
+/// The place of a flag is that of a profile which has it.
+#[test]
+fn contract_a_place_can_be_given_for_one_run() {
+    let at = |profile: &str, flags: &[&str]| {
+        let mut command = bankshot();
+        command.args([
+            "probability",
+            profile,
+            "--quiet",
+            "--json",
+            "--speed",
+            "24 ft/s",
+        ]);
+        command.args([
+            "--pitch",
+            "53 deg",
+            "--backspin",
+            "2 rev/s",
+            "--target",
+            "0.01",
+        ]);
+        Answer::of(command.args(flags))
+    };
+    // bank_wing.toml is 12 ft away at 60 deg.
+    let own = at("configs/bank_wing.toml", &[]).exits(0).json();
+    let same = at(
+        "configs/bank_wing.toml",
+        &["--distance", "12 ft", "--angle", "60 deg"],
+    );
+    assert_eq!(same.exits(0).json()["probability"], own["probability"]);
+    let nearer = at("configs/bank_wing.toml", &["--distance", "11 ft"])
+        .exits(0)
+        .json();
+    assert!(nearer["probability"] != own["probability"]);
+    at("configs/bank_wing.toml", &["--distance", "11 parsec"])
+        .exits(2)
+        .says("--distance: ");
+    at("configs/bank_wing.toml", &["--angle", "178 deg"])
+        .exits(2)
+        .says("--angle: ");
+}
+
 #[test]
 fn contract_probability_with_too_small_a_budget_prints_p_so_far() {
     for method in ["sobol", "monte-carlo"] {

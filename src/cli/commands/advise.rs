@@ -9,7 +9,7 @@ use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{Posterior, advise};
 use crate::output::fit_files::advice_text::{advice_json, advice_text};
 use crate::shooter::Profile;
-use crate::units::DEGREE_RAD;
+use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -41,8 +41,14 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
         for (number, folder) in folders.iter().enumerate() {
             let fit = fit_folder::read(folder)?;
             separate(options, number)?;
-            print_warnings(&fit.warnings);
-            answer(options, &fit.profiles, &fit.posterior, fit.observed, quiet)?;
+            print_warnings(&fit.profiles[0].shooter().name, &fit.warnings);
+            let units = options.measured.units_or(fit.units);
+            answer(
+                options,
+                (&fit.profiles, &fit.posterior, fit.observed),
+                units,
+                quiet,
+            )?;
         }
         return Ok(code::DONE);
     }
@@ -58,8 +64,14 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         let observed = (fit.makes.made, fit.makes.labelled);
         separate(options, number)?;
-        print_warnings(&fit.warnings);
-        answer(options, &fit.profiles, &fit.posterior, observed, quiet)?;
+        print_warnings(&file.name_of(shots), &fit.warnings);
+        let units = options.measured.unit_system();
+        answer(
+            options,
+            (&fit.profiles, &fit.posterior, observed),
+            units,
+            quiet,
+        )?;
     }
     Ok(worst)
 }
@@ -73,22 +85,20 @@ fn separate(options: &AdviseOptions, number: usize) -> Result<(), Failure> {
 }
 
 /// Advice is no better than the fit that it rests on: these come first.
-fn print_warnings<W: std::fmt::Display>(warnings: &[W]) {
+fn print_warnings<W: std::fmt::Display>(name: &str, warnings: &[W]) {
     for warning in warnings {
-        print_remark(&format!("warning: {warning}"));
+        print_remark(&format!("{name}: warning: {warning}"));
     }
 }
 
 /// Advice for each place; `profiles` are those of the places.
 fn answer(
     options: &AdviseOptions,
-    profiles: &[Profile],
-    posterior: &Posterior,
-    observed: (usize, usize),
+    (profiles, posterior, observed): (&[Profile], &Posterior, (usize, usize)),
+    units: UnitSystem,
     quiet: bool,
 ) -> Result<(), Failure> {
     let bars = ProgressBars::new(quiet);
-    let units = options.measured.unit_system();
     // The makes were counted over all places.
     let observed = (profiles.len() == 1).then_some(observed);
     for (place, profile) in profiles.iter().enumerate() {

@@ -17,6 +17,7 @@ use crate::output::fit_files::session_changes_text::{
 };
 use crate::output::json_object::{number, object};
 use crate::shooter::Profile;
+use crate::units::UnitSystem;
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -58,6 +59,9 @@ struct Session {
     probabilities: DrawProbabilities,
     /// The profile at the first place.
     profile: Profile,
+    /// What the fit warned of.
+    warnings: Vec<String>,
+    units: Option<UnitSystem>,
 }
 
 impl Session {
@@ -68,6 +72,8 @@ impl Session {
             makes: (fit.makes.made, fit.makes.labelled),
             probabilities: fit.probabilities.swap_remove(0),
             profile: fit.profiles.swap_remove(0),
+            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
+            units: None,
         }
     }
 }
@@ -97,6 +103,11 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
     let mut jsons = Vec::new();
     for (number, sessions) in compared.iter().enumerate() {
         check_conditions(sessions)?;
+        for session in sessions {
+            for warning in &session.warnings {
+                print_remark(&format!("{}: warning: {warning}", session.name));
+            }
+        }
         let changes = changes(sessions, options);
         if options.json {
             jsons.push(json(sessions, &changes));
@@ -134,6 +145,8 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
             posterior: fit.posterior,
             makes: fit.observed,
             profile: fit.profiles[0].clone(),
+            warnings: fit.warnings,
+            units: Some(fit.units),
         });
     }
     let file = options.measured.read(path)?;
@@ -253,9 +266,10 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
         size: 0.01,
         comparison: compare_probabilities([&before.probabilities, &after.probabilities], shots),
     }];
-    for (i, (unit, size)) in value_units(options.measured.unit_system())
-        .into_iter()
-        .enumerate()
+    for (i, (unit, size)) in
+        value_units(options.measured.units_or(before.units.unwrap_or_default()))
+            .into_iter()
+            .enumerate()
     {
         let is_spin = i == VALUE_NAMES.len() - 1;
         // A spin that was not measured in both sessions tells nothing of a change.

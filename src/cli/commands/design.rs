@@ -24,7 +24,7 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual \
-shot comes from the flags, then from the profile's [nominal] table, else it is the best one; of a fit's folder it is the measured one.
+shot comes from the flags, then from the profile's [nominal] table, else it is the best one; of a fit's folder it is the measured one. It takes a minute or two.
 
 Examples:
   bankshot design results/gym-sensor-fit --tracker noah --target 3

@@ -23,10 +23,11 @@ use crate::plots::svg::shortened;
 use crate::probability::Progress;
 use crate::report::fit_page::fit_page;
 use crate::shooter::implausible_values;
-use crate::units::REV_RAD;
+use crate::units::{REV_RAD, rounded};
 use clap::Args;
 use comfy_table::{Table, presets};
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -94,8 +95,12 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         check_free_of_shots(&options.free, shots, &fit)?;
-        write(&out, &file, shots, &fit, options)?;
-        answer(&file, shots, &fit, options, &out, quiet)?;
+        let free = options.free.iter();
+        let free = free
+            .map(|name| free_parameter(name, &file, shots, &fit))
+            .collect::<Result<Vec<_>, _>>()?;
+        write(&out, &file, (shots, &fit, &free), options)?;
+        answer(&file, (shots, &fit, &free), options, &out, quiet)?;
         return Ok(code);
     }
     if !options.free.is_empty() {
@@ -169,7 +174,21 @@ fn fit_all(
     let path = out.join("shooters.csv");
     atomic_file::write(&path, csv.as_bytes())
         .map_err(|error| Failure::io(path.display(), &error))?;
-    print_answer(&format!("{}\n", table.trim_fmt()))?;
+    let assumptions = match &file.shooters[..] {
+        [first, ..] => {
+            let source = file.source(first);
+            format!(
+                "{} shooters: {}, tracker {} ({}), physics {}\n",
+                file.shooters.len(),
+                source.kind,
+                source.tracker.0,
+                source.tracker.1,
+                source.physics
+            )
+        }
+        [] => String::new(),
+    };
+    print_answer(&format!("{assumptions}{}\n", table.trim_fmt()))?;
     for warning in rows.iter().flat_map(|row| &row.warnings) {
         print_remark(warning);
     }
@@ -210,7 +229,7 @@ fn fit_one(
             });
         }
     };
-    write(folder, file, shots, &fit, options)?;
+    write(folder, file, (shots, &fit, &[]), options)?;
     let p = fit.probabilities[0].interval();
     let makes = &fit.makes;
     let (made, expected) = if makes.labelled > 0 {
@@ -358,8 +377,7 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
 fn write(
     folder: &Path,
     file: &MeasuredFile,
-    shots: &ShooterShots,
-    fit: &ShooterFit,
+    (shots, fit, free): (&ShooterShots, &ShooterFit, &[FreeParameter]),
     options: &FitOptions,
 ) -> Result<(), Failure> {
     run_folder::prepare(folder, RunKind::Fit)?;
@@ -372,7 +390,7 @@ fn write(
     let contents: [(&str, Vec<u8>); 4] = [
         (
             "fit.json",
-            format!("{:#}\n", fit_json(fit, &source, units)).into_bytes(),
+            format!("{:#}\n", with_free(fit_json(fit, &source, units), free)).into_bytes(),
         ),
         (
             "profile.toml",
@@ -401,8 +419,7 @@ fn write(
 
 fn answer(
     file: &MeasuredFile,
-    shots: &ShooterShots,
-    fit: &ShooterFit,
+    (shots, fit, free): (&ShooterShots, &ShooterFit, &[FreeParameter]),
     options: &FitOptions,
     folder: &Path,
     quiet: bool,
@@ -410,11 +427,12 @@ fn answer(
     let units = options.measured.unit_system();
     let source = file.source(shots);
     if options.json {
-        print_answer(&format!("{:#}\n", fit_json(fit, &source, units)))?;
+        let json = with_free(fit_json(fit, &source, units), free);
+        print_answer(&format!("{json:#}\n"))?;
     } else {
         print_prose(&fit_text(fit, &source, units))?;
-        for name in &options.free {
-            print_prose(&free_parameter(name, file, shots, fit)?)?;
+        for parameter in free {
+            print_prose(&parameter.text)?;
         }
     }
     if !quiet {
@@ -432,26 +450,49 @@ fn answer(
     Ok(())
 }
 
+/// What the shots say of a parameter that was not measured.
+struct FreeParameter {
+    text: String,
+    json: Value,
+}
+
+/// The fit for programs, with the parameters that `--free` asked for.
+fn with_free(mut fit: Value, free: &[FreeParameter]) -> Value {
+    if !free.is_empty() {
+        fit["free"] = free
+            .iter()
+            .map(|parameter| parameter.json.clone())
+            .collect();
+    }
+    fit
+}
+
 /// What the shots say of a parameter that was not measured, and how to use it.
 fn free_parameter(
     name: &str,
     file: &MeasuredFile,
     shots: &ShooterShots,
     fit: &ShooterFit,
-) -> Result<String, Failure> {
+) -> Result<FreeParameter, Failure> {
     let Some(parameter) = UnseenParameter::named(name) else {
         let tracks: Vec<_> = shots.tracks.iter().map(Vec::as_slice).collect();
         let backspin = file.backspin_rad_s.unwrap_or(0.0);
         let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
         return Ok(match found {
-            Some((best, [low, high])) => format!(
-                "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n{}",
-                tracks.len(),
-                file.physics_name,
-                file.physics.air.drag_coefficient,
-                physics_with(file, &format!("drag_coefficient = {best:.3}"))
-            ),
-            None => "drag_coefficient  these flights cannot tell\n".to_owned(),
+            Some((best, [low, high])) => FreeParameter {
+                text: format!(
+                    "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n{}",
+                    tracks.len(),
+                    file.physics_name,
+                    file.physics.air.drag_coefficient,
+                    physics_with(file, &format!("drag_coefficient = {best:.3}"))
+                ),
+                json: json!({ "name": name, "unit": "", "best": best, "low": low, "high": high, "is_decided": true }),
+            },
+            None => FreeParameter {
+                text: "drag_coefficient  these flights cannot tell\n".to_owned(),
+                json: json!({ "name": name, "unit": "", "is_decided": false }),
+            },
         });
     };
     let labelled = fit.makes.labelled;
@@ -515,7 +556,20 @@ fn free_parameter(
     if curve.is_decided && is_usual && !(parameter == UnseenParameter::Backspin && is_measured) {
         text += &use_it;
     }
-    Ok(text)
+    let curve_json = curve.points.iter().map(|(value, logarithm)| {
+        json!({ "value": rounded(value / size), "log_likelihood": rounded(*logarithm) })
+    });
+    let json = json!({
+        "name": name,
+        "unit": unit.trim(),
+        "best": rounded(best),
+        "low": rounded(low),
+        "high": rounded(high),
+        "is_decided": curve.is_decided,
+        "is_usual": is_usual,
+        "curve": curve_json.collect::<Value>(),
+    });
+    Ok(FreeParameter { text, json })
 }
 
 /// How the fit is made with another constant of the physics.

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 pub(crate) struct PhysicsOptions {
-    /// The shooter's profile.
+    /// The shooter's profile, or the folder of a fit.
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
@@ -35,7 +35,14 @@ pub(crate) struct PhysicsOptions {
 }
 
 pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
+    // A fit names its folder; its profile is in it.
+    let of_fit = options.profile.join("profile.toml");
+    let path = if options.profile.join("fit.json").is_file() {
+        &of_fit
+    } else {
+        &options.profile
+    };
+    let mut profile = load_profile(path, &options.physics, quiet)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

@@ -5,7 +5,7 @@ use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
-use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::nominal_shot_flags::{NominalOptions, PlaceOptions};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg, sample, standard_error};
@@ -65,6 +65,8 @@ pub(crate) struct ProbabilityOptions {
     pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
+    #[command(flatten)]
+    pub(crate) place: PlaceOptions,
     /// The method of computing P.
     #[arg(long, value_enum, default_value_t = Method::Sobol)]
     pub(crate) method: Method,
@@ -108,7 +110,8 @@ struct Precision {
 }
 
 pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let mut profile = options.place.moved(profile)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

@@ -19,8 +19,9 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
 interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
-interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, the checks as much \
-again: with --max-loss 1 a table is a quick draft.
+interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
+Where the best shot changes much from place to place, many nodes are added and a table takes minutes; with --max-loss 1 it is a \
+quick draft.
 
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\

@@ -16,7 +16,7 @@ use crate::plots::svg::shortened;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
 use crate::report::poster_page::poster_page;
-use crate::shooter::Profile;
+use crate::shooter::{Profile, ReleaseVariable};
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
@@ -259,11 +259,23 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         .collect();
     let maps = team_maps::draw(&results, &best_players(&players));
     plot_files::write(&options.out, &maps.into_iter().collect::<Vec<_>>())?;
+    let is_one_sided = finished.iter().any(|(config, _)| {
+        let correlation = &config.settings.shooter.dispersion.correlation;
+        ReleaseVariable::ALL.into_iter().any(|other| {
+            correlation.coefficient(ReleaseVariable::Polar, other) != 0.0
+                && other != ReleaseVariable::Polar
+        })
+    });
     let csv = team_csv(&players, units);
     let file = options.out.join("team.csv");
     atomic_file::write(&file, csv.as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
     print_prose(&team_text(&players, units))?;
+    if is_one_sided {
+        print_prose(
+            "Left and right differ for players whose aim is correlated with speed or angle. After a fit of few shots that can be chance: its profile.toml has the intervals.\n",
+        )?;
+    }
     if !quiet {
         print_remark(&format!(
             "written: {}, team.svg beside it, and in each player's folder bank_and_direct.svg and poster.html",

@@ -3,7 +3,7 @@
 use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
-use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::nominal_shot_flags::{NominalOptions, PlaceOptions};
 use crate::cli::plot_files;
 use crate::cli::terminal::{print_answer, print_bytes, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
@@ -35,6 +35,8 @@ pub(crate) struct TraceOptions {
     pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
+    #[command(flatten)]
+    pub(crate) place: PlaceOptions,
     /// Write the trajectory as CSV; - for standard output (then nothing else is printed there).
     #[arg(long, short, value_name = "T.csv")]
     pub(crate) output: Option<PathBuf>,
@@ -58,7 +60,8 @@ const INTERVAL_S: f64 = 0.005;
 const BLACK: &str = "#000000";
 
 pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
-    let mut profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let mut profile = options.place.moved(profile)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

@@ -5,7 +5,7 @@ use super::fit_text::percent;
 use super::parameters::value_units;
 use crate::fitting::{
     Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, SpinSource, TrainingGain, Values,
-    values_of,
+    values_of, wilson_interval,
 };
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
@@ -185,11 +185,21 @@ pub fn advice_text(
 ) -> String {
     let name = if name.is_empty() { "You" } else { name };
     let p = &advice.usual_probability;
-    let seen = observed
-        .filter(|(_, shots)| *shots > 0)
-        .map_or_else(String::new, |(made, shots)| {
-            format!("; {made} of {shots} went in")
-        });
+    let seen =
+        observed
+            .filter(|(_, shots)| *shots > 0)
+            .map_or_else(String::new, |(made, shots)| {
+                let count = wilson_interval(made, shots);
+                let but = if count.low <= p.high && p.low <= count.high {
+                    String::new()
+                } else {
+                    format!(
+                        ", {:.0} %: the count and the model disagree",
+                        100.0 * count.share
+                    )
+                };
+                format!("; {made} of {shots} went in{but}")
+            });
     let mut text = format!(
         "{name}: now {:.0} % of such shots go in (95 %: {:.0} to {:.0} %{seen}).\n",
         100.0 * p.mean,
@@ -206,8 +216,10 @@ pub fn advice_text(
         (_, Some(steps)) => text += &advised_in_words(&words, advice, steps),
         (Some(gain), None) if gain.low > 0.0 && gain.mean > 0.005 => {
             text += &format!(
-                "The best shot below gains {:.1} points, but no single step towards it is sure to help: measure more before you change anything.\n",
-                100.0 * gain.mean
+                "The best shot below gains {:.1} points (95 %: {:+.1} to {:+.1}), but no step towards it is sure alone: make all of them together, or measure more first.\n",
+                100.0 * gain.mean,
+                100.0 * gain.low,
+                100.0 * gain.high
             );
         }
         (Some(gain), None) if gain.mean > 0.005 => {

@@ -75,6 +75,10 @@ pub fn session_changes_text(
     sessions: [SessionSummary<'_>; 2],
     changes: &[SessionChange],
 ) -> String {
+    let counted = sessions.each_ref().map(|session| match session.makes {
+        (_, 0) => None,
+        (made, of) => Some(100.0 * made as f64 / of as f64),
+    });
     let [before, after] = sessions.map(|session| {
         let makes = match session.makes {
             (_, 0) => String::new(),
@@ -86,6 +90,11 @@ pub fn session_changes_text(
         format!("{} ({} shots{makes})", session.name, session.shots)
     });
     let mut text = verdict(changes);
+    if let [Some(before), Some(after)] = counted {
+        text += &format!(
+            "The chance is that of the releases as measured; the makes themselves went from {before:.0} to {after:.0} %.\n"
+        );
+    }
     text += &format!(
         "\nbefore  {before}\nafter   {after}\n\n{:<13} {:>7} {:>7} {:>7} {:>17} {:<5} {:<10} {:>7}\n",
         "", "before", "after", "change", "95 %", "unit", "direction", "decide"

@@ -113,8 +113,9 @@ pub fn source_code(
             names.join(", ")
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
-        "Time and entry angle are those where the ball falls to the height of the hoop. A tolerance \
-         is how far speed or pitch can be off, up or down, alone, until the shot misses."
+        "Time and entry angle are those where the ball first falls to the height of the hoop, as if \
+         there were no ring. A tolerance is how far speed or pitch can be off, up or down, alone, \
+         until the shot first misses; near the ring more shots may go in beyond it."
             .to_owned(),
         "NaN outside the table, and beside a place without a shot.".to_owned(),
     ];

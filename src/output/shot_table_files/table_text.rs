@@ -138,8 +138,8 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         format!(
             "Best {} shots. from: distance from the hoop's centre. aim: positive to the left. P: \
              the chance of each. margin: by how much speed and pitch can be off, up or down, one \
-             at a time and with all else exact, until the shot misses. time, entry: where it falls \
-             to the height of the hoop.",
+             at a time and with all else exact, until the shot first misses. time, entry: where it \
+             first falls to the height of the hoop, as if there were no ring.",
             table.kind.name()
         ),
     ] {
