@@ -27,6 +27,8 @@ pub(crate) struct FitFolder {
     pub(crate) warnings: Vec<String>,
     /// The name of the tracker, or the path of its file.
     pub(crate) tracker: String,
+    /// The name of the shooter, if the file of the shots has it.
+    pub(crate) shooter: Option<String>,
     /// The units that it was written in.
     pub(crate) units: UnitSystem,
 }
@@ -65,7 +67,9 @@ pub(crate) fn refuse_options_of_files(
 
 /// The folders of the shooters in a folder that a fit of several wrote, by name.
 pub(crate) fn of_shooters(folder: &Path) -> Vec<PathBuf> {
-    if folder.join("fit.json").exists() {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let is_of_fits = folder.join("shooters.csv").exists() || name.ends_with("-fit");
+    if !is_of_fits || folder.join("fit.json").exists() {
         return Vec::new();
     }
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -138,6 +142,10 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
             .as_str()
             .unwrap_or_default()
             .to_owned(),
+        shooter: json["source"]["names_the_shooter"]
+            .as_bool()
+            .unwrap_or(false)
+            .then(|| name.clone()),
         units: if json["places"][0].get("distance_m").is_some() {
             UnitSystem::Metric
         } else {

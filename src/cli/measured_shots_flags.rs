@@ -366,6 +366,7 @@ impl MeasuredFile {
             tracker: self.tracker.clone(),
             physics: self.physics_name.clone(),
             seed: self.seed,
+            is_shooter_named: !shots.name.is_empty(),
             rejected: &shots.rejected,
             differences: &shots.differences,
         }

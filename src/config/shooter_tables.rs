@@ -202,6 +202,9 @@ angle = \"0 deg\"
             .replace("backspin = \"0.3 rev/s\"", "c41 = \"5 %\"");
         let written = parse_profile(&written, "b").unwrap();
         assert_eq!(percent.shooter().dispersion, written.shooter().dispersion);
+        let both = PROFILE.replace("speed =", "c10 = \"1 %\"\nspeed =");
+        let error = parse_profile(&both, "d").unwrap_err();
+        assert!(error.to_string().contains("c10 and speed are the same"));
         let twice = PROFILE.replace("\"0.25 ft/s\"", "\"1 %\"\nc11 = 0.01");
         let error = parse_profile(&twice, "c").unwrap_err();
         assert!(

@@ -258,6 +258,10 @@ impl<'t, 'i> TableReader<'t, 'i> {
 
     /// A share that is written as a text in percent under one of two names, if it is so.
     pub(crate) fn percentage_as(&mut self, names: [&'static str; 2]) -> Option<f64> {
+        if names.into_iter().all(|name| self.has(name)) {
+            // Given twice, which is reported when the value itself is read.
+            return None;
+        }
         let name = names.into_iter().find(|name| self.has(name))?;
         let text = match self.table?.get(name)?.get_ref() {
             DeValue::String(text) if text.trim_end().ends_with('%') => text.to_string(),

@@ -13,6 +13,8 @@ const RELEASES: u32 = 128;
 /// Shots in a bin of the reliability diagram, at least, and bins at most.
 const LEAST_IN_BIN: usize = 8;
 const MOST_BINS: usize = 8;
+/// The least variance of the excess squared error with which it is about normal.
+const LEAST_EXCESS_VARIANCE: f64 = 1.0;
 /// A shot is predicted to be a swish from this chance of one on.
 const PREDICTED: f64 = 0.5;
 
@@ -95,8 +97,8 @@ pub struct ExpectedMakes {
     pub losses_of_share: [f64; 2],
     /// By how many of its standard deviations the squared error is greater than chances that are
     /// right would give (Spiegelhalter, Stat. Med. 5 (1986) 421). About standard normal if they
-    /// are; positive for chances that are too sure.
-    pub calibration_z: f64,
+    /// are; positive for chances that are too sure. `None` where too few shots are doubtful.
+    pub calibration_z: Option<f64>,
     /// The probability that a made shot had the greater chance than a missed one; where there are
     /// both.
     pub area_under_curve: Option<f64>,
@@ -223,17 +225,18 @@ fn summary(shots: Vec<ShotChance>) -> ExpectedMakes {
         excess += (f64::from(u8::from(*made)) - p) * (1.0 - 2.0 * p);
         excess_variance += (1.0 - 2.0 * p) * (1.0 - 2.0 * p) * p * (1.0 - p);
     }
-    let calibration_z = if excess_variance > 0.0 {
-        excess / excess_variance.sqrt()
-    } else {
-        0.0
-    };
+    // Of few doubtful shots it is far from normal: one surprise would be many standard deviations.
+    let calibration_z =
+        (excess_variance >= LEAST_EXCESS_VARIANCE).then(|| excess / excess_variance.sqrt());
     let share = made as f64 / count;
     let entropy = [share, 1.0 - share]
         .into_iter()
         .filter(|part| *part > 0.0)
         .map(|part| -part * libm::log(part))
-        .sum();
+        .sum::<f64>()
+        .max(0.0)
+        // No negative zero.
+        + 0.0;
     let log_loss = labelled
         .iter()
         .map(|(p, made)| {
@@ -329,12 +332,21 @@ mod tests {
             made: Some(made),
         };
         let right = (0..50).map(|k| shot(0.8, k % 5 != 0));
-        assert!(summary(right.collect()).calibration_z.abs() < 1e-12);
+        let z = summary(right.collect()).calibration_z.unwrap();
+        assert!(z.abs() < 1e-12);
+        // One surprise among twenty sure shots.
+        let few = (0..20).map(|k| shot(1.0, k != 0));
+        assert_eq!(summary(few.collect()).calibration_z, None);
+        let all_made = summary((0..20).map(|_| shot(0.9, true)).collect());
+        assert!(all_made.losses_of_share[1].is_sign_positive());
         let wrong = (0..50).map(|k| shot(if k % 2 == 0 { 0.8 } else { 0.2 }, k % 2 == 1));
         // Each adds 0.8 * 0.6 with a variance of 0.36 * 0.16.
         let expected = 50.0 * 0.48 / (50.0 * 0.36 * 0.16_f64).sqrt();
         let found = summary(wrong.collect());
-        assert!((found.calibration_z - expected).abs() < 1e-9, "{found:?}");
+        assert!(
+            (found.calibration_z.unwrap() - expected).abs() < 1e-9,
+            "{found:?}"
+        );
         assert_eq!(found.losses_of_share, [0.25, libm::log(2.0)]);
     }
 

@@ -118,7 +118,7 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::TooSure(z) => write!(
                 out,
-                "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in; {LOOK_AT}"
+                "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in; {LOOK_AT}"
             ),
             Self::Drift(name, p) => write!(out, "{name} drifts over the session (p = {p:.4})"),
             Self::SerialCorrelation(name, p) => write!(

@@ -104,8 +104,8 @@ pub fn fit_shooter(
             makes.expected,
             makes.expected_sd,
         ));
-    } else if makes.calibration_z > FAR_CALIBRATION {
-        warnings.push(FitWarning::TooSure(makes.calibration_z));
+    } else if let Some(z) = makes.calibration_z.filter(|z| *z > FAR_CALIBRATION) {
+        warnings.push(FitWarning::TooSure(z));
     }
     Ok(ShooterFit {
         name: test.name.to_owned(),

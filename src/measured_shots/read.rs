@@ -103,7 +103,7 @@ fn one_missing(columns: &Columns) -> Option<String> {
         ("releases", &releases),
     ];
     sources.into_iter().find_map(|(source, needed)| {
-        let is_missing = |quantity: &&Quantity| columns.quantity(**quantity).is_none();
+        let is_missing = |quantity: &&Quantity| !has_or_polar(columns, **quantity);
         let missing: Vec<&Quantity> = needed.iter().filter(is_missing).collect();
         let [missing] = missing[..] else { return None };
         Some(format!(
@@ -114,9 +114,15 @@ fn one_missing(columns: &Columns) -> Option<String> {
     })
 }
 
+/// Whether a file has a quantity; the polar angle stands for the aim.
+fn has_or_polar(columns: &Columns, quantity: Quantity) -> bool {
+    let has = |quantity| columns.quantity(quantity).is_some();
+    has(quantity) || quantity == Quantity::Aim && has(Quantity::Polar)
+}
+
 /// What is missing where a file has some columns of a source.
 fn some_missing(columns: &Columns) -> Option<String> {
-    let has = |quantity: &&Quantity| columns.quantity(**quantity).is_some();
+    let has = |quantity: &&Quantity| has_or_polar(columns, **quantity);
     let sources = [Source::Releases, Source::Landings];
     let begun = sources.into_iter().max_by_key(|source| {
         let present = source.quantities().iter().filter(has);

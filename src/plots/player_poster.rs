@@ -63,7 +63,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let as_sure = found.iter().filter(|(p, _)| best.0 - p < AS_SURE).count();
     let named = best.1.in_words_with_mirror(&alike(best.0), units);
     let is_both = named != best.1.in_words(units);
-    let others = as_sure - if is_both { 2 } else { 1 };
+    let others = as_sure.saturating_sub(if is_both { 2 } else { 1 });
     let sentences = [
         match others {
             0 => format!(
@@ -71,8 +71,9 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
                 shown(best.0)
             ),
             _ => format!(
-                "Your surest place is {named}: {} of 100 go in; {others} more are as sure.",
-                shown(best.0)
+                "Your surest place is {named}: {} of 100 go in; {others} more {} as sure.",
+                shown(best.0),
+                if others == 1 { "is" } else { "are" }
             ),
         },
         bank_in_words(&bank, units),

@@ -103,6 +103,9 @@ fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
         return None;
     }
     let [brier_of_share, log_loss_of_share] = makes.losses_of_share;
+    let calibration = makes.calibration_z.map_or_else(String::new, |z| {
+        format!("Spiegelhalter's z {z:+.1}: about 0 \u{b1} 1 if the chances are right, above 3 if they are too sure.")
+    });
     let bins = makes.bins.iter().map(|bin| {
         let observed = &bin.observed;
         let cells = [
@@ -119,13 +122,13 @@ fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
         note: format!(
             "The chance is that of each ball as it was measured, so this tests the physics and the sensor, not the next shot. Brier score \
              {:.3} (0 is perfect; the share of makes for every shot has {brier_of_share:.3}), log loss {:.3} ({log_loss_of_share:.3}), area under the curve {}. \
-             Spiegelhalter's z {:+.1}: about 0 \u{b1} 1 if the chances are right, above 3 if they are too sure.",
+             {}",
             makes.brier,
             makes.log_loss,
             makes
                 .area_under_curve
                 .map_or_else(|| "-".to_owned(), |auc| format!("{auc:.2}")),
-            makes.calibration_z,
+            calibration,
         ),
         columns: ["predicted", "went in", "2.5 %", "97.5 %", "shots"]
             .map(str::to_owned)

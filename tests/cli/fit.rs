@@ -380,6 +380,14 @@ fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
         "{text}"
     );
     assert!(text.contains("the makes themselves went from"), "{text}");
+    // One of them has one session: the other is still compared.
+    let partial = write("partial.csv", "shooter,session", &|i| {
+        let session = if i < 22 { "May" } else { "June" };
+        format!("{},{session}", if i < 44 { "Ann" } else { "Bob" })
+    });
+    let one = compare(&partial, &[]).exits(3);
+    assert!(one.stdout().starts_with("Ann\n"), "{one:?}");
+    one.says("Bob: ").says("has one session, June");
     let out = folder.path().join("out");
     fit(team.to_str().unwrap(), &out, &["--units", "metric"]).exits(0);
     let mut advise = bankshot();
@@ -416,7 +424,10 @@ fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
         command.arg("compare-sessions").args([first, second]);
         Answer::of(command.args(["--json", "--quiet"]).args(flags))
     };
-    let of_files = compare(&paths[0], &paths[1], &[]).exits(0).json();
+    let of_files = compare(&paths[0], &paths[1], &[]).exits(0);
+    // The files do not say whose shots they are.
+    assert!(!of_files.stderr.contains("two shooters"), "{of_files:?}");
+    let of_files = of_files.json();
     let folders = ["a", "b"].map(|name| folder.path().join(name));
     for (path, out) in paths.iter().zip(&folders) {
         fit(path.to_str().unwrap(), out, &[]).exits(0);

@@ -44,7 +44,7 @@ pub(crate) struct CompareSessionsOptions {
     /// Of a file with more than two sessions, one of the two to compare; give it twice.
     #[arg(long, value_name = "NAME", conflicts_with = "after")]
     pub(crate) session: Vec<String>,
-    /// Print one JSON object.
+    /// Print one JSON object; of a file with several shooters, an array of them.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -59,19 +59,22 @@ struct Session {
     probabilities: DrawProbabilities,
     /// The profile at the first place.
     profile: Profile,
+    /// Their name, if the file has it.
+    shooter: Option<String>,
     /// What the fit warned of.
     warnings: Vec<String>,
     units: Option<UnitSystem>,
 }
 
 impl Session {
-    fn of(name: String, mut fit: ShooterFit) -> Self {
+    fn of(name: String, shots: &ShooterShots, mut fit: ShooterFit) -> Self {
         Self {
             name,
             posterior: fit.posterior,
             makes: (fit.makes.made, fit.makes.labelled),
             probabilities: fit.probabilities.swap_remove(0),
             profile: fit.profiles.swap_remove(0),
+            shooter: Some(shots.name.clone()).filter(|name| !name.is_empty()),
             warnings: fit.warnings.iter().map(ToString::to_string).collect(),
             units: None,
         }
@@ -83,6 +86,7 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
     }
+    let (mut code, mut several_shooters) = (code::DONE, false);
     let compared: Vec<[Session; 2]> = match &options.after {
         Some(after) => vec![[read(&options.before, options)?, read(after, options)?]],
         None if options.before.is_dir() => {
@@ -93,11 +97,27 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
         }
         None => {
             let file = options.measured.read(&options.before)?;
-            let of_shooter = |shots| fit_by_session(&file, shots, &options.session);
-            file.shooters
-                .iter()
-                .map(of_shooter)
-                .collect::<Result<_, _>>()?
+            let several = file.shooters.len() > 1;
+            let mut compared = Vec::new();
+            for shots in &file.shooters {
+                match fit_by_session(&file, shots, &options.session) {
+                    Ok(sessions) => compared.push(sessions),
+                    // The others can still be compared.
+                    Err(error) if several => {
+                        print_remark(&format!("{}: {}", shots.name, error.message));
+                        code = code::INCOMPLETE;
+                    }
+                    Err(error) => return Err(error),
+                }
+            }
+            if compared.is_empty() {
+                return Err(Failure::usage(format!(
+                    "{}: no shooter has two sessions to compare",
+                    options.before.display()
+                )));
+            }
+            several_shooters = several;
+            compared
         }
     };
     let mut jsons = Vec::new();
@@ -113,7 +133,7 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
             jsons.push(json(sessions, &changes));
             continue;
         }
-        if compared.len() > 1 {
+        if several_shooters {
             let space = if number == 0 { "" } else { "\n" };
             print_prose(&format!("{space}{}\n", sessions[0].profile.shooter().name))?;
         }
@@ -125,13 +145,14 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
         print_prose(&session_changes_text(summaries, &changes))?;
     }
     if options.json {
-        let all = match jsons.len() {
-            1 => jsons.swap_remove(0),
-            _ => Value::Array(jsons),
+        let all = if several_shooters {
+            Value::Array(jsons)
+        } else {
+            jsons.swap_remove(0)
         };
         print_answer(&format!("{all:#}\n"))?;
     }
-    Ok(code::DONE)
+    Ok(code)
 }
 
 /// A session from a file or from the folder of a fit.
@@ -145,6 +166,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
             posterior: fit.posterior,
             makes: fit.observed,
             profile: fit.profiles[0].clone(),
+            shooter: fit.shooter,
             warnings: fit.warnings,
             units: Some(fit.units),
         });
@@ -155,7 +177,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
     let fit = file
         .fit(shots, &file.physics)
         .map_err(|error| failure(&name, &error))?;
-    Ok(Session::of(name, fit))
+    Ok(Session::of(name, shots, fit))
 }
 
 /// Fits of one physics can be compared, and P of one place.
@@ -166,10 +188,11 @@ fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
             before.name, after.name
         )));
     }
-    let [first, second] = [before, after].map(|session| &session.profile.shooter().name);
-    if first != second && !first.is_empty() && !second.is_empty() {
+    if let (Some(first), Some(second)) = (&before.shooter, &after.shooter)
+        && first != second
+    {
         print_remark(&format!(
-            "warning: {first} and {second} have different names; two shooters differ in more than what changed"
+            "warning: these are the shots of {first} and of {second}: two shooters differ in more than what changed"
         ));
     }
     let place = |session: &Session| {
@@ -218,6 +241,7 @@ fn fit_by_session(
     }
     if !wanted.is_empty() {
         names = wanted.iter().collect();
+        names.dedup();
     }
     let [first, second] = names[..] else {
         return Err(Failure::usage(match &names[..] {
@@ -250,7 +274,7 @@ fn fit_by_session(
         let fit = file
             .fit(&kept, &file.physics)
             .map_err(|error| failure(&place, &error))?;
-        Ok(Session::of(session.clone(), fit))
+        Ok(Session::of(session.clone(), shots, fit))
     };
     Ok([fit(first)?, fit(second)?])
 }

@@ -91,6 +91,9 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     };
     if let [shots] = &file.shooters[..] {
         run_folder::refuse_other_results(&out, RunKind::Fit)?;
+        if options.out.is_none() && options.measured.shooter.is_some() {
+            refuse_other_shooter(&out, &shots.name)?;
+        }
         let fit = file
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
@@ -299,6 +302,19 @@ pub(crate) fn failure(place: &str, error: &ShooterFitError) -> Failure {
             _ => code::USAGE,
         },
         message: format!("{place}: {error}"),
+    }
+}
+
+/// Refuses the folder of another shooter, whose name is the same as that of a folder.
+fn refuse_other_shooter(folder: &Path, name: &str) -> Result<(), Failure> {
+    let text = std::fs::read_to_string(folder.join("fit.json")).unwrap_or_default();
+    let fit: Value = serde_json::from_str(&text).unwrap_or_default();
+    match fit["shooter"].as_str() {
+        Some(other) if other != name => Err(Failure::usage(format!(
+            "{}: holds the fit of {other}; name another folder with --out",
+            folder.display()
+        ))),
+        _ => Ok(()),
     }
 }
 

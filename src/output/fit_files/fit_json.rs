@@ -23,6 +23,8 @@ pub struct FitSource<'a> {
     pub physics: String,
     /// Seed of the random numbers.
     pub seed: u64,
+    /// Whether the file names the shooter; otherwise the name is that of the file.
+    pub is_shooter_named: bool,
     /// Rows kept out, and why.
     pub rejected: &'a [(u64, String)],
     /// Releases that were measured beside the landings.
@@ -116,7 +118,10 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         named("log_loss", number(makes.log_loss)),
         named("brier_of_share", number(makes.losses_of_share[0])),
         named("log_loss_of_share", number(makes.losses_of_share[1])),
-        named("calibration_z", number(makes.calibration_z)),
+        named(
+            "calibration_z",
+            makes.calibration_z.map_or(Value::Null, number),
+        ),
         named(
             "area_under_curve",
             makes.area_under_curve.map_or(Value::Null, number),
@@ -186,6 +191,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
                 named("tracker", source.tracker.0.clone().into()),
                 named("tracker_noise", source.tracker.1.clone().into()),
                 named("physics", source.physics.clone().into()),
+                named("names_the_shooter", source.is_shooter_named.into()),
             ]),
         ),
     ];
