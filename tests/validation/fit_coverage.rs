@@ -395,7 +395,7 @@ fn val_draws_tell_their_means_as_independent_ones_would() {
 }
 
 #[test]
-#[ignore = "two hours: cargo test --test validation campaign_shooters_test -- --ignored --nocapture"]
+#[ignore = "four hours: cargo test --test validation campaign_shooters_test -- --ignored --nocapture"]
 fn campaign_shooters_test_covers() {
     let repetitions: u64 =
         std::env::var("BANKSHOT_REPETITIONS").map_or(400, |n| n.parse().unwrap());
@@ -523,7 +523,7 @@ fn campaign_shooters_test_covers() {
 /// How often the interval of `--free backspin` covers 1.5 rev/s, from 400 made and missed shots
 /// that a lab measured.
 #[test]
-#[ignore = "five minutes: cargo test --test validation campaign_unseen_backspin -- --ignored --nocapture"]
+#[ignore = "ten minutes: cargo test --test validation campaign_unseen_backspin -- --ignored --nocapture"]
 fn campaign_unseen_backspin_is_told_by_made_and_missed() {
     const TRUE_SPIN: f64 = 1.5 * REV_RAD;
     let repetitions: u64 =
@@ -585,7 +585,7 @@ fn campaign_unseen_backspin_is_told_by_made_and_missed() {
 /// `design` against the scatter of the answers of repeated tests. 400 tests know a scatter to 3.5
 /// %.
 #[test]
-#[ignore = "two minutes: cargo test --test validation campaign_design -- --ignored --nocapture"]
+#[ignore = "twelve minutes: cargo test --test validation campaign_design -- --ignored --nocapture"]
 fn campaign_design_agrees_with_repeated_tests() {
     let repetitions: u64 =
         std::env::var("BANKSHOT_REPETITIONS").map_or(400, |n| n.parse().unwrap());
