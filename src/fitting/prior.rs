@@ -3,9 +3,13 @@
 //! Shooters' standard deviations were measured as 0.15 to 0.45 ft/s (speed), 1.0 to 2.7 deg (pitch
 //! angle) and 0.8 to 1.5 deg (polar angle), the correlation of speed and pitch angle as -0.25 to
 //! 0.5, and no growth of the scatter with the speed from 4.2 to 6.75 m. Those of the backspin are
-//! assumed. The prior is wider: a shooter in twenty is outside 0.31 to 3.2 times the middle of the
-//! measured range, and its correlations go far beyond theirs, so that a test of some tens of shots
-//! decides for itself.
+//! assumed. The prior is wider: a shooter in twenty is outside 0.21 to 4.8 times the middle of the
+//! measured range, and a correlation in twenty outside -0.6 to 0.6 (speed and pitch angle: -0.64 to
+//! 0.77), so that a test of some tens of shots decides for itself.
+//!
+//! Wider priors of the correlations would make the standard deviations too great: three unknown
+//! correlations cost them up to two degrees of freedom. A narrower prior of the standard deviations
+//! would pull shooters at the edges of the population to its middle.
 
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 
@@ -45,12 +49,15 @@ impl PopulationPrior {
             1.1 * DEGREE_RAD,
             0.3 * REV_RAD,
         ],
-        log_sd: 0.6,
+        log_sd: 0.8,
         speed_pitch: Spread {
             mean: 0.125,
-            sd: 0.6,
+            sd: 0.45,
         },
-        other_correlations: Spread { mean: 0.0, sd: 0.5 },
+        other_correlations: Spread {
+            mean: 0.0,
+            sd: 0.35,
+        },
         growth: Spread { mean: 0.0, sd: 0.5 },
         backspin: Spread {
             mean: 2.5 * REV_RAD,
