@@ -14,6 +14,19 @@ pub(super) struct ParameterChains {
 /// Autocorrelations are summed up to this many times their sum.
 const WINDOW: f64 = 5.0;
 
+/// The sum of products, in eight partial sums that do not wait for each other.
+fn product_sum(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let mut sums = [0.0; 8];
+    for (a, b) in a.zip(b) {
+        for k in 0..8 {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    sums.iter().sum::<f64>() + rest.map(|(a, b)| a * b).sum::<f64>()
+}
+
 impl ParameterChains {
     fn walkers(&self) -> usize {
         self.values.len() / (self.chains * self.steps)
@@ -62,10 +75,9 @@ impl ParameterChains {
         let walks = (self.chains * self.walkers()) as f64;
         let centred: Vec<f64> = self.values.iter().map(|x| x - mean).collect();
         let correlation = |lag: usize| {
-            let products = centred.chunks(self.steps).map(|walk| {
-                let pairs = walk[lag..].iter().zip(walk);
-                pairs.map(|(now, before)| now * before).sum::<f64>()
-            });
+            let products = centred
+                .chunks(self.steps)
+                .map(|walk| product_sum(&walk[lag..], &walk[..walk.len() - lag]));
             products.sum::<f64>() / (walks * (self.steps - lag) as f64 * variance)
         };
         let mut time = 1.0;

@@ -13,11 +13,16 @@ use super::interval::Interval;
 use super::measured_release::{Values, nominal_of};
 use super::posterior::Draw;
 use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed};
+use crate::math::exponential::exponential;
 use crate::math::normal_distribution::quantile;
+use crate::math::real::{Real, SimdReal};
+use crate::math::simd::F64x8;
 use crate::math::sobol::{ScrambleKey, Sobol};
 use crate::shooter::Profile;
+use fearless_simd::{Level, Simd};
 use nalgebra::SMatrix;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Scrambles of the sample. Their spread is the numerical error.
 const REPLICATES: usize = 8;
@@ -32,11 +37,14 @@ const TAIL_SHARES: [f64; 3] = [0.5, 0.25, 0.25];
 pub struct WeightedShots {
     centre: Values,
     scales: Values,
-    /// Deviations of each shot from the centre in units of the scales, replicate by replicate.
-    deviations: Vec<Values>,
+    /// Deviations of each shot from the centre in units of the scales, of each of the four values.
+    /// The shots stand replicate by replicate.
+    deviations: [Vec<f64>; 4],
     /// Twice the logarithm of the density of each shot's deviations; a common constant is left out.
     log_densities: Vec<f64>,
-    made: Vec<bool>,
+    /// 1 for a made shot, else 0.
+    made: Vec<f64>,
+    level: Level,
 }
 
 /// Twice the logarithm of the density that deviations are drawn from, without a constant.
@@ -126,12 +134,12 @@ impl WeightedShots {
             let wide = Interval::of(sds.iter().map(|sds| sds[i]).collect()).high;
             scales[i] = WIDENING * (wide * wide + of_means.sd * of_means.sd).sqrt();
         }
-        let points = (shots / REPLICATES).max(1).next_power_of_two() as u32;
+        let points = (shots / REPLICATES).max(LANES).next_power_of_two() as u32;
         let sobol = Sobol::new();
         let release = profile.release(&nominal_of(&centre));
         let position_m = release.position_m();
         let is_heavy = draws.iter().any(|draw| draw.tail_weight > 0.0);
-        let parts: Vec<(Vec<Values>, Vec<bool>)> = (0..REPLICATES as u64)
+        let parts: Vec<(Vec<Values>, Vec<f64>)> = (0..REPLICATES as u64)
             .into_par_iter()
             .map_init(BatchWorkspace::default, |workspace, replicate| {
                 let scramble = sobol.scrambled(ScrambleKey { seed, replicate });
@@ -155,7 +163,10 @@ impl WeightedShots {
                     })
                     .collect();
                 let verdicts = profile.simulator().finite_verdicts(&starts, workspace);
-                let made = verdicts.iter().map(|verdict| verdict.made).collect();
+                let made = verdicts.iter();
+                let made = made
+                    .map(|verdict| f64::from(u8::from(verdict.made)))
+                    .collect();
                 (deviations, made)
             })
             .collect();
@@ -166,8 +177,9 @@ impl WeightedShots {
             centre,
             scales,
             log_densities: deviations.par_iter().map(density).collect(),
-            deviations,
+            deviations: std::array::from_fn(|i| deviations.iter().map(|z| z[i]).collect()),
             made: made.concat(),
+            level: Level::new(),
         }
     }
 
@@ -226,38 +238,85 @@ impl WeightedShots {
                 slopes[i][j] = inverse[(i, j)] * self.scales[j];
             }
         }
-        let points = self.deviations.len() / REPLICATES;
-        let weight = |z: &Values, log_density: f64| {
-            let mut square = 0.0;
-            for i in 0..4 {
-                let mut u = offset[i];
-                for j in 0..=i {
-                    u += slopes[i][j] * z[j];
-                }
-                square += u * u;
-            }
-            let twice_log_target = if tail_weight > 0.0 {
-                // The t density of four values whose covariance is that of the factor.
-                let ratio = tail_weight / (1.0 - 2.0 * tail_weight);
-                -(1.0 / tail_weight + 4.0) * libm::log1p(ratio * square)
-            } else {
-                -square
-            };
-            libm::exp(0.5 * (twice_log_target - log_density))
+        let density = TargetDensity {
+            offset,
+            slopes,
+            tail_weight,
         };
+        let points = self.made.len() / REPLICATES;
         std::array::from_fn(|replicate| {
             let range = replicate * points..(replicate + 1) * points;
-            let (mut made, mut total) = (0.0, 0.0);
-            let densities = &self.log_densities[range.clone()];
-            let shots = self.deviations[range.clone()].iter().zip(densities);
-            for ((z, log_density), is_made) in shots.zip(&self.made[range]) {
-                let weight = weight(z, *log_density);
-                total += weight;
-                if *is_made {
-                    made += weight;
-                }
-            }
-            (made, total)
+            fearless_simd::dispatch!(self.level, simd => self.weight_sums(simd, &density, range))
         })
+    }
+
+    /// The weight of the made shots and of all shots of a range, whose length is a multiple of the
+    /// lanes.
+    #[inline(always)]
+    fn weight_sums<S: Simd>(
+        &self,
+        simd: S,
+        density: &TargetDensity,
+        range: Range<usize>,
+    ) -> (f64, f64) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut sums = [F64x8::broadcast(simd, 0.0); 2];
+                for first in range.step_by(LANES) {
+                    let at = |values: &[f64]| F64x8::load(simd, &values[first..]);
+                    let z = self.deviations.each_ref().map(|values| at(values));
+                    let weight = exponential(
+                        (density.twice_logarithm(simd, z) - at(&self.log_densities)) * 0.5,
+                    );
+                    sums[0] += weight * at(&self.made);
+                    sums[1] += weight;
+                }
+                let [made, total] = sums.map(|lanes| {
+                    let mut each = [0.0; LANES];
+                    lanes.store(&mut each);
+                    each.iter().sum::<f64>()
+                });
+                (made, total)
+            },
+        )
+    }
+}
+
+/// Shots that are weighted at a time.
+const LANES: usize = 8;
+
+/// The density of a draw's releases over the deviations of a sample.
+struct TargetDensity {
+    /// `u = offset + slopes z` has independent values of unit variance.
+    offset: [f64; 4],
+    slopes: [[f64; 4]; 4],
+    /// One over the degrees of freedom.
+    tail_weight: f64,
+}
+
+impl TargetDensity {
+    /// Twice the logarithm, without a constant.
+    #[inline(always)]
+    fn twice_logarithm<S: Simd>(&self, simd: S, z: [F64x8<S>; 4]) -> F64x8<S> {
+        let mut square = F64x8::broadcast(simd, 0.0);
+        for i in 0..4 {
+            let mut u = F64x8::broadcast(simd, self.offset[i]);
+            for (z, slope) in z.iter().zip(&self.slopes[i][..=i]) {
+                u += *z * *slope;
+            }
+            square += u.squared();
+        }
+        if self.tail_weight == 0.0 {
+            return -square;
+        }
+        // The t density of four values whose covariance is that of the factor.
+        let ratio = self.tail_weight / (1.0 - 2.0 * self.tail_weight);
+        let mut each = [0.0; LANES];
+        square.store(&mut each);
+        for square in &mut each {
+            *square = -(1.0 / self.tail_weight + 4.0) * libm::log1p(ratio * *square);
+        }
+        F64x8::load(simd, &each)
     }
 }

@@ -2,6 +2,7 @@
 
 mod arithmetic_operators;
 pub mod evenly_spaced;
+pub(crate) mod exponential;
 pub mod normal_distribution;
 pub(crate) mod real;
 pub(crate) mod scalar_f32;
