@@ -414,7 +414,7 @@ fn write(
         ),
         (
             "draws.parquet",
-            draws_parquet(&fit.posterior, &fit.probabilities).map_err(Failure::bug)?,
+            draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?,
         ),
         (
             "shots.csv",

@@ -1,15 +1,15 @@
-//! `draws.parquet`: the draws of a posterior, one a row, in SI units.
+//! `draws.parquet`: the draws of a posterior, one a row, with the names and the units of `fit.json`.
 
+use super::parameters::value_units;
 use crate::fitting::{
     Draw, DrawProbabilities, Posterior, SpinSource, VALUE_NAMES, Values, pair_name,
 };
 use crate::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
+use crate::units::UnitSystem;
 use nalgebra::SMatrix;
 use parquet::basic::Type as Physical;
 use std::fs::File;
 
-const UNITS: [&str; 4] = ["m_s", "rad", "rad", "rad_s"];
-const COEFFICIENTS: [&str; 3] = ["c10_m_s", "c11", "c12_s_m"];
 /// Rows that are read at a time.
 const BLOCK: (usize, usize) = (10_000, 16 << 20);
 
@@ -17,26 +17,42 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (1..4).flat_map(|j| (0..j).map(move |i| (i, j)))
 }
 
-fn names(places: usize) -> Vec<String> {
-    let mut names = Vec::new();
+/// The columns, each with the size of its unit in SI units.
+fn columns(places: usize, units: UnitSystem) -> Vec<(String, f64)> {
+    let of_value = value_units(units).map(|(unit, size)| (unit.replace('/', "_"), size));
+    let mut columns = Vec::new();
     for place in 1..=places {
-        for (name, unit) in VALUE_NAMES.iter().zip(UNITS) {
-            names.push(format!("place_{place}_{name}_mean_{unit}"));
+        for (name, (unit, size)) in VALUE_NAMES.iter().zip(&of_value) {
+            columns.push((format!("{}{name}_mean_{unit}", of_place(place)), *size));
         }
     }
-    for (name, unit) in VALUE_NAMES.iter().zip(UNITS) {
-        names.push(format!("{name}_sd_{unit}"));
+    for (name, (unit, size)) in VALUE_NAMES.iter().zip(&of_value) {
+        columns.push((format!("{name}_sd_{unit}"), *size));
     }
-    names.extend(COEFFICIENTS.map(str::to_owned));
-    names.push("tail_weight".to_owned());
-    names.extend(pairs().map(|(i, j)| format!("corr_{}", pair_name(i, j))));
-    names
+    let (long, metre) = units.length();
+    columns.extend([
+        (format!("c10_{long}_s"), metre),
+        ("c11".to_owned(), 1.0),
+        (format!("c12_s_{long}"), 1.0 / metre),
+        ("tail_weight".to_owned(), 1.0),
+    ]);
+    columns.extend(pairs().map(|(i, j)| (format!("corr_{}", pair_name(i, j)), 1.0)));
+    columns
+}
+
+/// What the names of a place's columns begin with, as in `fit.json`: nothing at the first place.
+fn of_place(place: usize) -> String {
+    if place == 1 {
+        String::new()
+    } else {
+        format!("place_{place}_")
+    }
 }
 
 /// The columns that are written for readers alone: P of the usual shot of each draw.
 fn probability_names(places: usize) -> Vec<String> {
     (1..=places)
-        .map(|place| format!("place_{place}_probability"))
+        .map(|place| format!("{}probability", of_place(place)))
         .collect()
 }
 
@@ -47,21 +63,26 @@ fn probability_names(places: usize) -> Vec<String> {
 pub fn draws_parquet(
     posterior: &Posterior,
     probabilities: &[DrawProbabilities],
+    units: UnitSystem,
 ) -> parquet::errors::Result<Vec<u8>> {
     let places = posterior.draws[0].means.len();
-    let mut names = names(places);
-    names.extend(probability_names(places));
-    let columns = names
+    let columns = columns(places, units);
+    let described = columns
         .iter()
-        .map(|name| column(name, Physical::DOUBLE))
+        .map(|(name, _)| name.clone())
+        .chain(probability_names(places))
+        .map(|name| column(&name, Physical::DOUBLE))
         .collect::<parquet::errors::Result<Vec<_>>>()?;
-    let mut sink = ParquetSink::new(Vec::new(), &columns)?;
+    let mut sink = ParquetSink::new(Vec::new(), &described)?;
     for (k, draw) in posterior.draws.iter().enumerate() {
         let mut values: Vec<f64> = draw.means.iter().flatten().copied().collect();
         values.extend(draw.sds);
         values.extend(draw.speed_coefficients);
         values.push(draw.tail_weight);
         values.extend(pairs().map(|(i, j)| draw.correlation[(i, j)]));
+        for (value, (_, size)) in values.iter_mut().zip(&columns) {
+            *value /= size;
+        }
         values.extend(probabilities.iter().map(|place| place.of_draws[k]));
         let cells: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
         sink.push(cells.into())?;
@@ -82,14 +103,23 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
         .collect();
     let places = header
         .iter()
-        .filter(|name| name.ends_with("_speed_mean_m_s"))
+        .filter(|name| name.contains("speed_mean_"))
         .count();
-    // The probabilities are for readers alone; a fit of an older version has none.
-    let wanted = names(places);
-    let (needed, more) = header.split_at(wanted.len().min(header.len()));
-    if places == 0 || needed != wanted || !(more.is_empty() || more == probability_names(places)) {
-        return Err("is not a file of draws that `bankshot fit` wrote".to_owned());
-    }
+    let is_header = |columns: &[(String, f64)]| {
+        // The probabilities are for readers alone.
+        let names = columns.iter().map(|(name, _)| name.clone());
+        names
+            .chain(probability_names(places))
+            .eq(header.iter().cloned())
+    };
+    let known = [UnitSystem::Imperial, UnitSystem::Metric].map(|units| columns(places, units));
+    let columns = known.iter().find(|columns| is_header(columns));
+    let Some(columns) = columns.filter(|_| places > 0) else {
+        return Err(
+            "is not a file of draws that this version of `bankshot fit` wrote; fit again"
+                .to_owned(),
+        );
+    };
     let mut draws = Vec::new();
     loop {
         let block = rows
@@ -108,7 +138,7 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
                     value.ok_or_else(|| format!("draw {}: \"{text}\" is not a number", row.number))
                 })
                 .collect::<Result<Vec<f64>, String>>()?;
-            let value = |i: usize| values[i];
+            let value = |i: usize| values[i] * columns[i].1;
             let means: Vec<Values> = (0..places)
                 .map(|place| std::array::from_fn(|i| value(4 * place + i)))
                 .collect();
