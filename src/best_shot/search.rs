@@ -364,9 +364,7 @@ impl BestShotSearch<'_> {
                 window.curves = probability_curves::from_table(&table, &clean);
             }
         }
-        let nominal = window.nominal;
-        let estimate =
-            sampler.estimate(&nominal, search.standard_error, search.seed, self.progress);
+        let (nominal, estimate) = self.straight_if_as_good(kind, &window.nominal, &sampler);
         let outcome = self
             .profile
             .simulator()
@@ -389,6 +387,37 @@ impl BestShotSearch<'_> {
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
             at_limits: self.limits_at(&nominal),
         }))
+    }
+
+    /// The shot with its P; aimed straight at the hoop's centre if left and right are mirror images
+    /// and P is the same but for its error.
+    fn straight_if_as_good(
+        &self,
+        kind: ShotKind,
+        nominal: &Nominal,
+        sampler: &Sampler<'_>,
+    ) -> (Nominal, Estimate) {
+        let search = self.profile.search();
+        let with_estimate = |nominal: Nominal| {
+            let target = search.standard_error;
+            let estimate = sampler.estimate(&nominal, target, search.seed, self.progress);
+            (nominal, estimate)
+        };
+        let found = with_estimate(*nominal);
+        let straight = Nominal {
+            polar_rad: self.profile.location().angle_rad,
+            ..*nominal
+        };
+        let is_other = self.plan.mirrored && straight.polar_rad != nominal.polar_rad;
+        if !is_other || ShotKind::of(self.profile, &straight) != kind || !self.is_made(&straight) {
+            return found;
+        }
+        let straight = with_estimate(straight);
+        if straight.1.probability >= found.1.probability - found.1.standard_error {
+            straight
+        } else {
+            found
+        }
     }
 
     fn is_made(&self, nominal: &Nominal) -> bool {
