@@ -4,7 +4,7 @@ use super::search::{BestShot, BestShotError, NoShot, find_kinds};
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, SolidId};
-use crate::probability::{Estimate, Progress, Sampler};
+use crate::probability::{Estimate, Progress, Sampler, Silent};
 use crate::shooter::{Profile, ShotKind};
 
 /// A physics to compare with.
@@ -197,13 +197,18 @@ pub fn compare_physics(
     let own = profile
         .nominal_overrides()
         .whole_shot(profile.location().angle_rad);
+    progress.begin("comparing physics", variants.len() as u64);
     for variant in variants {
+        progress.advance(u64::from(!rows.is_empty()));
         let other = profile.with(|settings| settings.physics = variant.physics.clone());
         let Ok(other) = other else { continue };
-        let found = find_kinds(&other, &ShotKind::ALL, SensitivityTopics::NONE, progress);
+        let found = find_kinds(&other, &ShotKind::ALL, SensitivityTopics::NONE, &Silent);
         let mut shots = match found {
             Ok((_, shots)) => shots,
-            Err(error) if rows.is_empty() => return Err(error),
+            Err(error) if rows.is_empty() => {
+                progress.end();
+                return Err(error);
+            }
             Err(_) => continue,
         };
         let none = |kind| Err(NoShot::Impossible(kind));
@@ -214,7 +219,7 @@ pub fn compare_physics(
         let search = other.search();
         let same_shot = own.or(first).map(|shot| {
             let sampler = Sampler::new(&other);
-            sampler.estimate(&shot, search.standard_error, search.seed, progress)
+            sampler.estimate(&shot, search.standard_error, search.seed, &Silent)
         });
         rows.push(PhysicsRow {
             name: variant.name.clone(),
@@ -228,6 +233,7 @@ pub fn compare_physics(
             same_shot,
         });
     }
+    progress.end();
     let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let ncaa = rows.iter().position(|row| row.name == "ncaa");
     Ok(PhysicsComparison {

@@ -1,9 +1,14 @@
-//! Progress bars on standard error, if it is a terminal.
+//! Progress on standard error: bars on a terminal, now and then a line elsewhere.
 
 use super::embedded_session;
+use super::terminal::print_remark;
 use crate::probability::Progress;
-use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{
+    HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
+};
+use std::io::IsTerminal;
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 /// The rate in whole units, such as `1,234/s`; below 10 with one decimal.
 fn write_rate(state: &ProgressState, text: &mut dyn std::fmt::Write) {
@@ -33,12 +38,62 @@ fn style(template: &str) -> ProgressStyle {
 struct SharedBar {
     bar: ProgressBar,
     stages: usize,
+    began: Instant,
+}
+
+/// When the next line of progress is due in a log. The pauses double, so that a night's log stays
+/// short.
+struct LogLines {
+    due: Instant,
+    pause: Duration,
+}
+
+impl LogLines {
+    const FIRST_PAUSE: Duration = Duration::from_secs(5);
+    const LONGEST_PAUSE: Duration = Duration::from_secs(600);
+
+    fn new() -> Self {
+        Self {
+            due: Instant::now() + Self::FIRST_PAUSE,
+            pause: Self::FIRST_PAUSE,
+        }
+    }
+
+    /// Whether a line is due; if it is, the next one is due after a longer pause.
+    fn is_due(&mut self, now: Instant) -> bool {
+        if now < self.due {
+            return false;
+        }
+        self.pause = (2 * self.pause).min(Self::LONGEST_PAUSE);
+        self.due = now + self.pause;
+        true
+    }
+}
+
+/// How far a bar is, as a line of a log, such as `finding shots: 12 of 40, about 35 seconds left`.
+fn log_line(shared: &SharedBar, now: Instant) -> Option<String> {
+    let stage = shared.bar.message();
+    let (done, total) = (shared.bar.position(), shared.bar.length()?);
+    let share = done as f64 / total.max(1) as f64;
+    // Stages that overlap count different things.
+    if shared.stages > 1 || done == 0 {
+        return Some(format!("{stage}: {:.0} %", 100.0 * share));
+    }
+    let left_s = (now - shared.began).as_secs_f64() * (1.0 / share - 1.0);
+    let left = HumanDuration(Duration::try_from_secs_f64(left_s).ok()?);
+    Some(format!(
+        "{stage}: {} of {}, about {left} left",
+        HumanCount(done),
+        HumanCount(total)
+    ))
 }
 
 /// Shows each stage as a progress bar. Stages that overlap share one.
 pub(crate) struct ProgressBars {
     quiet: bool,
     bar: Mutex<Option<SharedBar>>,
+    /// Where standard error is a file or a pipe.
+    log: Option<Mutex<LogLines>>,
     /// Of a command that runs inside another program.
     embedded: Option<Arc<dyn Progress + Send>>,
 }
@@ -48,6 +103,7 @@ impl ProgressBars {
         Self {
             quiet,
             bar: Mutex::new(None),
+            log: (!quiet && !std::io::stderr().is_terminal()).then(|| Mutex::new(LogLines::new())),
             embedded: embedded_session::progress(),
         }
     }
@@ -61,6 +117,16 @@ impl ProgressBars {
         ProgressBar::with_draw_target(Some(total), target)
             .with_style(style(OF_ONE_STAGE))
             .with_message(stage.to_owned())
+    }
+
+    fn log_progress(&self, shared: &SharedBar) {
+        let Some(log) = &self.log else { return };
+        let now = Instant::now();
+        if log.lock().is_ok_and(|mut log| log.is_due(now))
+            && let Some(line) = log_line(shared, now)
+        {
+            print_remark(&line);
+        }
     }
 
     fn with(&self, act: impl FnOnce(&mut Option<SharedBar>)) {
@@ -84,7 +150,11 @@ impl Progress for ProgressBars {
             }
             None => {
                 let bar = self.new_bar(stage, total);
-                *slot = Some(SharedBar { bar, stages: 1 });
+                *slot = Some(SharedBar {
+                    bar,
+                    stages: 1,
+                    began: Instant::now(),
+                });
             }
         });
     }
@@ -96,6 +166,7 @@ impl Progress for ProgressBars {
         self.with(|bar| {
             if let Some(shared) = bar {
                 shared.bar.inc(units);
+                self.log_progress(shared);
             }
         });
     }
