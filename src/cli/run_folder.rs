@@ -213,14 +213,16 @@ pub(crate) fn remove_best_shots(folder: &Path) {
     let _ = std::fs::remove_dir(folder);
 }
 
-/// The exit code of a run of `best`.
+/// The exit code of a run of `best`: without any shot its answer is incomplete.
 pub(crate) fn exit_code(profile: &Profile, best: &BestShots) -> u8 {
     let target = profile.search().standard_error;
     let is_imprecise = [&best.direct, &best.bank]
         .into_iter()
         .flatten()
         .any(|shot| shot.estimate.standard_error > target);
-    if is_imprecise {
+    if best.direct.is_err() && best.bank.is_err() {
+        code::INCOMPLETE
+    } else if is_imprecise {
         code::IMPRECISE
     } else {
         code::DONE
