@@ -12,5 +12,5 @@ pub use physics_comparison::{
 pub use search::{BestShot, BestShotError, BestShots, Limit, NoShot, find, find_kinds};
 pub use shot_table::{
     InterpolationCheck, MOST_HALVINGS, MOST_NODES, ShotTable, ShotTableError, ShotTableRequest,
-    TableShot,
+    TableKind, TableShot,
 };

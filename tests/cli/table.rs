@@ -231,6 +231,67 @@ fn is_installed(program: &str) -> bool {
     })
 }
 
+/// One table of the better kind against one of each kind.
+#[test]
+fn contract_a_table_of_the_better_kind() {
+    let folder = TempDir::new().unwrap();
+    let range = ["--distances", "6 ft, 7 ft, 14 ft", "--max-loss", "1"];
+    let json = |kind: &str| {
+        table(
+            &folder,
+            &[&range[..], &["--kind", kind, "--format", "json"]].concat(),
+        )
+        .exits(0)
+        .json()
+    };
+    let [direct, bank, best] = ["direct", "bank", "best"].map(json);
+    let shots = |json: &Value| json["shots"].as_array().unwrap().clone();
+    let p = |shot: &Value| shot["probability"].as_f64().unwrap();
+    let distance = |shot: &Value| shot["distance_ft"].as_f64().unwrap();
+    for (direct, bank) in shots(&direct).iter().zip(shots(&bank)) {
+        let here: Vec<Value> = shots(&best)
+            .into_iter()
+            .filter(|shot| (distance(shot) - distance(direct)).abs() < 1e-9)
+            .collect();
+        let most = here.iter().map(p).fold(0.0, f64::max);
+        let least_gain = 0.005;
+        assert!(most >= p(direct).max(p(&bank)) - least_gain);
+        for shot in here {
+            let of_kind = if shot["kind"] == "bank" {
+                &bank
+            } else {
+                direct
+            };
+            assert_eq!(p(&shot), p(of_kind));
+        }
+    }
+    // The kinds change at one distance, where both have nearly the same P.
+    let changes: Vec<[Value; 2]> = shots(&best)
+        .windows(2)
+        .filter(|pair| pair[0]["kind"] != pair[1]["kind"])
+        .map(|pair| [pair[0].clone(), pair[1].clone()])
+        .collect();
+    assert!(!changes.is_empty());
+    for [before, after] in &changes {
+        assert_eq!(distance(before), distance(after));
+    }
+    let notes = best["notes"].to_string();
+    assert!(notes.contains("The better kind: "), "{notes}");
+    table(
+        &folder,
+        &[
+            "--distances",
+            "6 ft",
+            "--angles",
+            "0 deg, 30 deg",
+            "--kind",
+            "best",
+        ],
+    )
+    .exits(2)
+    .says("--kind best: a table of the better kind needs one court angle");
+}
+
 #[test]
 fn contract_wrong_ranges_are_refused() {
     let folder = TempDir::new().unwrap();

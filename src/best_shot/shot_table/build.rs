@@ -1,11 +1,12 @@
 //! How a table of best shots is made: the best shot at each node, checks between them, and more
 //! nodes where interpolation costs too much.
 
+use super::better_kind::merged;
 use super::cells::{Cell, grid};
 use super::interpolation_check::{
     BestKnown, CheckError, InterpolationCheck, PlacedShot, check, moved,
 };
-use super::lookup::{ShotTable, TableShot};
+use super::lookup::{ShotTable, TableKind, TableShot};
 use crate::analysis::sensitivity::{self, SensitivityTopics};
 use crate::best_shot::search::{BestShotError, climb_from_shots, find_beside_other_kind};
 use crate::dynamics::{Event, EventKind, Outcome};
@@ -25,8 +26,8 @@ const WINDOWS: SensitivityTopics = SensitivityTopics {
 /// What a table is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotTableRequest {
-    /// The kind of all shots.
-    pub kind: ShotKind,
+    /// Which shots. The better kind needs one angle.
+    pub kind: TableKind,
     /// Distances, ascending, m.
     pub distances_m: Vec<f64>,
     /// Court angles, ascending, rad.
@@ -46,6 +47,8 @@ pub const MOST_NODES: usize = 2000;
 const MARGIN: f64 = 0.75;
 /// Most times that a step between two nodes is halved.
 pub const MOST_HALVINGS: usize = 4;
+/// How often a step is halved to find where shots of a kind begin or end.
+const END_HALVINGS: usize = 4;
 /// Most times that a cell is split where the best shot may jump. The branches of both sides do not
 /// always reach its middle, so one split does not find every jump.
 const MOST_SPLITS: usize = 3;
@@ -83,6 +86,46 @@ impl ShotsOfPlaces {
     }
 }
 
+impl ShotsOfPlaces {
+    /// From where on there are shots of a kind, or up to where, between places of a table with one
+    /// angle of which one has such a shot and the next has none: distances near these ends that
+    /// have one, m.
+    fn ends(
+        &mut self,
+        (profile, kind): (&Profile, ShotKind),
+        request: &ShotTableRequest,
+        progress: &dyn Progress,
+    ) -> Result<Vec<f64>, ShotTableError> {
+        let angle_rad = request.angles_rad[0];
+        let at = |distance_m| Location {
+            distance_m,
+            angle_rad,
+        };
+        let places: Vec<Location> = request.distances_m.iter().copied().map(at).collect();
+        self.find((profile, kind), places.iter(), progress)?;
+        let mut ends = Vec::new();
+        for pair in places.windows(2) {
+            let has_shot = [0, 1].map(|i: usize| self.at(&pair[i]).is_some());
+            if has_shot[0] == has_shot[1] {
+                continue;
+            }
+            let [mut with_m, mut without_m] =
+                [has_shot[0], !has_shot[0]].map(|first| pair[usize::from(!first)].distance_m);
+            for _ in 0..END_HALVINGS {
+                let middle = at(0.5 * (with_m + without_m));
+                self.find((profile, kind), std::iter::once(&middle), progress)?;
+                if self.at(&middle).is_some() {
+                    with_m = middle.distance_m;
+                    ends.push(with_m);
+                } else {
+                    without_m = middle.distance_m;
+                }
+            }
+        }
+        Ok(ends)
+    }
+}
+
 /// Why there is no table.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum ShotTableError {
@@ -92,6 +135,9 @@ pub enum ShotTableError {
     /// The search is too large.
     #[error(transparent)]
     Search(#[from] BestShotError),
+    /// A table of the better kind has one angle.
+    #[error("a table of the better kind needs one court angle")]
+    SeveralAngles,
 }
 
 impl From<CheckError> for ShotTableError {
@@ -108,17 +154,55 @@ impl ShotTable {
     /// than the request allows, nodes are added halfway, and jumps of the best shot at last.
     ///
     /// # Errors
-    /// A fixed value or a place is not possible, or the search is too large.
+    /// A fixed value or a place is not possible, the search is too large, or the better kind was
+    /// asked for at several angles.
     pub fn compute(
         profile: &Profile,
         request: &ShotTableRequest,
         progress: &dyn Progress,
     ) -> Result<Self, ShotTableError> {
         let profile = with_fixed(profile, &request.fixed)?;
-        let mut shots = ShotsOfPlaces::default();
+        let mut table = match request.kind {
+            TableKind::One(kind) => {
+                let shots = ShotsOfPlaces::default();
+                Self::of_kind((&profile, kind), request, shots, progress)?
+            }
+            TableKind::Better if request.angles_rad.len() > 1 => {
+                return Err(ShotTableError::SeveralAngles);
+            }
+            TableKind::Better => {
+                let of_kind = |kind| -> Result<Self, ShotTableError> {
+                    let mut shots = ShotsOfPlaces::default();
+                    let ends = shots.ends((&profile, kind), request, progress)?;
+                    let mut request = request.clone();
+                    request.distances_m.extend(ends);
+                    request.distances_m.sort_by(f64::total_cmp);
+                    Self::of_kind((&profile, kind), &request, shots, progress)
+                };
+                let tables = [of_kind(ShotKind::Direct)?, of_kind(ShotKind::Bank)?];
+                merged(&profile, tables, request.max_loss)?
+            }
+        };
+        let added = |all: &[f64], asked: &[f64]| {
+            let is_new = |value: &&f64| !asked.contains(value);
+            all.iter().filter(is_new).copied().collect()
+        };
+        table.added_distances_m = added(&table.distances_m, &request.distances_m);
+        table.added_distances_m.dedup();
+        table.added_angles_rad = added(&table.angles_rad, &request.angles_rad);
+        Ok(table)
+    }
+
+    /// The table of one kind, with what is known of places already.
+    fn of_kind(
+        (profile, kind): (&Profile, ShotKind),
+        request: &ShotTableRequest,
+        mut shots: ShotsOfPlaces,
+        progress: &dyn Progress,
+    ) -> Result<Self, ShotTableError> {
         let mut checks = ChecksOfCells::default();
         let mut table = Self {
-            kind: request.kind,
+            kind: TableKind::One(kind),
             distances_m: request.distances_m.clone(),
             angles_rad: request.angles_rad.clone(),
             shots: Vec::new(),
@@ -131,9 +215,9 @@ impl ShotTable {
             let cells = table.cells();
             let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
             let places = nodes.iter().chain(&middles);
-            shots.find((&profile, request.kind), places, progress)?;
+            shots.find((profile, kind), places, progress)?;
             table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
-            checks.find((&profile, &table), &cells, &shots, progress)?;
+            checks.find((profile, kind), &table, (&cells, &shots), progress)?;
             table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
             let [distances_m, angles_rad] = table.finer(&cells, &checks, &shots, request.max_loss);
             let is_fine = distances_m.len() == table.distances_m.len()
@@ -155,21 +239,14 @@ impl ShotTable {
                 if !costly.contains(&true) {
                     break;
                 }
-                table.split_at_jumps(&profile, &costly, request.max_loss, &shots)?;
+                table.split_at_jumps((profile, kind), &costly, request.max_loss, &shots)?;
                 let cells = table.cells();
                 let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-                shots.find((&profile, request.kind), middles.iter(), progress)?;
-                checks.find((&profile, &table), &cells, &shots, progress)?;
+                shots.find((profile, kind), middles.iter(), progress)?;
+                checks.find((profile, kind), &table, (&cells, &shots), progress)?;
                 table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
             }
         }
-        let added = |all: &[f64], asked: &[f64]| {
-            let is_new = |value: &&f64| !asked.contains(value);
-            all.iter().filter(is_new).copied().collect()
-        };
-        table.added_distances_m = added(&table.distances_m, &request.distances_m);
-        table.added_distances_m.dedup();
-        table.added_angles_rad = added(&table.angles_rad, &request.angles_rad);
         Ok(table)
     }
 
@@ -227,7 +304,7 @@ impl ShotTable {
     /// optima, a jump from one to the other is put in the middle; elsewhere one node.
     fn split_at_jumps(
         &mut self,
-        profile: &Profile,
+        (profile, kind): (&Profile, ShotKind),
         costly: &[bool],
         max_loss: f64,
         shots: &ShotsOfPlaces,
@@ -258,7 +335,7 @@ impl ShotTable {
                     location,
                     nominal: shot.nominal,
                 };
-                let branch = continued(profile, self.kind, &placed, middle)?;
+                let branch = continued(profile, kind, &placed, middle)?;
                 branches.extend(branch.map(|shot| TableShot {
                     other_kind: best.other_kind,
                     ..shot
@@ -313,9 +390,9 @@ impl ChecksOfCells {
     /// Checks those cells that have no check yet.
     fn find(
         &mut self,
-        (profile, table): (&Profile, &ShotTable),
-        cells: &[Cell],
-        shots: &ShotsOfPlaces,
+        (profile, kind): (&Profile, ShotKind),
+        table: &ShotTable,
+        (cells, shots): (&[Cell], &ShotsOfPlaces),
         progress: &dyn Progress,
     ) -> Result<(), ShotTableError> {
         let is_new = |cell: &&Cell| !self.0.contains_key(&cell.key());
@@ -340,7 +417,7 @@ impl ChecksOfCells {
                         BestKnown::Climbed(&around)
                     };
                     let shot = PlacedShot { location, nominal };
-                    checks.push(check(profile, table.kind, (shot, looked_up), best)?);
+                    checks.push(check(profile, kind, (shot, looked_up), best)?);
                 }
                 progress.advance(1);
             }
@@ -352,7 +429,7 @@ impl ChecksOfCells {
 }
 
 /// The best shot of a kind, if there is a clean one.
-fn best(profile: &Profile, kind: ShotKind) -> Result<Option<TableShot>, BestShotError> {
+pub(super) fn best(profile: &Profile, kind: ShotKind) -> Result<Option<TableShot>, BestShotError> {
     let (shot, other) = match find_beside_other_kind(profile, kind, &Silent) {
         Ok(found) => found,
         Err(BestShotError::Plan(PlanError::OutOfReach)) => return Ok(None),
@@ -360,13 +437,18 @@ fn best(profile: &Profile, kind: ShotKind) -> Result<Option<TableShot>, BestShot
     };
     Ok(shot.ok().map(|shot| TableShot {
         other_kind: other.map(|estimate| estimate.probability),
-        ..table_shot(profile, &shot.nominal, &shot.estimate, &shot.outcome)
+        ..table_shot(
+            (profile, kind),
+            &shot.nominal,
+            &shot.estimate,
+            &shot.outcome,
+        )
     }))
 }
 
 /// A shot of a table, without P of the other kind.
 fn table_shot(
-    here: &Profile,
+    (here, kind): (&Profile, ShotKind),
     nominal: &Nominal,
     estimate: &Estimate,
     outcome: &Outcome,
@@ -380,10 +462,12 @@ fn table_shot(
     });
     let (time_s, entry_rad) = fall_to_hoop(here, nominal).unzip();
     TableShot {
+        kind,
         nominal: *nominal,
         aim_rad: nominal.polar_rad - here.location().angle_rad,
         probability: estimate.probability,
         standard_error: estimate.standard_error,
+        banked: estimate.shares.banked() / estimate.probability.max(f64::MIN_POSITIVE),
         outcome: outcome.kind,
         time_s: time_s.unwrap_or(outcome.verdict.time_s),
         entry_rad,
@@ -429,7 +513,7 @@ fn continued(
     let shot = outcome
         .verdict
         .made
-        .then(|| table_shot(&here, &nominal, &estimate, &outcome));
+        .then(|| table_shot((&here, kind), &nominal, &estimate, &outcome));
     Ok(shot)
 }
 

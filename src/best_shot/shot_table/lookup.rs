@@ -4,9 +4,31 @@ use super::interpolation_check::InterpolationCheck;
 use crate::dynamics::OutcomeKind;
 use crate::shooter::{Location, Nominal, NominalVariable, ShotKind};
 
+/// Which shots a table has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableKind {
+    /// Those of one kind.
+    One(ShotKind),
+    /// Those of the kind with the higher P.
+    Better,
+}
+
+impl TableKind {
+    /// `direct`, `bank` or `best`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::One(kind) => kind.name(),
+            Self::Better => "best",
+        }
+    }
+}
+
 /// The best shot at one node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableShot {
+    /// Its kind.
+    pub kind: ShotKind,
     /// The nominal shot.
     pub nominal: Nominal,
     /// Its direction from the line to the hoop's centre, rad, positive to the shooter's left.
@@ -15,6 +37,8 @@ pub struct TableShot {
     pub probability: f64,
     /// Its standard error.
     pub standard_error: f64,
+    /// The share of its makes that touch the board first.
+    pub banked: f64,
     /// How the error-free shot goes in.
     pub outcome: OutcomeKind,
     /// Time from the release until the error-free shot first falls to the height of the hoop, as if
@@ -32,8 +56,8 @@ pub struct TableShot {
 /// A table of best shots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShotTable {
-    /// The kind of all shots.
-    pub kind: ShotKind,
+    /// Which shots it has.
+    pub kind: TableKind,
     /// Distances, ascending, m. One that stands twice is a jump: its first shot ends the cell
     /// below, its second one begins the cell above.
     pub distances_m: Vec<f64>,
@@ -116,7 +140,7 @@ impl ShotTable {
     /// Whether a shot without an error touches nothing but, in a bank shot, the board.
     #[must_use]
     pub fn is_clean(&self, shot: &TableShot) -> bool {
-        let clean = match self.kind {
+        let clean = match shot.kind {
             ShotKind::Direct => OutcomeKind::Swish,
             ShotKind::Bank => OutcomeKind::BankIn,
         };

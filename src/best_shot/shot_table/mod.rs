@@ -1,6 +1,7 @@
 //! The best shots of one kind for a grid of distances and court angles, for a program to
 //! interpolate in.
 
+mod better_kind;
 mod build;
 mod cells;
 mod interpolation_check;
@@ -8,4 +9,4 @@ mod lookup;
 
 pub use build::{MOST_HALVINGS, MOST_NODES, ShotTableError, ShotTableRequest};
 pub use interpolation_check::InterpolationCheck;
-pub use lookup::{ShotTable, TableShot};
+pub use lookup::{ShotTable, TableKind, TableShot};

@@ -1,6 +1,8 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
-use crate::best_shot::{MOST_NODES, ShotKind, ShotTable, ShotTableError, ShotTableRequest};
+use crate::best_shot::{
+    MOST_NODES, ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableKind,
+};
 use crate::cli::config_files::load_profile_with_fixed;
 use crate::cli::failure::{Failure, code};
 use crate::cli::progress_bars::ProgressBars;
@@ -28,7 +30,7 @@ Examples:
     --pitch '60 deg' --backspin '2 rev/s'
   bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' \\
     --angles '0 deg to 60 deg by 15 deg' --kind bank
-  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
+  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --kind best \\
     -o ShotTable.java -o shots.csv")]
 pub(crate) struct TableOptions {
     /// The launcher's profile.
@@ -74,6 +76,8 @@ pub(crate) struct TableOptions {
 pub(crate) enum KindArg {
     Direct,
     Bank,
+    /// The one with the higher P at each distance, from one angle.
+    Best,
 }
 
 /// The forms of a table.
@@ -171,8 +175,9 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let outputs = outputs(options)?;
     let request = ShotTableRequest {
         kind: match options.kind {
-            KindArg::Direct => ShotKind::Direct,
-            KindArg::Bank => ShotKind::Bank,
+            KindArg::Direct => TableKind::One(ShotKind::Direct),
+            KindArg::Bank => TableKind::One(ShotKind::Bank),
+            KindArg::Best => TableKind::Better,
         },
         distances_m,
         angles_rad,
@@ -184,6 +189,9 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             match error {
                 ShotTableError::Profile(error) => Failure::from(error),
                 ShotTableError::Search(error) => Failure::from(error),
+                error @ ShotTableError::SeveralAngles => Failure::usage(format!(
+                    "--kind best: {error}; give --angles one value, or make a table of each kind"
+                )),
             }
         })?;
     let text_of = |output: &Output| {

@@ -3,7 +3,7 @@
 //! Each has one function of distance and court angle, linear between the nodes. It gives NaN
 //! outside the table and beside a place without a shot.
 
-use super::table_text::{notes, physics_note, shooter_note};
+use super::table_text::{notes, physics_note, shooter_note, what_shots};
 use crate::best_shot::{ShotTable, TableShot};
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
@@ -96,8 +96,8 @@ pub fn source_code(
     let names: Vec<&str> = values.iter().map(|(name, ..)| name.as_str()).collect();
     let mut about = vec![
         format!(
-            "Best {} shots, by bankshot {} (configuration {}).",
-            table.kind.name(),
+            "{}; by bankshot {} (configuration {}).",
+            what_shots(table.kind),
             env!("CARGO_PKG_VERSION"),
             profile.hash(),
         ),

@@ -1,6 +1,6 @@
 //! A table of best shots as text, CSV and JSON.
 
-use crate::best_shot::{InterpolationCheck, ShotKind, ShotTable, TableShot};
+use crate::best_shot::{InterpolationCheck, ShotKind, ShotTable, TableKind, TableShot};
 use crate::model::SolidId;
 use crate::output::json_object::{number, object, provenance};
 use crate::shooter::{Location, Profile, ReleaseVariable};
@@ -10,7 +10,7 @@ use serde_json::Value;
 /// A column: its name with its unit, its decimals for people, and its value.
 type TableColumn = (String, usize, fn(&TableShot) -> f64, f64);
 
-fn columns(kind: ShotKind, units: UnitSystem) -> Vec<TableColumn> {
+fn columns(kind: TableKind, units: UnitSystem) -> Vec<TableColumn> {
     let (long, metre) = units.length();
     let in_unit = |name: &str, unit: &str| {
         if unit.is_empty() {
@@ -20,6 +20,10 @@ fn columns(kind: ShotKind, units: UnitSystem) -> Vec<TableColumn> {
         }
     };
     let speed = format!("{long}_s");
+    let other_kind = match kind {
+        TableKind::One(kind) => kind.other().name(),
+        TableKind::Better => "other_kind",
+    };
     vec![
         (in_unit("speed", &speed), 2, |s| s.nominal.speed_m_s, metre),
         (
@@ -69,11 +73,12 @@ fn columns(kind: ShotKind, units: UnitSystem) -> Vec<TableColumn> {
             DEGREE_RAD,
         ),
         (
-            in_unit(&format!("{}_probability", kind.other().name()), ""),
+            in_unit(&format!("{other_kind}_probability"), ""),
             3,
             |s| s.other_kind.unwrap_or(f64::NAN),
             1.0,
         ),
+        (in_unit("makes_off_board_first", ""), 2, |s| s.banked, 1.0),
     ]
 }
 
@@ -136,11 +141,11 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         shooter_note(table, profile, units),
         physics_note(profile, units),
         format!(
-            "Best {} shots. from: distance from the hoop's centre. aim: positive to the left. P: \
+            "{}. from: distance from the hoop's centre. aim: positive to the left. P: \
              the chance of each. margin: by how much speed and pitch can be off, up or down, one \
              at a time and with all else exact, until the shot first misses. time, entry: where it \
              first falls to the height of the hoop, as if there were no ring.",
-            table.kind.name()
+            what_shots(table.kind)
         ),
     ] {
         text += &wrapped(&sentence);
@@ -196,6 +201,15 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
 }
 
+/// Which shots a table has.
+#[must_use]
+pub fn what_shots(kind: TableKind) -> String {
+    match kind {
+        TableKind::One(kind) => format!("Best {} shots", kind.name()),
+        TableKind::Better => "Best shots, direct or bank, the kind with the higher P".to_owned(),
+    }
+}
+
 /// A line of the table for people.
 fn line(cells: &[String; 11]) -> String {
     const WIDTHS: [usize; 10] = [6, 5, 6, 5, 6, 5, 4, 5, 5, 10];
@@ -214,10 +228,12 @@ fn line(cells: &[String; 11]) -> String {
 #[must_use]
 pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
     let notes = [
+        kinds_note(table, units),
         Some(check_note(table, units)),
         added_note(table, units),
         jump_note(table, units),
         bounce_note(table),
+        nearly_other_kind_note(table, units),
         unlikely_note(table, units),
         other_kind_note(table, units),
     ];
@@ -355,18 +371,87 @@ fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     })
 }
 
+/// From where to where each kind is the better one.
+fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    if table.kind != TableKind::Better {
+        return None;
+    }
+    let (long, metre) = units.length();
+    let mut stretches: Vec<(ShotKind, f64, f64)> = Vec::new();
+    for (distance_m, shot) in table.distances_m.iter().zip(&table.shots) {
+        let Some(shot) = shot else { continue };
+        match stretches.last_mut() {
+            Some((kind, _, to_m)) if *kind == shot.kind => *to_m = *distance_m,
+            _ => stretches.push((shot.kind, *distance_m, *distance_m)),
+        }
+    }
+    let texts: Vec<String> = stretches
+        .iter()
+        .map(|(kind, from_m, to_m)| {
+            let [from, to] = [from_m, to_m].map(|m| short(m / metre));
+            if from == to {
+                format!("{} at {from} {long}", kind.name())
+            } else {
+                format!("{} from {from} to {to} {long}", kind.name())
+            }
+        })
+        .collect();
+    (!texts.is_empty()).then(|| format!("The better kind: {}.", texts.join(", ")))
+}
+
 /// How many shots touch more than they should.
 fn bounce_note(table: &ShotTable) -> Option<String> {
     let shots = table.shots.iter().flatten();
     let bouncing = shots.filter(|shot| !table.is_clean(shot)).count();
     let off = match table.kind {
-        ShotKind::Direct => "off the ring or the board",
-        ShotKind::Bank => "off the ring too",
+        TableKind::One(ShotKind::Direct) => "off the ring or the board",
+        TableKind::One(ShotKind::Bank) => "off the ring too",
+        TableKind::Better => "off the ring too (a direct one off the ring or the board)",
     };
     (bouncing > 0).then(|| {
         format!(
             "In {bouncing} of {} rows the best shot goes in {off} even without an error.",
             table.shots.len()
+        )
+    })
+}
+
+/// Share of the makes above which a shot is also one of the other kind.
+const MANY_OF_OTHER_KIND: f64 = 0.25;
+
+/// Where many of the makes are those of the other kind.
+fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let mut places = Vec::new();
+    let mut most = 0.0_f64;
+    for (a, angle_rad) in table.angles_rad.iter().enumerate() {
+        for (d, distance_m) in table.distances_m.iter().enumerate() {
+            let Some(shot) = table.at(a, d) else { continue };
+            let share = match shot.kind {
+                ShotKind::Direct => shot.banked,
+                ShotKind::Bank => 1.0 - shot.banked,
+            };
+            if share > MANY_OF_OTHER_KIND {
+                most = most.max(share);
+                let place = Location {
+                    distance_m: *distance_m,
+                    angle_rad: *angle_rad,
+                };
+                places.push(place_text(table, &place, units));
+            }
+        }
+    }
+    // A jump has two rows.
+    places.dedup();
+    let touch = match table.kind {
+        TableKind::One(ShotKind::Direct) => "direct shot touch the board first",
+        TableKind::One(ShotKind::Bank) => "bank shot do not touch the board first",
+        TableKind::Better => "shot are of the other kind",
+    };
+    (!places.is_empty()).then(|| {
+        format!(
+            "Nearly the other kind: up to {:.0} % of the makes of the {touch} at {}.",
+            100.0 * most,
+            places.join("; ")
         )
     })
 }
@@ -403,7 +488,10 @@ const UNLIKELY: f64 = 0.1;
 
 /// Where the best shot of the other kind has the higher P.
 fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
-    let other = table.kind.other().name();
+    let TableKind::One(kind) = table.kind else {
+        return None;
+    };
+    let other = kind.other().name();
     let mut places = Vec::new();
     let mut most: Option<(f64, String)> = None;
     for (a, angle_rad) in table.angles_rad.iter().enumerate() {
@@ -470,7 +558,7 @@ pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
             .collect();
         text += &format!(
             "{},{distance},{angle},{},{}\n",
-            table.kind.name(),
+            shot.map_or(table.kind.name(), |shot| shot.kind.name()),
             shot.map_or("", |shot| shot.outcome.name()),
             cells.join(",")
         );
@@ -494,6 +582,7 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
         let mut record = vec![
             named(&format!("distance_{long}"), number(distance)),
             named("court_angle_deg", number(angle)),
+            named("kind", shot.map(|shot| shot.kind.name()).into()),
             named("has_shot", shot.is_some().into()),
             named(
                 "is_clean_shot",
