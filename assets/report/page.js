@@ -133,7 +133,8 @@
 
   const tell = () => {
     const here = current();
-    const from = places.length > 1 && here.length > 0 ? `From ${here[0].where}. ` : "";
+    const where = data.places_are ? (here) => `${here}: ` : (here) => `From ${here}. `;
+    const from = places.length > 1 && here.length > 0 ? where(here[0].where) : "";
     shown.textContent = from + here.map((shot) => shot.words).join(" ");
     canvas.setAttribute("aria-label", `The flight of the ball, to be turned with the arrow keys. ${shown.textContent}`);
     for (const row of document.querySelectorAll("tr[data-shot]")) {
@@ -165,6 +166,7 @@
   placeSlider.max = String(places.length - 1);
   placeSlider.addEventListener("input", () => { state.place = Number(placeSlider.value); tell(); });
   if (places.length < 2) placeSlider.closest("label").hidden = true;
+  if (data.places_are) document.getElementById("places-are").textContent = data.places_are;
   kindBox.addEventListener("change", () => { state.kind = kindBox.value; tell(); });
   if (new Set(shots.map((shot) => shot.kind)).size < 2) kindBox.closest("label").hidden = true;
 

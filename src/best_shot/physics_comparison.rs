@@ -6,6 +6,7 @@ use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, SolidId};
 use crate::probability::{Estimate, Progress, Sampler, Silent};
 use crate::shooter::{Profile, ShotKind};
+use std::collections::BTreeMap;
 
 /// A physics to compare with.
 #[derive(Clone, Debug)]
@@ -63,7 +64,7 @@ impl PhysicsComparison {
     /// gym, and how far that of [`Self::same_shot`] does.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
-        let list = |changes: Vec<(&str, f64)>| {
+        let list = |changes: &[(&str, f64)]| {
             let words = changes.iter().map(|(name, by)| {
                 let name = name.split_once(' ').map_or(*name, |(_, change)| change);
                 format!("{name} {:+.1}", 100.0 * by)
@@ -74,23 +75,41 @@ impl PhysicsComparison {
             let shot = row.direct.as_ref().ok()?;
             Some(shot.estimate.probability)
         };
-        let best = list(self.unmeasured_changes(direct));
+        let best = self.unmeasured_changes(direct);
         if best.is_empty() {
             return None;
         }
         let same = |row: &PhysicsRow| Some(row.same_shot.as_ref()?.probability);
-        let same = list(self.unmeasured_changes(same));
+        let same = self.unmeasured_changes(same);
+        let together = |changes: &[(&str, f64)]| format!("{:.0}", 100.0 * together(changes));
         let mut text = format!(
-            "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {best}."
+            "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {} (together about {}).",
+            list(&best),
+            together(&best)
         );
         if !same.is_empty() {
             text += &format!(
-                " To {}, which is not aimed again: {same}.",
-                self.same_shot.in_words()
+                " To {}, which is not aimed again: {} (together about {}).",
+                self.same_shot.in_words(),
+                list(&same),
+                together(&same)
             );
         }
         Some(text)
     }
+}
+
+/// How far single changes may move P together: the root of the sum of squares, of each quantity
+/// the change that does most. The changes are ends of what the quantities may be.
+fn together(changes: &[(&str, f64)]) -> f64 {
+    // `with hoop_restitution 0.45`: the second word is the quantity.
+    let quantity = |name: &str| name.split(' ').nth(1).unwrap_or(name).to_owned();
+    let mut most: BTreeMap<String, f64> = BTreeMap::new();
+    for (name, by) in changes {
+        let most = most.entry(quantity(name)).or_default();
+        *most = most.max(by.abs());
+    }
+    most.values().map(|by| by * by).sum::<f64>().sqrt()
 }
 
 /// A shot that is released the same way under each physics.

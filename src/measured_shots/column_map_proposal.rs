@@ -53,6 +53,7 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     let mut taken: Vec<&str> = Vec::new();
     let mut maps = Vec::new();
     let mut has_no_unit = Vec::new();
+    let mut is_short_height = false;
     let is_landing = columns.quantity(Quantity::Depth).is_some()
         || unused.iter().any(|name| letters_of(name).contains("depth"));
     for name in &unused {
@@ -64,6 +65,7 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
             continue;
         }
         taken.push(target);
+        is_short_height |= letters_of(name) == "height";
         maps.push(match quantity {
             None => format!("--map '{target}={name}'"),
             Some(quantity) => {
@@ -115,6 +117,10 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
                  the {other}, write a minus before its name"
             );
         }
+    }
+    if is_short_height {
+        text += "\n  release_height is that of the ball when it leaves the hand: leave it out if the \
+                 column has the player's height";
     }
     let is_known = |quantity: Quantity| {
         taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()

@@ -38,6 +38,7 @@ pub fn best_shot_page(run: &BestShotRun, progress: &dyn Progress) -> Result<Page
         answer: answer(run, better),
         shots: run.shots.clone(),
         first_place: 0,
+        other_shooter: None,
         scene: Scene {
             simulator: profile.simulator().clone(),
             court: League::Ncaa.court(),

@@ -40,6 +40,7 @@ pub fn fit_page(
         answer: answer(fit, source, units),
         shots: vec![usual],
         first_place: 0,
+        other_shooter: None,
         scene: Scene {
             simulator: profile.simulator().clone(),
             court: League::Ncaa.court(),

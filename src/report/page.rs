@@ -27,6 +27,8 @@ pub struct Page {
     pub first_place: usize,
     /// Where the shots are taken.
     pub scene: Scene,
+    /// Another shooter's shots from one place, which the page shows in turn with the own ones.
+    pub other_shooter: Option<OtherShooter>,
     /// Tables.
     pub tables: Vec<HtmlTable>,
     /// Plots.
@@ -35,37 +37,84 @@ pub struct Page {
     pub footer: String,
 }
 
+/// The shots of another shooter on a page of two.
+#[derive(Clone, Debug)]
+pub struct OtherShooter {
+    scene: Scene,
+    shots: Vec<ReportShot>,
+    /// The names of both.
+    names: [String; 2],
+}
+
+impl OtherShooter {
+    /// Adds the shots to the data of a page. Shooters take the part of places.
+    fn add_to(&self, data: &mut serde_json::Value) -> Result<(), StateError> {
+        let mut others = self.scene.page_data(&self.shots, 0)?;
+        let others_far_x_m = others["far_x_m"].clone();
+        let (Some(own), Some(others)) =
+            (data["shots"].as_array_mut(), others["shots"].as_array_mut())
+        else {
+            return Ok(());
+        };
+        let own_shots = own.len();
+        own.append(others);
+        for (index, shot) in own.iter_mut().enumerate() {
+            let shooter = usize::from(index >= own_shots);
+            shot["place"] = shooter.into();
+            shot["where"] = self.names[shooter].clone().into();
+        }
+        let far_x_m = [&data["far_x_m"], &others_far_x_m].map(|x| x.as_f64().unwrap_or(0.0));
+        data["far_x_m"] = far_x_m[0].max(far_x_m[1]).into();
+        data["first_place"] = 0.into();
+        data["places_are"] = "Shooter".into();
+        Ok(())
+    }
+}
+
 impl Page {
     /// Adds the answer, the tables and the plots of another page, and a plot of the difference if
     /// there is one.
     pub fn add_comparison(&mut self, other: Self, difference: Option<Plot>) {
-        let compared = match &difference {
-            Some(_) => None,
-            None => self.best_shots_compared(&other),
+        let of_one_place = difference.is_none();
+        let compared = if of_one_place {
+            self.best_shots_compared(&other)
+        } else {
+            None
         };
         self.answer = format!(
-            "{4}{0}: {1}\n{2}: {3}\nThe shots that move are those of {0}.",
+            "{4}{0}: {1}\n{2}: {3}",
             self.title,
             self.answer,
             other.title,
             other.answer,
             compared.unwrap_or_default()
         );
+        if !of_one_place {
+            self.answer += &format!("\nThe shots that move are those of {}.", self.title);
+        }
         if let Some(plot) = &difference {
             self.answer = format!("{}\n{}", self.answer, plot.caption);
         }
         for table in &mut self.tables {
             table.name(&self.title);
         }
+        let own_shots = self.shots.len();
         self.tables
             .extend(other.tables.into_iter().map(|mut table| {
                 table.name(&other.title);
-                // The page shows the paths of the first page's shots only.
                 for (shot, _) in &mut table.rows {
-                    *shot = None;
+                    // Of two sweeps the page shows the paths of the first alone.
+                    *shot = shot.filter(|_| of_one_place).map(|shot| own_shots + shot);
                 }
                 table
             }));
+        if of_one_place {
+            self.other_shooter = Some(OtherShooter {
+                scene: other.scene,
+                shots: other.shots,
+                names: [self.title.clone(), other.title.clone()],
+            });
+        }
         for plot in &mut self.plots {
             plot.caption = format!("{}: {}", self.title, plot.caption);
         }
@@ -122,7 +171,10 @@ impl Page {
         for plot in &self.plots {
             body.push_str(&figure_html(plot));
         }
-        let data = self.scene.page_data(&self.shots, self.first_place)?;
+        let mut data = self.scene.page_data(&self.shots, self.first_place)?;
+        if let Some(other) = &self.other_shooter {
+            other.add_to(&mut data)?;
+        }
         // Inside a script element, only a tag can end the element.
         let data = data.to_string().replace('<', "\\u003c");
         let answer: Vec<String> = self.answer.lines().map(escaped).collect();

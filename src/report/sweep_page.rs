@@ -44,6 +44,7 @@ pub fn sweep_page(
         first_place: spot_near_free_throw_line(config, &shots),
         shots,
         plots,
+        other_shooter: None,
         scene: Scene {
             simulator: Simulator::with_integrator(&settings.physics, settings.integrator)?,
             court: config.league.court(),

@@ -18,6 +18,14 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Searches the best shots under some fifteen physics: half a minute to a minute. What nobody measured in this gym (how soft the \
+ring is, the friction, the drag) is changed to both ends of what is likely; \"together\" is the root of the sum of squares, of \
+each quantity the change that does most.
+
+Examples:
+  bankshot physics player.toml
+  bankshot physics results/shots-fit --plot physics.svg")]
 pub(crate) struct PhysicsOptions {
     /// The shooter's profile, or the folder of a fit.
     pub(crate) profile: PathBuf,

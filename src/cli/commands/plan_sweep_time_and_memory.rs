@@ -62,9 +62,14 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
             time_in_words(seconds)
         )
     });
+    let which = if config.is_mirror_symmetric() {
+        format!("{spots} are computed, the others are their mirror images")
+    } else {
+        "all are computed: this shooter's left and right differ".to_owned()
+    };
     let mib = |bytes: f64| bytes / f64::from(1 << 20);
     print_answer(&format!(
-        "places  {}; {spots} are computed, the others are their mirror images\njobs    {}\ntime    {time}\nmemory  about {:.0} MiB\ndisk    about {:.1} MiB\n",
+        "places  {}; {which}\njobs    {}\ntime    {time}\nmemory  about {:.0} MiB\ndisk    about {:.1} MiB\n",
         jobs.sources.len(),
         jobs.count(),
         mib(memory),
