@@ -162,7 +162,7 @@ impl<const D: usize> DispersionPosterior<D> {
         let mut priors: Vec<Spread> = (0..D)
             .map(|i| Spread {
                 mean: libm::log(self.prior.median_sd[i]),
-                sd: self.prior.log_sd,
+                sd: self.prior.log_sd[i],
             })
             .collect();
         priors.push(self.prior.speed_pitch);

@@ -533,7 +533,7 @@ fn draw_of<const D: usize>(
             (prior.backspin.mean + prior.backspin.sd * unseen[0]).max(0.0)
         }
     };
-    let unseen_sd = prior.median_sd[3] * libm::exp(prior.log_sd * unseen[1]);
+    let unseen_sd = prior.median_sd[3] * libm::exp(prior.log_sd[3] * unseen[1]);
     let sds: Values = std::array::from_fn(|i| if i < D { dispersion.sds[i] } else { unseen_sd });
     let mut correlation = SMatrix::<f64, 4, 4>::identity();
     let coefficients = dispersion.correlation_factor * dispersion.correlation_factor.transpose();

@@ -27,8 +27,8 @@ pub struct Spread {
 pub struct PopulationPrior {
     /// Median standard deviations: speed (m/s), pitch and polar angle (rad), backspin (rad/s).
     pub median_sd: [f64; 4],
-    /// Standard deviation of their logarithms.
-    pub log_sd: f64,
+    /// Standard deviations of their logarithms.
+    pub log_sd: [f64; 4],
     /// Fisher's z (inverse hyperbolic tangent) of the correlation of speed and pitch angle.
     pub speed_pitch: Spread,
     /// The same of the other partial correlations.
@@ -49,7 +49,7 @@ impl PopulationPrior {
             1.1 * DEGREE_RAD,
             0.3 * REV_RAD,
         ],
-        log_sd: 0.8,
+        log_sd: [0.8, 0.8, 0.8, 0.6],
         speed_pitch: Spread {
             mean: 0.125,
             sd: 0.45,

@@ -97,8 +97,9 @@ fn shooter_of_population(places: usize, random: &mut ChaCha12Rng) -> Draw {
     // The prior has no weight where the scatter makes no sense at some speed.
     loop {
         let mut growth = [0.0; 2];
-        let sds: Values =
-            std::array::from_fn(|i| PRIOR.median_sd[i] * libm::exp(PRIOR.log_sd * normal(random)));
+        let sds: Values = std::array::from_fn(|i| {
+            PRIOR.median_sd[i] * libm::exp(PRIOR.log_sd[i] * normal(random))
+        });
         if places > 1 {
             growth = [0, 1].map(|_| PRIOR.growth.sd * normal(random));
         }
