@@ -147,6 +147,21 @@ impl Draw {
         }
     }
 
+    /// The same with values of single precision, far below what shots tell. A value that was
+    /// written in any unit and read again is rounded to the same bits.
+    #[must_use]
+    pub fn rounded(&self) -> Self {
+        let round = |value: f64| f64::from(value as f32);
+        let means = self.means.iter().map(|mean| mean.map(round)).collect();
+        Self::new(
+            means,
+            self.sds.map(round),
+            self.correlation.map(round),
+            self.speed_coefficients.map(round),
+        )
+        .with_tail_weight(round(self.tail_weight))
+    }
+
     /// The same scatter about one other aim.
     #[must_use]
     pub fn aimed_at(&self, mean: Values) -> Self {
@@ -512,7 +527,7 @@ fn draws_of<const D: usize>(
                 .ok_or(FitError::NoScatter)?;
             let unseen = [normal(&mut random), normal(&mut random)];
             let draw = draw_of(model.normal(), &dispersion, &means, unseen, options);
-            Ok(draw.with_tail_weight(model.tail_weight(point)))
+            Ok(draw.with_tail_weight(model.tail_weight(point)).rounded())
         })
         .collect()
 }

@@ -328,7 +328,7 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     assert!(
         text.contains("before  Ann (30 shots, ")
             && text.starts_with("These shots do not show that the chance of a shot changed: it ")
-            && text.contains("May have changed: the release angle fell by 0.82 deg.")
+            && text.contains("May have changed: the release angle fell by 0.81 deg.")
             && text
                 .lines()
                 .any(|line| line.starts_with("pitch_mean") && line.ends_with("maybe")),

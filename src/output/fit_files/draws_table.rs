@@ -161,7 +161,7 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
                     row.number
                 ));
             }
-            draws.push(draw.with_tail_weight(tail_weight));
+            draws.push(draw.with_tail_weight(tail_weight).rounded());
         }
     }
     if draws.is_empty() {
