@@ -29,7 +29,8 @@ Exit codes:
   0   everything is done
   1   done, but the wanted standard error was not reached
   2   usage or configuration refused; nothing was written
-  3   incomplete: some rows or jobs are missing or failed, the others are done
+  3   incomplete: some rows or jobs are missing or failed, the others are done;
+      or no shot goes in
   4   data damaged, of another sweep, or contradictory
   70  a bug
   74  input or output failed
