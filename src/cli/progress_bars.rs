@@ -41,39 +41,45 @@ struct SharedBar {
     began: Instant,
 }
 
-/// When the next line of progress is due in a log. The pauses double, so that a night's log stays
-/// short.
+/// When the next line of progress is due in a log. The pauses grow with the time that has passed,
+/// so that a night's log stays short.
 struct LogLines {
+    began: Instant,
     due: Instant,
-    pause: Duration,
 }
 
 impl LogLines {
-    const FIRST_PAUSE: Duration = Duration::from_secs(5);
+    const SHORTEST_PAUSE: Duration = Duration::from_secs(5);
     const LONGEST_PAUSE: Duration = Duration::from_secs(600);
+    /// A stage is told after this time.
+    const LEAST_STAGE: Duration = Duration::from_secs(2);
+    /// A pause is the time that has passed divided by this.
+    const PART: u32 = 6;
 
     fn new() -> Self {
+        let began = Instant::now();
         Self {
-            due: Instant::now() + Self::FIRST_PAUSE,
-            pause: Self::FIRST_PAUSE,
+            began,
+            due: began + Self::SHORTEST_PAUSE,
         }
     }
 
-    /// Whether a line is due; if it is, the next one is due after a longer pause.
-    fn is_due(&mut self, now: Instant) -> bool {
-        if now < self.due {
-            return false;
-        }
-        self.pause = (2 * self.pause).min(Self::LONGEST_PAUSE);
-        self.due = now + self.pause;
-        true
+    /// After a line: when the next one is due.
+    fn wait(&mut self, now: Instant) {
+        let pause = (now - self.began) / Self::PART;
+        self.due = now + pause.clamp(Self::SHORTEST_PAUSE, Self::LONGEST_PAUSE);
     }
 }
 
-/// How far a bar is, as a line of a log, such as `finding shots: 12 of 40, about 35 seconds left`.
+/// How far a bar is, as a line of a log, such as `finding shots: 12 of 40, about 35 seconds left of
+/// this step`.
 fn log_line(shared: &SharedBar, now: Instant) -> Option<String> {
     let stage = shared.bar.message();
     let (done, total) = (shared.bar.position(), shared.bar.length()?);
+    // A stage that has just begun tells nothing yet.
+    if now - shared.began < LogLines::LEAST_STAGE {
+        return None;
+    }
     let share = done as f64 / total.max(1) as f64;
     // Stages that overlap count different things.
     if shared.stages > 1 || done == 0 {
@@ -82,7 +88,7 @@ fn log_line(shared: &SharedBar, now: Instant) -> Option<String> {
     let left_s = (now - shared.began).as_secs_f64() * (1.0 / share - 1.0);
     let left = HumanDuration(Duration::try_from_secs_f64(left_s).ok()?);
     Some(format!(
-        "{stage}: {} of {}, about {left} left",
+        "{stage}: {} of {}, about {left} left of this step",
         HumanCount(done),
         HumanCount(total)
     ))
@@ -122,9 +128,11 @@ impl ProgressBars {
     fn log_progress(&self, shared: &SharedBar) {
         let Some(log) = &self.log else { return };
         let now = Instant::now();
-        if log.lock().is_ok_and(|mut log| log.is_due(now))
+        if let Ok(mut log) = log.lock()
+            && now >= log.due
             && let Some(line) = log_line(shared, now)
         {
+            log.wait(now);
             print_remark(&line);
         }
     }

@@ -25,10 +25,13 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
     ("distance", &["distance", "dist"]),
     (
         "made",
-        &["made", "make", "result", "outcome", "goal", "basket"],
+        &["made", "make", "result", "outcome", "goal", "basket", "hit"],
     ),
-    ("shooter", &["shooter", "player", "athlete", "subject"]),
-    ("session", &["session", "date", "day"]),
+    (
+        "shooter",
+        &["shooter", "player", "athlete", "subject", "participant"],
+    ),
+    ("session", &["session", "date", "day", "visit"]),
     ("shot", &["shotid", "shotnumber", "shotno", "trial"]),
     ("time", &["time"]),
 ];
@@ -108,6 +111,7 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     }
     for (quantity, side, other) in [
         (Quantity::Aim, "left", "right"),
+        (Quantity::Polar, "left", "right"),
         (Quantity::LeftRight, "right", "left"),
     ] {
         let name = quantity.name();
@@ -166,7 +170,7 @@ fn zero_of(name: &str, quantity: Quantity, unit: Option<&str>) -> (&'static str,
             ("", offset)
         }
         Quantity::LeftRight if is_positive_to(name, "left") => ("-", String::new()),
-        Quantity::Aim if is_positive_to(name, "right") => ("-", String::new()),
+        Quantity::Aim | Quantity::Polar if is_positive_to(name, "right") => ("-", String::new()),
         _ => ("", String::new()),
     }
 }
@@ -181,7 +185,10 @@ fn is_positive_to(name: &str, side: &str) -> bool {
     let is_negative = says(format!("-={side}"))
         || says(format!("{side}negative"))
         || says(format!("negative={side}"));
-    let is_positive = says(format!("+={side}"))
+    // `Azimuth_deg_right`
+    let is_last = lower.ends_with(&format!("_{side}"));
+    let is_positive = is_last
+        || says(format!("+={side}"))
         || says(format!("{side}positive"))
         || says(format!("positive={side}"));
     !is_negative && (is_alone || is_positive)

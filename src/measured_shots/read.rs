@@ -170,6 +170,9 @@ pub struct ShooterShots {
     pub source: Source,
     /// Where they shot from.
     pub places: Vec<Place>,
+    /// The least and the greatest height of the releases of one place, m, where they differ: the
+    /// place has their mean.
+    pub merged_heights_m: Option<[f64; 2]>,
     /// The shots, in the order of the file.
     pub shots: Vec<MeasuredRelease>,
     /// The session of each; empty if the file does not say.
@@ -214,6 +217,8 @@ const DOUBTFUL: f64 = 6.0;
 const LOW_RELEASE_M: f64 = 1.5;
 /// Tracked releases nearer than this are from one place, m.
 const SAME_PLACE_M: f64 = 0.75;
+/// Releases whose heights differ by no more than this from the first belong to one place, m.
+const SAME_HEIGHT_M: f64 = 0.15;
 
 /// Reads the shots of a table.
 ///
@@ -544,6 +549,7 @@ impl Reader<'_> {
             name,
             source: self.source,
             places: Vec::new(),
+            merged_heights_m: None,
             shots: Vec::new(),
             sessions: Vec::new(),
             rejected,
@@ -771,7 +777,8 @@ impl Reader<'_> {
         for (i, shot) in raw.iter().enumerate() {
             let (x, y, z) = point(&shot.place);
             let near = |first: &(f64, f64, f64)| {
-                libm::hypot(first.0 - x, first.1 - y) <= tolerance && (first.2 - z).abs() <= 0.005
+                libm::hypot(first.0 - x, first.1 - y) <= tolerance
+                    && (first.2 - z).abs() <= SAME_HEIGHT_M
             };
             let place = firsts.iter().position(near).unwrap_or_else(|| {
                 firsts.push((x, y, z));
@@ -793,6 +800,13 @@ impl Reader<'_> {
                         / count
                 };
                 let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+                let heights = || members.iter().map(|&i| raw[i].place.release_height_m);
+                let least = heights().fold(f64::INFINITY, f64::min);
+                let greatest = heights().fold(f64::NEG_INFINITY, f64::max);
+                if greatest > least {
+                    let merged = shooter.merged_heights_m.get_or_insert([least, greatest]);
+                    *merged = [merged[0].min(least), merged[1].max(greatest)];
+                }
                 // Of rows that state their place, exactly that.
                 if self.source == Source::Trajectories {
                     Place {
@@ -801,6 +815,11 @@ impl Reader<'_> {
                             angle_rad: libm::atan2(y, x),
                         },
                         release_height_m: mean(&|p| p.2),
+                    }
+                } else if greatest > least {
+                    Place {
+                        release_height_m: mean(&|p| p.2),
+                        ..raw[members[0]].place
                     }
                 } else {
                     raw[members[0]].place
@@ -814,7 +833,9 @@ impl Reader<'_> {
                 Raw::Release(values) => (values, self.options.noise.release_covariance()),
                 Raw::Landing(landing, backspin) => {
                     let zero = [0.0; 3];
-                    match release_of_landing(self.simulator, own, &landing, &zero, backspin) {
+                    // The ball left from its own height.
+                    match release_of_landing(self.simulator, &shot.place, &landing, &zero, backspin)
+                    {
                         Ok((values, _)) => (values, noise[place]),
                         Err(error) => {
                             shooter.rejected.push((shot.row, error.to_string()));

@@ -89,7 +89,9 @@ impl Page {
             other.answer,
             compared.unwrap_or_default()
         );
-        if !of_one_place {
+        if of_one_place {
+            self.answer += "\nBoth profiles are taken as exact, and \u{b1} is numerical: what a few shots do not tell of a player is not in these numbers.";
+        } else {
             self.answer += &format!("\nThe shots that move are those of {}.", self.title);
         }
         if let Some(plot) = &difference {

@@ -1,6 +1,6 @@
 //! `fit`, `advise`, `compare-sessions`, `design`: from measured shots to a profile and advice.
 
-use super::support::{Answer, bankshot};
+use super::support::{Answer, bankshot, write_file};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -281,6 +281,48 @@ fn contract_columns_in_another_unit_or_place_are_refused() {
         assert!(answer.stderr.contains(message), "{name}: {}", answer.stderr);
         assert!(!out.join("fit.json").exists(), "{name}");
     }
+}
+
+/// Releases of one place whose heights differ by inches are those of one place; a jump of two feet
+/// makes two.
+#[test]
+fn contract_heights_of_one_place_are_one_place() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap();
+    let column = header
+        .split(',')
+        .position(|name| name == "release_height_ft")
+        .unwrap();
+    let rows: Vec<&str> = lines.collect();
+    let with_heights = |height_of: &dyn Fn(usize) -> f64| {
+        let rows = rows.iter().enumerate().map(|(i, row)| {
+            let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+            cells[column] = height_of(i).to_string();
+            cells.join(",") + "\n"
+        });
+        format!("{header}\n{}", rows.collect::<String>())
+    };
+    let places = |name: &str, text: String| {
+        let path = write_file(&folder, name, &text);
+        let out = folder.path().join(name.trim_end_matches(".csv"));
+        let mut command = bankshot();
+        command.arg("fit").arg(path).arg("--out").arg(&out);
+        let answer = Answer::of(&mut command).exits(0);
+        let json = fs::read_to_string(out.join("fit.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        (json["places"].as_array().unwrap().clone(), answer.stderr)
+    };
+    let (found, told) = places("inches.csv", with_heights(&|i| 6.8 + 0.1 * (i % 5) as f64));
+    assert_eq!(found.len(), 1);
+    assert!((found[0]["release_height_ft"].as_f64().unwrap() - 7.0).abs() < 0.01);
+    assert!(
+        told.contains("the releases are 6.80 to 7.20 ft high; P is that of their mean height"),
+        "{told}"
+    );
+    let (found, _) = places("feet.csv", with_heights(&|i| 7.0 + 2.0 * (i % 2) as f64));
+    assert_eq!(found.len(), 2);
 }
 
 #[test]

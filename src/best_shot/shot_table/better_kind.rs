@@ -1,9 +1,9 @@
 //! One table of the kind with the higher P, out of a table of each kind.
 
-use super::build::{ShotTableError, best};
 use super::cells::Cell;
 use super::interpolation_check::{BestKnown, PlacedShot, check};
 use super::lookup::{ShotTable, TableKind, TableShot};
+use super::shot_at_place::{ShotTableError, best};
 use crate::shooter::{Location, Profile, ShotKind};
 use std::ops::RangeInclusive;
 
@@ -180,7 +180,8 @@ fn stretches(tables: &[ShotTable; 2], least_gain: f64) -> Vec<Stretch> {
 }
 
 impl ShotTable {
-    /// Adds the checks of a stretch: those of its table, and new ones in the cells that a change cut.
+    /// Adds the checks of a stretch: those of its table, and new ones in the cells that a change
+    /// cut.
     fn check_stretch(
         &mut self,
         profile: &Profile,

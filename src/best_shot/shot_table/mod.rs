@@ -6,7 +6,9 @@ mod build;
 mod cells;
 mod interpolation_check;
 mod lookup;
+mod shot_at_place;
 
-pub use build::{MOST_HALVINGS, MOST_NODES, ShotTableError, ShotTableRequest};
+pub use build::{MOST_HALVINGS, MOST_NODES, ShotTableRequest};
 pub use interpolation_check::InterpolationCheck;
 pub use lookup::{ShotTable, TableKind, TableShot};
+pub use shot_at_place::ShotTableError;

@@ -23,6 +23,7 @@ use crate::plots::svg::shortened;
 use crate::probability::Progress;
 use crate::report::fit_page::fit_page;
 use crate::shooter::implausible_values;
+use crate::units::UnitSystem;
 use crate::units::{REV_RAD, rounded};
 use clap::Args;
 use comfy_table::{Table, presets};
@@ -433,6 +434,18 @@ fn write(
     atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
 }
 
+/// Says that the heights of the releases differ, and what is taken for P.
+fn print_merged_heights(shots: &ShooterShots, units: UnitSystem) {
+    if let Some([least, greatest]) = shots.merged_heights_m {
+        let (long, metre) = units.length();
+        print_remark(&format!(
+            "the releases are {:.2} to {:.2} {long} high; P is that of their mean height",
+            least / metre,
+            greatest / metre
+        ));
+    }
+}
+
 fn answer(
     file: &MeasuredFile,
     (shots, fit, free): (&ShooterShots, &ShooterFit, &[FreeParameter]),
@@ -456,6 +469,7 @@ fn answer(
         for words in warnings.filter(|words| words.starts_with("location")) {
             print_remark(&format!("warning: {words}"));
         }
+        print_merged_heights(shots, units);
         print_unused(file);
         print_remark(&format!(
             "written to {}; next: bankshot advise {}",
@@ -546,10 +560,14 @@ fn free_parameter(
         ),
     };
     let [low, high] = curve.interval.map(|end| end / size);
+    let ends = [curve.points.first(), curve.points.last()];
+    let is_at_end = ends.iter().flatten().any(|(end, _)| *end == curve.best);
     let mut text = format!(
         "{name}  {best:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}; {fitted_with}\n",
         if curve.is_decided {
             ""
+        } else if is_at_end {
+            "; the likeliest value is at an end of the range, so more than this value is wrong: look at distance, release height, air, tracker, and how a make was recorded"
         } else {
             "; the interval reaches the end of the range: these shots cannot tell"
         }

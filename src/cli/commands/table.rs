@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
 interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
 interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
+The table is made in rounds: each looks at the places that the one before added. \
 Where the best shot changes much from place to place, many nodes are added and a table takes minutes; with --max-loss 1 it is a \
 quick draft.
 
@@ -56,7 +57,7 @@ pub(crate) struct TableOptions {
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
     /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds
-    /// no nodes.
+    /// no nodes (with `--kind best` those where a kind begins, ends or becomes the better one).
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
     /// The form of the table [default: by the end of the output's name, else text].

@@ -1,4 +1,4 @@
-//! `draws.parquet`: the draws of a posterior, one a row, with the names and the units of `fit.json`.
+//! `draws.parquet`: the draws of a posterior, one a row, with the names and units of `fit.json`.
 
 use super::parameters::value_units;
 use crate::fitting::{

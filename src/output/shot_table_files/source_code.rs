@@ -52,6 +52,9 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 9] {
     ]
 }
 
+/// The last values are tolerances: between nodes the smaller one holds.
+const TOLERANCES: usize = 2;
+
 /// The source in a language (Java: with the name of the class).
 #[must_use]
 pub fn source_code(
@@ -110,12 +113,18 @@ pub fn source_code(
             } else {
                 "look_up"
             },
-            names.join(", ")
+            names
+                .iter()
+                .enumerate()
+                .map(|(k, name)| format!("[{k}] {name}"))
+                .collect::<Vec<_>>()
+                .join(", ")
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
         "Time and entry angle are those where the ball first falls to the height of the hoop, as if \
          there were no ring. A tolerance is how far speed or pitch can be off, up or down, alone, \
-         until the shot first misses; near the ring more shots may go in beyond it."
+         until the shot first misses; near the ring more shots may go in beyond it. Between two nodes \
+         the smaller tolerance of both is given; it is not checked there."
             .to_owned(),
         "NaN outside the table, and beside a place without a shot.".to_owned(),
     ];
@@ -144,6 +153,7 @@ pub fn source_code(
         .replace("@ANGLES@", &list(&table.angles_rad, DEGREE_RAD))
         .replace("@ROWS@", &rows.concat())
         .replace("@VALUES@", &values.len().to_string())
+        .replace("@LINEAR@", &(values.len() - TOLERANCES).to_string())
 }
 
 const JAVA: &str = "\
@@ -157,6 +167,7 @@ const JAVA: &str = "\
 
     public static double[] lookUp(double distance, double angle) {
         double[] result = new double[@VALUES@];
+        for (int k = @LINEAR@; k < result.length; k++) result[k] = Double.POSITIVE_INFINITY;
         int d = cell(DISTANCES, distance);
         int a = cell(ANGLES, angle);
         if (d < 0 || a < 0) {
@@ -170,7 +181,8 @@ const JAVA: &str = "\
                 double weight = (i == 0 ? 1 - y : y) * (j == 0 ? 1 - x : x);
                 if (weight == 0) continue;
                 double[] shot = SHOTS[(a + i) * DISTANCES.length + d + j];
-                for (int k = 0; k < result.length; k++) result[k] += weight * shot[k];
+                for (int k = 0; k < @LINEAR@; k++) result[k] += weight * shot[k];
+                for (int k = @LINEAR@; k < result.length; k++) result[k] = Math.min(result[k], shot[k]);
             }
         }
         return result;
@@ -227,13 +239,19 @@ inline std::array<double, @VALUES@> look_up(double distance, double angle = angl
         result.fill(std::numeric_limits<double>::quiet_NaN());
         return result;
     }
+    for (std::size_t k = @LINEAR@; k < result.size(); ++k) {
+        result[k] = std::numeric_limits<double>::infinity();
+    }
     const double x = part(distances, d, distance), y = part(angles, a, angle);
     for (int i = 0; i < 2; ++i) {
         for (int j = 0; j < 2; ++j) {
             const double weight = (i == 0 ? 1 - y : y) * (j == 0 ? 1 - x : x);
             if (weight == 0) continue;
             const double* shot = shots[(a + i) * count + d + j];
-            for (std::size_t k = 0; k < result.size(); ++k) result[k] += weight * shot[k];
+            for (std::size_t k = 0; k < @LINEAR@; ++k) result[k] += weight * shot[k];
+            for (std::size_t k = @LINEAR@; k < result.size(); ++k) {
+                if (!(shot[k] > result[k])) result[k] = shot[k];
+            }
         }
     }
     return result;
@@ -261,12 +279,16 @@ def look_up(distance, angle=ANGLES[0]):
         last = i + 1 == len(values)
         cells.append((i, 0.0 if last else (value - values[i]) / (values[i + 1] - values[i])))
     (d, x), (a, y) = cells
-    result = [0.0] * @VALUES@
+    result = [0.0] * @LINEAR@ + [math.inf] * (@VALUES@ - @LINEAR@)
     for i, across in ((0, 1 - y), (1, y)):
         for j, along in ((0, 1 - x), (1, x)):
             weight = across * along
             if weight:
                 shot = SHOTS[(a + i) * len(DISTANCES) + d + j]
-                result = [r + weight * s for r, s in zip(result, shot)]
+                for k, value in enumerate(shot):
+                    if k < @LINEAR@:
+                        result[k] += weight * value
+                    elif not value > result[k]:
+                        result[k] = value
     return result
 ";

@@ -143,7 +143,8 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         format!(
             "{}. from: distance from the hoop's centre. aim: positive to the left. P: \
              the chance of each. margin: by how much speed and pitch can be off, up or down, one \
-             at a time and with all else exact, until the shot first misses. time, entry: where it \
+             at a time and with all else exact, until the shot first misses (beyond that more may go \
+             in). time, entry: where it \
              first falls to the height of the hoop, as if there were no ring.",
             what_shots(table.kind)
         ),
@@ -170,7 +171,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     // The smaller side.
     let margin = |shot: &TableShot, i: usize| {
         let [below, above] = shot.tolerances[i];
-        let (decimals, size) = [(2, units.length().1), (1, DEGREE_RAD)][i];
+        let (decimals, size) = [(2, units.length().1), (2, DEGREE_RAD)][i];
         format!("{:.decimals$}", below.min(above) / size)
     };
     for TableNode {
@@ -449,7 +450,7 @@ fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String
     };
     (!places.is_empty()).then(|| {
         format!(
-            "Nearly the other kind: up to {:.0} % of the makes of the {touch} at {}.",
+            "Nearly the other kind: more than a quarter, up to {:.0} %, of the makes of the {touch} at {}.",
             100.0 * most,
             places.join("; ")
         )
