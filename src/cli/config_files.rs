@@ -113,6 +113,9 @@ fn load(
         for words in implausible_values(&own).into_iter().chain(not_fixed) {
             print_remark(&format!("warning: {words}"));
         }
+        for words in warnings_of_fit(path) {
+            print_remark(&format!("warning: {origin}: its fit warned: {words}"));
+        }
     }
     let Some(name) = &physics.physics else {
         return Ok((own, text));
@@ -132,6 +135,23 @@ fn load(
         print_remark(&warning);
     }
     Ok((profile, text))
+}
+
+/// What the fit that wrote a profile warned of: its `fit.json` lies beside it.
+fn warnings_of_fit(profile: &Path) -> Vec<String> {
+    let is_of_fit = profile
+        .file_name()
+        .is_some_and(|name| name == "profile.toml");
+    let fit = profile.with_file_name("fit.json");
+    if !is_of_fit || !fit.is_file() {
+        return Vec::new();
+    }
+    let text = read_text(&fit).unwrap_or_default();
+    let fit: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let warnings = fit["warnings"].as_array().into_iter().flatten();
+    warnings
+        .filter_map(|warning| warning.as_str().map(str::to_owned))
+        .collect()
 }
 
 /// What another physics changes.

@@ -107,7 +107,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Compare(options) => compare::run(options, quiet),
         Command::Fit(options) => fit::run(options, quiet),
         Command::Advise(options) => advise::run(options, quiet),
-        Command::CompareSessions(options) => compare_sessions::run(options),
+        Command::CompareSessions(options) => compare_sessions::run(options, quiet),
         Command::Design(options) => design::run(options, quiet),
         Command::New(options) => new::run(options, quiet),
         Command::Team(options) => team::run(options, quiet),

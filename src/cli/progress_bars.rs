@@ -76,8 +76,8 @@ impl LogLines {
 fn log_line(shared: &SharedBar, now: Instant) -> Option<String> {
     let stage = shared.bar.message();
     let (done, total) = (shared.bar.position(), shared.bar.length()?);
-    // A stage that has just begun tells nothing yet.
-    if now - shared.began < LogLines::LEAST_STAGE {
+    // A stage that has just begun tells nothing yet, and one that ends nothing more.
+    if now - shared.began < LogLines::LEAST_STAGE || done >= total {
         return None;
     }
     let share = done as f64 / total.max(1) as f64;

@@ -27,6 +27,8 @@ pub struct ShotChance {
     pub release: Values,
     /// The standard deviations of it.
     pub release_sd: Values,
+    /// Index of its place.
+    pub place: usize,
     /// The chance that it goes in.
     pub chance: f64,
     /// The chance that it goes in without a touch.
@@ -188,6 +190,7 @@ pub fn expected_makes(
                 .solve_lower_triangular(&(nalgebra::Vector4::from(mean) - aim))?;
             Some(ShotChance {
                 row: shot.row,
+                place: shot.place,
                 release: mean,
                 release_sd: std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt()),
                 chance: f64::from(made) / f64::from(RELEASES),
@@ -198,6 +201,15 @@ pub fn expected_makes(
         })
         .collect();
     summary(shots)
+}
+
+impl ExpectedMakes {
+    /// The same of the shots from one place.
+    #[must_use]
+    pub fn at_place(&self, place: usize) -> Self {
+        let here = self.shots.iter().filter(|shot| shot.place == place);
+        summary(here.cloned().collect())
+    }
 }
 
 fn summary(shots: Vec<ShotChance>) -> ExpectedMakes {

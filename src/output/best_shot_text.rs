@@ -47,7 +47,7 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
     });
     let in_hundred = |shot: &BestShot| format!("{:.0}", 100.0 * shot.estimate.probability);
     let Some((kind, shot)) = found.first() else {
-        return format!("{place}: no clean shot.\n");
+        return format!("{place}.\nNo shot from there can be advised:\n");
     };
     let how = match kind {
         ShotKind::Direct => "Shoot it direct",
@@ -111,8 +111,11 @@ pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) 
     for column in table.column_iter_mut().skip(1).take(5) {
         column.set_cell_alignment(CellAlignment::Right);
     }
-    let mut text = table.trim_fmt();
-    text.push('\n');
+    let mut text = String::new();
+    if table.row_count() > 0 {
+        text += &table.trim_fmt();
+        text.push('\n');
+    }
     for note in notes {
         text.push_str(&note);
         text.push('\n');

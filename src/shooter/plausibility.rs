@@ -2,10 +2,14 @@
 
 use super::profile::Profile;
 use super::release_variable::NominalVariable;
+use crate::model::{Preset, SolidId};
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 
 /// The speed that the scatter of speeds is looked at, m/s: that of a free throw.
 const USUAL_SPEED_M_S: f64 = 7.4;
+
+/// Balls below this mass are no basketballs of any size, g.
+const LIGHTEST_BASKETBALL_G: f64 = 300.0;
 
 /// What is implausible about a profile, each as a sentence; nothing for a profile of a player.
 ///
@@ -19,6 +23,7 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     let speed_sd =
         errors.c10_m_s + USUAL_SPEED_M_S * (errors.c11 + USUAL_SPEED_M_S * errors.c12_s_m);
     let distance_m = profile.location().distance_m;
+    let (physics, nominal) = (profile.physics(), profile.nominal_overrides());
     let mut found = Vec::new();
     let mut say = |is_odd: bool, words: String| {
         if is_odd {
@@ -70,6 +75,31 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
             feet(distance_m)
         ),
     );
+    if let Some(pitch_rad) = nominal.pitch_rad {
+        let pitch = pitch_rad / DEGREE_RAD;
+        say(
+            !(20.0..=80.0).contains(&pitch),
+            format!(
+                "nominal.pitch: {pitch:.1} deg above the horizontal; players release at 35 to 65 deg"
+            ),
+        );
+    }
+    let mass_g = 1000.0 * physics.ball_mass_kg;
+    let of_basketballs = Preset::named("ncaa").map(|preset| preset.physics());
+    say(
+        mass_g < LIGHTEST_BASKETBALL_G
+            && of_basketballs.is_some_and(|usual| {
+                [SolidId::Board, SolidId::Ring].into_iter().any(|solid| {
+                    let difference = usual.restitution_on(solid) - physics.restitution_on(solid);
+                    libm::fabs(difference) < 0.001
+                })
+            }),
+        format!(
+            "physics.ball_mass: a ball of {mass_g:.0} g with the bounce of a basketball (board_restitution {:.2}, hoop_restitution {:.2}); give both, from a drop test: the square root of bounce height over drop height",
+            physics.restitution_on(SolidId::Board),
+            physics.restitution_on(SolidId::Ring)
+        ),
+    );
     found
 }
 
@@ -97,7 +127,7 @@ pub fn nominal_values_not_fixed(profile: &Profile, fixed: &[NominalVariable]) ->
     let left = NominalVariable::SEARCHABLE.into_iter().filter(searched);
     let left = left.filter(|variable| !not_fixed.contains(variable));
     Some(format!(
-        "{}: not fixed, for a search chooses them; to fix them write choose = [{}] in [search]",
+        "{}: given, but the search chooses it; to keep what is given, write choose = [{}] in [search]",
         names(&not_fixed, "", "nominal."),
         names(&left.collect::<Vec<_>>(), "\"", "")
     ))

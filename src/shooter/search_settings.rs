@@ -282,9 +282,12 @@ impl SearchSettings {
         if omits(NominalVariable::Pitch) {
             match nominal.pitch_rad {
                 Some(pitch) if PITCH_RANGE_RAD.contains(&pitch) => {}
-                Some(_) => checks.refuse(
-                    KEY,
-                    "leaves pitch out, so [nominal] must give it from 1 to 89 deg",
+                Some(pitch) => checks.refuse(
+                    "nominal.pitch",
+                    format!(
+                        "{:.1} deg: must be from 1 to 89 deg (the search leaves pitch out, so it uses this one)",
+                        pitch / DEGREE_RAD
+                    ),
                 ),
                 None => checks.refuse(KEY, "leaves pitch out, so [nominal] must give it"),
             }

@@ -112,10 +112,11 @@ fn answer(
         if profiles.len() > 1 {
             let (unit, size) = units.length();
             print_answer(&format!(
-                "{}from {:.2} {unit}, at {:.1} deg on the court\n",
+                "{}from {:.2} {unit}, at {:.1} deg on the court, released {:.2} {unit} up\n",
                 if place > 0 { "\n" } else { "" },
                 location.distance_m / size,
-                location.angle_rad / DEGREE_RAD
+                location.angle_rad / DEGREE_RAD,
+                profile.shooter().release_height_m / size
             ))?;
         }
         let angle = location.angle_rad;

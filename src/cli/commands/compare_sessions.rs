@@ -4,10 +4,11 @@ use super::fit::{failure, report_rejected};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
+use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
-    DrawProbabilities, Posterior, SessionComparison, ShooterFit, SpinSource, VALUE_NAMES,
-    compare_probabilities, compare_sessions,
+    DrawProbabilities, MeasuredRelease, Posterior, SessionComparison, ShooterFit, SpinSource,
+    VALUE_NAMES, compare_probabilities, compare_sessions,
 };
 use crate::measured_shots::read::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
@@ -16,6 +17,7 @@ use crate::output::fit_files::session_changes_text::{
     SessionChange, SessionSummary, session_changes_text,
 };
 use crate::output::json_object::{number, object};
+use crate::probability::Progress;
 use crate::shooter::Profile;
 use crate::units::UnitSystem;
 use clap::Args;
@@ -52,6 +54,10 @@ pub(crate) struct CompareSessionsOptions {
 /// A fitted session.
 struct Session {
     name: String,
+    /// Whether the name is from the column of a file.
+    is_of_column: bool,
+    /// The number of places; the first one is compared.
+    places: usize,
     posterior: Posterior,
     /// Made, and all with a result.
     makes: (usize, usize),
@@ -67,9 +73,20 @@ struct Session {
 }
 
 impl Session {
+    /// How a warning names it: a session of a file may be called `1`.
+    fn title(&self) -> String {
+        if self.is_of_column {
+            format!("session {}", self.name)
+        } else {
+            self.name.clone()
+        }
+    }
+
     fn of(name: String, shots: &ShooterShots, mut fit: ShooterFit) -> Self {
         Self {
             name,
+            is_of_column: false,
+            places: fit.places.len(),
             posterior: fit.posterior,
             makes: (fit.makes.made, fit.makes.labelled),
             probabilities: fit.probabilities.swap_remove(0),
@@ -81,11 +98,12 @@ impl Session {
     }
 }
 
-pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, Failure> {
     let after_is_file = options.after.as_ref().is_some_and(|after| !after.is_dir());
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
     }
+    let bars = ProgressBars::new(quiet);
     let (mut code, mut several_shooters) = (code::DONE, false);
     let compared: Vec<[Session; 2]> = match &options.after {
         Some(after) => vec![[read(&options.before, options)?, read(after, options)?]],
@@ -99,8 +117,9 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
             let file = options.measured.read(&options.before)?;
             let several = file.shooters.len() > 1;
             let mut compared = Vec::new();
+            bars.begin("fitting sessions", 2 * file.shooters.len() as u64);
             for shots in &file.shooters {
-                match fit_by_session(&file, shots, &options.session) {
+                match fit_by_session(&file, shots, &options.session, &bars) {
                     Ok(sessions) => compared.push(sessions),
                     // The others can still be compared.
                     Err(error) if several => {
@@ -110,6 +129,7 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
                     Err(error) => return Err(error),
                 }
             }
+            bars.end();
             if compared.is_empty() {
                 return Err(Failure::usage(format!(
                     "{}: no shooter has two sessions to compare",
@@ -121,11 +141,23 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
         }
     };
     let mut jsons = Vec::new();
+    let mut all = compared.iter().flatten();
+    if let Some(session) = all.find(|session| session.places > 1) {
+        let words = session.profile.location().in_words(UnitSystem::default());
+        print_remark(&format!(
+            "shots from several places: speed, pitch, aim and P are those of the first, {words}; the scatter is that of all"
+        ));
+    }
     for (number, sessions) in compared.iter().enumerate() {
         check_conditions(sessions)?;
         for session in sessions {
             for warning in &session.warnings {
-                print_remark(&format!("{}: warning: {warning}", session.name));
+                let title = session.title();
+                let title = match &session.shooter {
+                    Some(name) if several_shooters => format!("{name}, {title}"),
+                    _ => title,
+                };
+                print_remark(&format!("{title}: warning: {warning}"));
             }
         }
         let changes = changes(sessions, options);
@@ -162,6 +194,8 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
         let fit = fit_folder::read(path)?;
         return Ok(Session {
             name,
+            is_of_column: false,
+            places: fit.profiles.len(),
             probabilities: fit.usual_probabilities(),
             posterior: fit.posterior,
             makes: fit.observed,
@@ -220,6 +254,7 @@ fn fit_by_session(
     file: &MeasuredFile,
     shots: &ShooterShots,
     wanted: &[String],
+    bars: &ProgressBars,
 ) -> Result<[Session; 2], Failure> {
     let place = file.file.display().to_string();
     report_rejected(file, shots, file.shooters.len() == 1);
@@ -259,24 +294,47 @@ fn fit_by_session(
             ),
         }));
     };
-    let fit = |session: &String| -> Result<Session, Failure> {
-        let keep: Vec<bool> = shots.sessions.iter().map(|name| name == session).collect();
-        let mut kept = ShooterShots {
-            tracks: Vec::new(),
-            chi_squares: Vec::new(),
-            ..shots.clone()
-        };
-        let mut index = 0;
-        kept.shots.retain(|_| {
-            index += 1;
-            keep[index - 1]
-        });
+    let fit = |session: &String, other: &String| -> Result<Session, Failure> {
+        let kept = only_session(shots, session, other);
         let fit = file
             .fit(&kept, &file.physics)
             .map_err(|error| failure(&place, &error))?;
-        Ok(Session::of(session.clone(), shots, fit))
+        bars.advance(1);
+        Ok(Session {
+            is_of_column: true,
+            ..Session::of(session.clone(), shots, fit)
+        })
     };
-    Ok([fit(first)?, fit(second)?])
+    Ok([fit(first, second)?, fit(second, first)?])
+}
+
+/// The shots of one session. Its places are those that it has shots from, those that the other
+/// session has too first, so that the same place is compared.
+fn only_session(shots: &ShooterShots, session: &str, other: &str) -> ShooterShots {
+    let of_session: Vec<_> = shots.shots.iter().zip(&shots.sessions).collect();
+    let has = |place: usize, name: &str| {
+        let mut all = of_session.iter();
+        all.any(|(shot, of)| shot.place == place && *of == name)
+    };
+    let mut places: Vec<usize> = (0..shots.places.len())
+        .filter(|place| has(*place, session))
+        .collect();
+    places.sort_by_key(|place| !has(*place, other));
+    let kept = of_session.iter().filter(|(_, of)| *of == session);
+    let kept = kept.map(|(shot, _)| {
+        let place = places.iter().position(|place| *place == shot.place);
+        MeasuredRelease {
+            place: place.unwrap_or(0),
+            ..(*shot).clone()
+        }
+    });
+    ShooterShots {
+        shots: kept.collect(),
+        places: places.iter().map(|place| shots.places[*place]).collect(),
+        tracks: Vec::new(),
+        chi_squares: Vec::new(),
+        ..shots.clone()
+    }
 }
 
 /// P, and mean and standard deviation of each value.

@@ -70,6 +70,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let (profile, nominal, own_tracker) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let usual = nominal_of(&fit.posterior.typical().means[0]);
+        if fit.profiles.len() > 1 && !quiet {
+            print_remark(&format!(
+                "the fit has {} places: tests from the first, {}",
+                fit.profiles.len(),
+                fit.profiles[0].location().in_words(fit.units)
+            ));
+        }
         (fit.profiles[0].clone(), usual, fit.tracker)
     } else {
         let profile = load_profile(&options.profile, &options.physics, quiet)?;

@@ -7,7 +7,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
-    ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
+    Place, ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
     likelihood_curve,
 };
 use crate::measured_shots::read::ShooterShots;
@@ -24,7 +24,7 @@ use crate::probability::Progress;
 use crate::report::fit_page::fit_page;
 use crate::shooter::implausible_values;
 use crate::units::UnitSystem;
-use crate::units::{REV_RAD, rounded};
+use crate::units::{DEGREE_RAD, REV_RAD, rounded};
 use clap::Args;
 use comfy_table::{Table, presets};
 use rayon::prelude::*;
@@ -40,7 +40,9 @@ aim from the line to the hoop's centre, polar from the court's long axis. left_r
 ft_s m_s mph km_h, deg rad, rev_s rpm rad_s, ft in m cm mm, s ms.
 
 Writes OUT/: fit.json, profile.toml (for best and probability), draws.parquet, shots.csv, report.html and plots; with several \
-shooters, one folder for each and shooters.csv. docs/formats.md explains every column.
+shooters, one folder for each and shooters.csv. draws.parquet has a row for each draw: the parameters of fit.json with \
+their units (speed_mean_ft_s, speed_sd_ft_s, corr_speed_pitch ...) and probability, P of the usual shot. \
+docs/formats.md explains every column.
 
 Examples:
   bankshot fit docs/data/gym_sensor.csv
@@ -152,22 +154,34 @@ fn fit_all(
             options.shots.display()
         )));
     }
-    let mut csv = String::from("shooter,shots,made,probability,low,high,folder,error\n");
+    let (long, _) = options.measured.unit_system().length();
+    let mut csv = format!(
+        "shooter,shots,made,distance_{long},court_angle_deg,release_height_{long},probability,low,high,folder,error\n"
+    );
+    // Places are only named where there are several.
+    let names_places = rows
+        .iter()
+        .any(|row| row.result.as_ref().is_ok_and(|places| places.len() > 1));
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header([
-        "shooter",
+    let place = names_places.then_some("from");
+    let header = ["shooter"].into_iter().chain(place);
+    table.set_header(header.chain([
         "shots",
         "made",
         "expected",
-        "P of the usual shot",
-    ]);
+        "P of the usual shot,\n95 % interval",
+    ]));
     let mut worst = code::DONE;
     for row in &rows {
         csv += &row.csv;
         match &row.result {
-            Ok(cells) => {
-                table.add_row(cells);
+            Ok(places) => {
+                for place in places {
+                    let from = names_places.then_some(&place.from);
+                    let cells = std::iter::once(&place.shooter).chain(from);
+                    table.add_row(cells.chain(&place.cells));
+                }
             }
             Err(error) => {
                 print_remark(error);
@@ -210,9 +224,29 @@ fn fit_all(
 /// A shooter's row of the tables.
 struct ShooterRow {
     csv: String,
-    /// The cells of the printed table, or why there is no fit.
-    result: Result<[String; 5], String>,
+    /// A row of the printed table for each place, or why there is no fit.
+    result: Result<Vec<PlaceRow>, String>,
     warnings: Vec<String>,
+}
+
+/// A place in a cell of the table, such as `13.75 ft, 0 deg, from 7.00 ft up`.
+fn place_in_short(place: &Place, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    format!(
+        "{:.2} {long}, {:.0} deg,\n{:.2} {long} up",
+        place.location.distance_m / metre,
+        place.location.angle_rad / DEGREE_RAD,
+        place.release_height_m / metre
+    )
+}
+
+/// A row of the printed table.
+struct PlaceRow {
+    /// The name, in the first row of a shooter.
+    shooter: String,
+    from: String,
+    /// Shots, made, expected, P.
+    cells: [String; 4],
 }
 
 fn fit_one(
@@ -227,48 +261,67 @@ fn fit_one(
         Err(error) => {
             let (shooter, count) = (cell(&name), shots.shots.len());
             return Ok(ShooterRow {
-                csv: format!("{shooter},{count},,,,,,{}\n", cell(&error.to_string())),
+                csv: format!("{shooter},{count},,,,,,,,,{}\n", cell(&error.to_string())),
                 result: Err(format!("{name}: {error}")),
                 warnings: Vec::new(),
             });
         }
     };
     write(folder, file, (shots, &fit, &[]), options)?;
-    let p = fit.probabilities[0].interval();
-    let makes = &fit.makes;
-    let (made, expected) = if makes.labelled > 0 {
-        (
-            format!("{} of {}", makes.made, makes.labelled),
-            format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
-        )
-    } else {
-        (String::new(), String::new())
-    };
-    let csv = format!(
-        "{},{},{},{:.4},{:.4},{:.4},{},\n",
-        cell(&name),
-        fit.posterior.shots,
-        if makes.labelled > 0 {
+    let (_, metre) = options.measured.unit_system().length();
+    let (mut csv, mut places) = (String::new(), Vec::new());
+    for (index, place) in fit.places.iter().enumerate() {
+        let p = fit.probabilities[index].interval();
+        let makes = fit.makes.at_place(index);
+        let (count, has_results) = (makes.shots.len(), makes.labelled > 0);
+        let made = if has_results {
             makes.made.to_string()
         } else {
             String::new()
-        },
-        p.mean,
-        p.low,
-        p.high,
-        cell(&folder.display().to_string())
-    );
-    let percent = |p: f64| format!("{:.1}", 100.0 * p);
-    let usual = format!(
-        "{} % (95 %: {} to {})",
-        percent(p.mean),
-        percent(p.low),
-        percent(p.high)
-    );
-    let shots = fit.posterior.shots.to_string();
+        };
+        csv += &format!(
+            "{},{count},{made},{:.3},{:.2},{:.3},{:.4},{:.4},{:.4},{},\n",
+            cell(&name),
+            place.location.distance_m / metre,
+            place.location.angle_rad / DEGREE_RAD,
+            place.release_height_m / metre,
+            p.mean,
+            p.low,
+            p.high,
+            cell(&folder.display().to_string())
+        );
+        let percent = |p: f64| format!("{:.1}", 100.0 * p);
+        let [made, expected] = if has_results {
+            [
+                format!("{} of {}", makes.made, makes.labelled),
+                format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
+            ]
+        } else {
+            [String::new(), String::new()]
+        };
+        places.push(PlaceRow {
+            shooter: if index == 0 {
+                shortened(&name, 24)
+            } else {
+                String::new()
+            },
+            from: place_in_short(place, options.measured.unit_system()),
+            cells: [
+                count.to_string(),
+                made,
+                expected,
+                format!(
+                    "{} % ({} to {})",
+                    percent(p.mean),
+                    percent(p.low),
+                    percent(p.high)
+                ),
+            ],
+        });
+    }
     Ok(ShooterRow {
         csv,
-        result: Ok([shortened(&name, 24), shots, made, expected, usual]),
+        result: Ok(places),
         warnings: fit
             .warnings
             .iter()

@@ -215,11 +215,19 @@ pub fn advice_text(
     match (&advice.gain, sure) {
         (_, Some(steps)) => text += &advised_in_words(&words, advice, steps),
         (Some(gain), None) if gain.low > 0.0 && gain.mean > 0.005 => {
+            let mut target = advice
+                .best
+                .as_ref()
+                .map_or(advice.usual, |best| values_of(&best.nominal));
+            if advice.spin != SpinSource::Measured {
+                target[Cause::BACKSPIN.0] = advice.usual[Cause::BACKSPIN.0];
+            }
             text += &format!(
-                "The best shot below gains {:.1} points (95 %: {:+.1} to {:+.1}), but no step towards it is sure alone: make all of them together, or measure more first.\n",
+                "The best shot gains {:.1} points (95 %: {:+.1} to {:+.1}), but no step towards it is sure alone. Make all of them together ({}), or measure more first.\n",
                 100.0 * gain.mean,
                 100.0 * gain.low,
-                100.0 * gain.high
+                100.0 * gain.high,
+                words.of_releases(&advice.usual, &target)
             );
         }
         (Some(gain), None) if gain.mean > 0.005 => {
@@ -285,7 +293,7 @@ pub fn advice_text(
     }
     if advice.spin != SpinSource::Measured {
         text += &format!(
-            "  The backspin was not measured: {:.1} rev/s is {}, and kept.\n",
+            "  The backspin was not measured: {:.1} rev/s is {}, and kept. `best`, `team` and `compare` choose the backspin too, so their P can be greater.\n",
             advice.usual[3] / value_units(units)[3].1,
             advice.spin.name()
         );

@@ -123,6 +123,14 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             makes.calibration_z.map_or(Value::Null, number),
         ),
         named(
+            "calibration_note",
+            match makes.calibration_z {
+                Some(_) => "about 0 \u{b1} 1 if the chances of single shots are right; above 3 they are too sure, below -3 not sure enough",
+                None => "null: too few of the shots were doubtful to tell",
+            }
+            .into(),
+        ),
+        named(
             "area_under_curve",
             makes.area_under_curve.map_or(Value::Null, number),
         ),

@@ -14,7 +14,7 @@ pub fn shots_csv(
     units: UnitSystem,
 ) -> Vec<u8> {
     let of_value = value_units(units);
-    let mut out = String::from("row,session");
+    let mut out = String::from("row,session,place");
     for (name, (unit, _)) in VALUE_NAMES.iter().zip(of_value) {
         let unit = unit.replace('/', "_");
         out += &format!(",{name}_{unit},{name}_error_{unit}");
@@ -22,7 +22,7 @@ pub fn shots_csv(
     out += ",chance,swish_chance,made,distance_from_aim_sd,flag\n";
     for shot in &fit.makes.shots {
         let session = sessions.get(&shot.row).copied().unwrap_or_default();
-        out += &format!("{},{}", shot.row, quoted(session));
+        out += &format!("{},{},{}", shot.row, quoted(session), shot.place + 1);
         for (i, (_, size)) in of_value.iter().enumerate() {
             out += &format!(
                 ",{:.4},{:.4}",
@@ -42,7 +42,7 @@ pub fn shots_csv(
     for (row, reason) in rejected {
         out += &format!(
             "{row}{},\"kept out: {}\"\n",
-            ",".repeat(13),
+            ",".repeat(14),
             reason.replace('"', "'")
         );
     }
