@@ -10,7 +10,9 @@ use crate::fitting::{
 };
 use crate::measured_shots::columns::Columns;
 use crate::measured_shots::court_frame::CourtFrame;
-use crate::measured_shots::read::{ReadOptions, ShooterShots, Source, read};
+use crate::measured_shots::read::read;
+use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
+use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
 use crate::model::Physics;
 use crate::output::fit_files::fit_json::FitSource;

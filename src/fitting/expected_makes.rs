@@ -335,6 +335,7 @@ mod tests {
     #[test]
     fn val_calibration_z() {
         let shot = |chance: f64, made: bool| ShotChance {
+            place: 0,
             row: 0,
             release: [0.0; 4],
             release_sd: [0.0; 4],

@@ -4,12 +4,13 @@
 //! angle) and 0.8 to 1.5 deg (polar angle), the correlation of speed and pitch angle as -0.25 to
 //! 0.5, and no growth of the scatter with the speed from 4.2 to 6.75 m. Those of the backspin are
 //! assumed. The prior is wider: a shooter in twenty is outside 0.21 to 4.8 times the middle of the
-//! measured range, and a correlation in twenty outside -0.6 to 0.6 (speed and pitch angle: -0.64 to
-//! 0.77), so that a test of some tens of shots decides for itself.
+//! measured range, and a correlation in twenty outside -0.53 to 0.53 (speed and pitch angle: -0.78
+//! to 0.86), so that a test of some tens of shots decides for itself.
 //!
-//! Wider priors of the correlations would make the standard deviations too great: three unknown
-//! correlations cost them up to two degrees of freedom. A narrower prior of the standard deviations
-//! would pull shooters at the edges of the population to its middle.
+//! Wider priors of the other correlations would make the standard deviations too great: three
+//! unknown correlations cost them up to two degrees of freedom. Narrower priors of the standard
+//! deviations and of the correlation of speed and pitch angle would pull shooters at the edges of
+//! the population to its middle, above all where the tracker errs as much as they scatter.
 
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 
@@ -52,12 +53,9 @@ impl PopulationPrior {
         log_sd: [0.8, 0.8, 0.8, 0.6],
         speed_pitch: Spread {
             mean: 0.125,
-            sd: 0.45,
+            sd: 0.6,
         },
-        other_correlations: Spread {
-            mean: 0.0,
-            sd: 0.35,
-        },
+        other_correlations: Spread { mean: 0.0, sd: 0.3 },
         growth: Spread { mean: 0.0, sd: 0.5 },
         backspin: Spread {
             mean: 2.5 * REV_RAD,

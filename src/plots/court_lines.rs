@@ -38,16 +38,17 @@ fn arc(centre_x_m: f64, radius_m: f64, (from, to): (f64, f64)) -> impl Iterator<
     })
 }
 
-/// Draws the lines of the court, the board and the ring; `unit_m` is the unit of the axes.
+/// Draws the lines of the court in a colour, the board and the ring; `unit_m` is the unit of the
+/// axes.
 pub(super) fn draw_court_lines(
     svg: &mut Svg,
-    axes: &Axes,
-    unit_m: f64,
+    (axes, unit_m): (&Axes, f64),
+    ink: &str,
     court: &Court,
     physics: &Physics,
 ) {
     let mut pen = CourtPen { svg, axes, unit_m };
-    let solid = format!("stroke=\"{INK}\" {SOLID}");
+    let solid = format!("stroke=\"{ink}\" {SOLID}");
     draw_lane(&mut pen, court, &solid);
     let towards_midcourt = (-0.5 * PI, 0.5 * PI);
     let towards_board = (0.5 * PI, 1.5 * PI);

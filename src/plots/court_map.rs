@@ -4,7 +4,7 @@ use super::axes::Axes;
 use super::colormaps::{NO_VALUE, Rgb, hex};
 use super::colour_key::{ColourKey, draw_legend};
 use super::court_lines::draw_court_lines;
-use super::svg::{INK, Svg};
+use super::svg::{FAINT, INK, Svg};
 use crate::model::Physics;
 use crate::model::league_courts::Court;
 use crate::units::UnitSystem;
@@ -113,7 +113,12 @@ impl CourtMap<'_> {
             for place in places {
                 self.draw_place(svg, &axes, place);
             }
-            draw_court_lines(svg, &axes, unit_m, self.court, self.physics);
+            // Numbers stand on the lines of a poster.
+            let ink = match self.style {
+                MapStyle::Plot => INK,
+                MapStyle::Poster => FAINT,
+            };
+            draw_court_lines(svg, (&axes, unit_m), ink, self.court, self.physics);
         });
         if self.style == MapStyle::Poster {
             return;

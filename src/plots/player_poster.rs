@@ -167,9 +167,9 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         }
     });
     format!(
-        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}: {} of 100 go in{direct}. Aim {}.",
+        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}: {} of 100 go in{direct}. Aim at {}.",
         place,
         in_hundred(most.bank).unwrap_or_default(),
-        aim.unwrap_or_else(|| "at the board".to_owned())
+        aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
     )
 }

@@ -384,3 +384,27 @@ fn contract_a_table_or_a_folder_in_place_of_a_profile_is_told_apart() {
     write_file(&folder, "profile.toml", FREE_THROW);
     check(folder.path()).exits(2).says("profile.toml");
 }
+
+#[test]
+fn contract_odd_nominal_angles_and_balls_are_named() {
+    let folder = TempDir::new().unwrap();
+    let steep = format!("{FREE_THROW}\n[nominal]\npitch = \"95 deg\"\n");
+    let profile = write_file(&folder, "steep.toml", &steep);
+    check(&profile)
+        .exits(0)
+        .says("nominal.pitch: 95.0 deg above the horizontal");
+    let fixed = format!("{steep}[search]\nchoose = [\"speed\", \"polar\", \"backspin\"]\n");
+    let profile = write_file(&folder, "fixed.toml", fixed);
+    let refused = check(&profile).exits(2);
+    refused.says("nominal.pitch: 95.0 deg: must be from 1 to 89 deg");
+    let foam = |more: &str| {
+        let physics = format!("preset = \"ncaa\"\nball_mass = \"136 g\"\n{more}");
+        let text = FREE_THROW.replace("preset = \"paper\"", &physics);
+        write_file(&folder, "foam.toml", text)
+    };
+    check(&foam(""))
+        .exits(0)
+        .says("a ball of 136 g with the bounce of a basketball");
+    let own = check(&foam("board_restitution = 0.5\nhoop_restitution = 0.4\n")).exits(0);
+    assert!(!own.stderr.contains("bounce of a basketball"));
+}

@@ -338,12 +338,14 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     fs::write(&path, both).unwrap();
     let out = folder.path().join("out");
     let answer = fit(path.to_str().unwrap(), &out, &[]).exits(0);
-    assert!(answer.stdout().contains("P of the usual shot"));
+    assert!(answer.stdout().contains("P of the usual"));
     for name in ["ann", "bob"] {
         assert!(out.join(name).join("profile.toml").exists());
     }
     let table = fs::read_to_string(out.join("shooters.csv")).unwrap();
-    assert!(table.starts_with("shooter,shots,made,probability"));
+    assert!(table.starts_with(
+        "shooter,shots,made,distance_ft,court_angle_deg,release_height_ft,probability,low,high,"
+    ));
     assert_eq!(table.lines().count(), 3);
     // One of them, by name.
     let one = folder.path().join("one");
@@ -600,4 +602,108 @@ fn contract_design_says_what_a_test_will_tell() {
         .unwrap();
     let error = row["probability_error"].as_f64().unwrap();
     assert!((error / 0.04 - 1.0).abs() < 0.2, "{answer}");
+}
+
+/// Two shooters from two places in two sessions. The first session of each begins at one place,
+/// the second holds shots from the other alone.
+#[test]
+fn contract_places_of_a_shooter_are_told_apart() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let mut all = format!("{header},shooter,session\n");
+    for (i, row) in rows.lines().enumerate() {
+        let session = i / 30;
+        let is_high = session == 1 || i % 2 == 1;
+        let cells: Vec<&str> = row.split(',').collect();
+        let height = if is_high { "8.5" } else { "7" };
+        all += &format!(
+            "{},{},{height},{},",
+            cells[..4].join(","),
+            cells[4],
+            cells[6]
+        );
+        all += &format!("{},{}\n", ["Ann", "Bob"][i / 2 % 2], session + 1);
+    }
+    let path = write_file(&folder, "places.csv", &all);
+    let out = folder.path().join("places-fit");
+    let answer = fit(path.to_str().unwrap(), &out, &[]).exits(0);
+    let table = answer.stdout();
+    assert!(
+        table.contains("from") && table.contains("8.50 ft up"),
+        "{table}"
+    );
+    assert!(
+        table.lines().all(|line| line.chars().count() <= 80),
+        "{table}"
+    );
+    let csv = fs::read_to_string(out.join("shooters.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = csv
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').collect())
+        .collect();
+    assert_eq!(rows.len(), 4, "{csv}");
+    let shots: usize = rows
+        .iter()
+        .map(|row| row[1].parse::<usize>().unwrap())
+        .sum();
+    assert_eq!(shots, 60);
+    assert_eq!(rows[0][5], "7.000");
+    assert_eq!(rows[1][5], "8.500");
+    assert_ne!(rows[0][6], rows[1][6]);
+    let shots = fs::read_to_string(out.join("ann").join("shots.csv")).unwrap();
+    assert!(shots.starts_with("row,session,place,"));
+    // The place that both sessions have is compared: P of the second session is that of a fit of it
+    // alone.
+    let mut command = bankshot();
+    command.arg("compare-sessions").arg(&path).arg("--json");
+    let compared = Answer::of(&mut command).exits(0);
+    assert!(
+        compared.stderr.contains("shots from several places"),
+        "{}",
+        compared.stderr
+    );
+    assert!(!compared.stderr.contains("from different places"));
+    // What follows from a fit's profile, and what does not.
+    let profile = out.join("ann").join("profile.toml");
+    let json: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("ann").join("fit.json")).unwrap())
+            .unwrap();
+    let warnings = json["warnings"].as_array().unwrap();
+    let mut command = bankshot();
+    let checked = Answer::of(command.arg("check").arg(&profile)).exits(0);
+    assert_eq!(
+        checked.stderr.matches("its fit warned: ").count(),
+        warnings.len(),
+        "{}",
+        checked.stderr
+    );
+    assert!(json["prediction"]["calibration_note"].is_string());
+}
+
+/// A fit's warnings are said again where its profile is used.
+#[test]
+fn contract_warnings_of_a_fit_follow_its_profile() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    // Nobody makes every shot with these releases.
+    let mut lines = text.lines();
+    let mut made = format!("{}\n", lines.next().unwrap());
+    for (i, line) in lines.enumerate() {
+        let (rest, _) = line.rsplit_once(',').unwrap();
+        made += &format!("{rest},{}\n", u8::from(i > 0));
+    }
+    let path = write_file(&folder, "made.csv", &made);
+    let out = folder.path().join("made-fit");
+    let answer = fit(path.to_str().unwrap(), &out, &[]).exits(0);
+    assert!(
+        answer.stdout().contains("59 shots went in where"),
+        "{answer:?}"
+    );
+    let mut command = bankshot();
+    command.arg("team").arg(out.join("profile.toml"));
+    Answer::of(&mut command)
+        .exits(0)
+        .says("its fit warned: 59 shots went in where");
 }

@@ -215,6 +215,7 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
         let first: Vec<f64> = numbers(lines.next().unwrap_or_else(|| panic!("{output:?}")));
         assert!((first[0] - middle).abs() < 1e-5, "{first:?} {middle}");
         assert!((first[1] - 66.0).abs() < 1e-5);
+        assert_eq!((first.len(), first[9]), (10, 0.0), "a direct shot");
         assert!(numbers(lines.next().unwrap()).iter().all(|v| v.is_nan()));
     }
 }

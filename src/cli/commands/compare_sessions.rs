@@ -10,7 +10,7 @@ use crate::fitting::{
     DrawProbabilities, MeasuredRelease, Posterior, SessionComparison, ShooterFit, SpinSource,
     VALUE_NAMES, compare_probabilities, compare_sessions,
 };
-use crate::measured_shots::read::ShooterShots;
+use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::fit_files::parameters::value_units;
 use crate::output::fit_files::session_changes_text::{

@@ -10,7 +10,7 @@ use crate::fitting::{
     Place, ShooterFit, ShooterFitError, SpinSource, UnseenParameter, fit_drag_coefficient,
     likelihood_curve,
 };
-use crate::measured_shots::read::ShooterShots;
+use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::{Preset, SolidId};
 use crate::output::atomic_file;
 use crate::output::fit_files::draws_table::draws_parquet;
@@ -166,12 +166,7 @@ fn fit_all(
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
     let place = names_places.then_some("from");
     let header = ["shooter"].into_iter().chain(place);
-    table.set_header(header.chain([
-        "shots",
-        "made",
-        "expected",
-        "P of the usual shot,\n95 % interval",
-    ]));
+    table.set_header(header.chain(["shots", "made", "expected", "P of the usual\nshot (95 %)"]));
     let mut worst = code::DONE;
     for row in &rows {
         csv += &row.csv;
@@ -291,6 +286,8 @@ fn fit_one(
             cell(&folder.display().to_string())
         );
         let percent = |p: f64| format!("{:.1}", 100.0 * p);
+        // A place takes two lines, so the interval does too.
+        let is_one = fit.places.len() == 1;
         let [made, expected] = if has_results {
             [
                 format!("{} of {}", makes.made, makes.labelled),
@@ -301,7 +298,7 @@ fn fit_one(
         };
         places.push(PlaceRow {
             shooter: if index == 0 {
-                shortened(&name, 24)
+                shortened(&name, 20)
             } else {
                 String::new()
             },
@@ -311,10 +308,12 @@ fn fit_one(
                 made,
                 expected,
                 format!(
-                    "{} % ({} to {})",
+                    "{} %{}{} to {}{}",
                     percent(p.mean),
+                    if is_one { " (" } else { "\n" },
                     percent(p.low),
-                    percent(p.high)
+                    percent(p.high),
+                    if is_one { ")" } else { "" }
                 ),
             ],
         });

@@ -5,7 +5,7 @@
 
 use super::table_text::{notes, physics_note, shooter_note, what_shots};
 use crate::best_shot::{ShotTable, TableShot};
-use crate::shooter::Profile;
+use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// A programming language.
@@ -20,7 +20,7 @@ pub enum Language {
 }
 
 /// The values that a lookup returns: name and value in units of the results.
-fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 9] {
+fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 10] {
     const SMALLER: fn([f64; 2]) -> f64 = |[below, above]| below.min(above);
     let (long, metre) = units.length();
     [
@@ -49,11 +49,17 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 9] {
             |s| SMALLER(s.tolerances[1]),
             DEGREE_RAD,
         ),
+        (
+            "is_bank".to_owned(),
+            |s| f64::from(u8::from(s.kind == ShotKind::Bank)),
+            1.0,
+        ),
     ]
 }
 
-/// The last values are tolerances: between nodes the smaller one holds.
-const TOLERANCES: usize = 2;
+/// Of the last values, tolerances and kind, the smaller one holds between two nodes. (Both nodes of a
+/// cell have the same kind.)
+const NOT_INTERPOLATED: usize = 3;
 
 /// The source in a language (Java: with the name of the class).
 #[must_use]
@@ -124,7 +130,8 @@ pub fn source_code(
         "Time and entry angle are those where the ball first falls to the height of the hoop, as if \
          there were no ring. A tolerance is how far speed or pitch can be off, up or down, alone, \
          until the shot first misses; near the ring more shots may go in beyond it. Between two nodes \
-         the smaller tolerance of both is given; it is not checked there."
+         the smaller tolerance of both is given; it is not checked there. is_bank is 1 for a bank \
+         shot, 0 for a direct one."
             .to_owned(),
         "NaN outside the table, and beside a place without a shot.".to_owned(),
     ];
@@ -153,7 +160,7 @@ pub fn source_code(
         .replace("@ANGLES@", &list(&table.angles_rad, DEGREE_RAD))
         .replace("@ROWS@", &rows.concat())
         .replace("@VALUES@", &values.len().to_string())
-        .replace("@LINEAR@", &(values.len() - TOLERANCES).to_string())
+        .replace("@LINEAR@", &(values.len() - NOT_INTERPOLATED).to_string())
 }
 
 const JAVA: &str = "\

@@ -142,7 +142,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         physics_note(profile, units),
         format!(
             "{}. from: distance from the hoop's centre. aim: positive to the left. P: \
-             the chance of each. margin: by how much speed and pitch can be off, up or down, one \
+             the chance of each. margin: by how much speed and pitch can be off, to the side that allows less (CSV and JSON have both), one \
              at a time and with all else exact, until the shot first misses (beyond that more may go \
              in). time, entry: where it \
              first falls to the height of the hoop, as if there were no ring.",
@@ -363,9 +363,13 @@ fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
         .jumps_m()
         .map(|jump_m| short(jump_m / metre))
         .collect();
+    let what = match table.kind {
+        TableKind::One(_) => "the best shot jumps",
+        TableKind::Better => "the better kind changes or the best shot jumps",
+    };
     (!jumps.is_empty()).then(|| {
         format!(
-            "At {} {long} the best shot jumps: of two rows the first holds below, the second from \
+            "At {} {long} {what}: of two rows the first holds below, the second from \
              there on.",
             jumps.join(", ")
         )

@@ -1,0 +1,211 @@
+//! The cells of a row as quantities, and rows as shots.
+
+use super::columns::{Columns, Label, Quantity, parse_made};
+use super::shooter_shots::{Raw, RawShot, ReadOptions};
+use super::source::Source;
+use crate::dynamics::Simulator;
+use crate::fitting::{Landing, Place};
+use crate::shooter::Location;
+use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
+
+/// A shot that is farther than this from the hoop's centre where it falls through its height is not
+/// aimed at it, m.
+pub(super) const FARTHEST_LANDING_M: f64 = 1.5;
+/// Depths that a sensor can report: half a foot before and behind the ring, m.
+const DEPTHS_M: (f64, f64) = (-9.0 * INCH_M, 27.0 * INCH_M);
+/// The end of the reason of a row without a value.
+pub(super) const IS_MISSING: &str = "is missing";
+
+/// Refuses what is no height of a player's release.
+pub(super) fn check_release_height(height_m: f64) -> Result<(), String> {
+    if (0.5..3.5).contains(&height_m) {
+        return Ok(());
+    }
+    Err(format!(
+        "release height: {height_m:.2} m ({:.2} ft) is not that of a player; 0.5 to 3.5 m are",
+        height_m / FOOT_M
+    ))
+}
+
+/// Reads the cells of rows as quantities in SI units.
+pub(super) struct RowReader<'a> {
+    pub(super) columns: &'a Columns,
+    pub(super) options: &'a ReadOptions,
+    pub(super) simulator: &'a Simulator,
+    pub(super) source: Source,
+}
+
+impl RowReader<'_> {
+    /// A cell of a column without a unit.
+    pub(super) fn label<'c>(&self, cells: &'c [String], label: Label) -> Option<&'c str> {
+        let index = self.columns.label(label)?;
+        cells.get(index).map(String::as_str)
+    }
+
+    /// The name that a quantity has in the file.
+    fn column_name(&self, quantity: Quantity) -> &str {
+        self.columns
+            .quantity(quantity)
+            .map_or(quantity.name(), |column| self.columns.name(column.index))
+    }
+
+    /// A quantity of a row in SI units; `None` where there is no column.
+    pub(super) fn value(
+        &self,
+        cells: &[String],
+        quantity: Quantity,
+    ) -> Result<Option<f64>, String> {
+        let Some(column) = self.columns.quantity(quantity) else {
+            return Ok(None);
+        };
+        let name = self.columns.name(column.index);
+        let cell = cells.get(column.index).map_or("", String::as_str);
+        if cell.is_empty() {
+            return Err(format!("{name}: {IS_MISSING}"));
+        }
+        let shown: String = cell.chars().take(30).collect();
+        match cell.parse::<f64>() {
+            Ok(value) if value.is_finite() && value.abs() < 1e9 => Ok(Some(column.value(value))),
+            Ok(_) => Err(format!("{name}: \"{shown}\" is not a finite number")),
+            // `6 ft 11 in` in a column of heights.
+            Err(_) => match quantity
+                .dimension_of_texts()
+                .map(|dimension| parse(cell, dimension))
+            {
+                Some(Ok(si)) => Ok(Some(column.value(si / column.unit.1))),
+                _ => Err(format!("{name}: \"{shown}\" is not a number")),
+            },
+        }
+    }
+
+    /// The place on the court.
+    pub(super) fn location(&self, cells: &[String]) -> Result<Location, String> {
+        let or =
+            |quantity, given: Option<f64>| Ok::<_, String>(self.value(cells, quantity)?.or(given));
+        let location = Location {
+            distance_m: or(Quantity::Distance, self.options.distance_m)?.unwrap_or(0.0),
+            angle_rad: or(Quantity::CourtAngle, self.options.court_angle_rad)?.unwrap_or(0.0),
+        };
+        location
+            .check(self.simulator.physics())
+            .map_err(|error| format!("place: {error}"))?;
+        Ok(location)
+    }
+
+    fn place(&self, cells: &[String]) -> Result<Place, String> {
+        let location = self.location(cells)?;
+        let release_height_m = self
+            .value(cells, Quantity::ReleaseHeight)?
+            .or(self.options.release_height_m)
+            .unwrap_or(0.0);
+        check_release_height(release_height_m)?;
+        Ok(Place {
+            location,
+            release_height_m,
+        })
+    }
+
+    fn backspin(&self, cells: &[String]) -> Result<f64, String> {
+        let spin = self.value(cells, Quantity::Backspin)?;
+        let spin = spin.or(self.options.backspin_rad_s).unwrap_or(0.0);
+        if spin.abs() > 20.0 * REV_RAD {
+            return Err(format!(
+                "backspin: {:.1} rev/s is beyond 20 rev/s",
+                spin / REV_RAD
+            ));
+        }
+        Ok(spin)
+    }
+
+    fn measured_row(&self, cells: &[String]) -> Result<(Place, Raw), String> {
+        let place = self.place(cells)?;
+        let need = |quantity: Quantity| {
+            self.value(cells, quantity)?
+                .ok_or_else(|| format!("column {} is missing", quantity.name()))
+        };
+        let backspin = self.backspin(cells)?;
+        if self.source == Source::Landings {
+            let landing = Landing {
+                depth_m: need(Quantity::Depth)?,
+                right_m: need(Quantity::LeftRight)?,
+                entry_angle_rad: need(Quantity::EntryAngle)?,
+            };
+            if !(DEPTHS_M.0..=DEPTHS_M.1).contains(&landing.depth_m) {
+                return Err(format!(
+                    "{}: {:.1} in is outside the ring by more than it can be (0 in is its front, 18 in its back; -9 to 27 are read)",
+                    self.column_name(Quantity::Depth),
+                    landing.depth_m / INCH_M
+                ));
+            }
+            if landing.right_m.abs() > FARTHEST_LANDING_M {
+                return Err(format!(
+                    "{}: {:.1} in is no shot at this hoop",
+                    self.column_name(Quantity::LeftRight),
+                    landing.right_m / INCH_M
+                ));
+            }
+            if !(0.26..1.4).contains(&landing.entry_angle_rad) {
+                return Err(format!(
+                    "{}: {:.1} deg; must be from 15 to 80 deg",
+                    self.column_name(Quantity::EntryAngle),
+                    landing.entry_angle_rad / DEGREE_RAD
+                ));
+            }
+            return Ok((place, Raw::Landing(landing, backspin)));
+        }
+        let polar = match self.value(cells, Quantity::Aim)? {
+            Some(aim) => place.location.angle_rad + aim,
+            None => need(Quantity::Polar)?,
+        };
+        let values = [
+            need(Quantity::Speed)?,
+            need(Quantity::Pitch)?,
+            polar,
+            backspin,
+        ];
+        if !(values[0] > 0.0) {
+            let name = self.column_name(Quantity::Speed);
+            return Err(format!("{name}: must be above 0"));
+        }
+        if !(values[1].abs() < 1.5) {
+            return Err(format!(
+                "{}: {:.1} deg; must be within 86 deg",
+                self.column_name(Quantity::Pitch),
+                values[1] / DEGREE_RAD
+            ));
+        }
+        if (polar - place.location.angle_rad).abs() > 0.6 {
+            return Err(
+                "the polar angle points away from this hoop: is it another hoop, or is the angle from the line to the hoop's centre (column aim_deg)?"
+                    .to_owned(),
+            );
+        }
+        Ok((place, Raw::Release(values)))
+    }
+
+    /// The shots of a file with a row for each.
+    pub(super) fn row_shots(
+        &self,
+        rows: &[(u64, &[String])],
+        rejected: &mut Vec<(u64, String)>,
+    ) -> Vec<RawShot> {
+        let mut raw = Vec::new();
+        for &(row, cells) in rows {
+            let made = parse_made(self.label(cells, Label::Made).unwrap_or_default());
+            match (self.measured_row(cells), made) {
+                (Ok((place, measured)), Ok(made)) => raw.push(RawShot {
+                    row,
+                    session: self
+                        .label(cells, Label::Session)
+                        .unwrap_or_default()
+                        .to_owned(),
+                    made,
+                    place,
+                    measured,
+                }),
+                (Err(reason), _) | (_, Err(reason)) => rejected.push((row, reason)),
+            }
+        }
+        raw
+    }
+}

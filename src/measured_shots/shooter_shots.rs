@@ -1,0 +1,71 @@
+//! The measured shots of a shooter, and what the file does not say of them.
+
+use super::court_frame::CourtFrame;
+use super::source::Source;
+use crate::fitting::{
+    FlightFit, Landing, MeasuredRelease, Place, ReleaseDifference, SpinSource, TrackedPoint,
+    TrackerNoise, Values,
+};
+
+/// What the file does not say.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadOptions {
+    /// The coordinates of trajectories.
+    pub frame: CourtFrame,
+    /// Distance of the place, m.
+    pub distance_m: Option<f64>,
+    /// Its angle on the court, rad.
+    pub court_angle_rad: Option<f64>,
+    /// Height of the release above the floor, m.
+    pub release_height_m: Option<f64>,
+    /// Backspin, rad/s.
+    pub backspin_rad_s: Option<f64>,
+    /// The tracker's errors.
+    pub noise: TrackerNoise,
+}
+
+/// The measured shots of one shooter.
+#[derive(Clone, Debug)]
+pub struct ShooterShots {
+    /// Their name; empty if the file does not say.
+    pub name: String,
+    /// What was measured.
+    pub source: Source,
+    /// Where they shot from.
+    pub places: Vec<Place>,
+    /// The least and the greatest height of the releases of one place, m, where they differ: the
+    /// place has their mean.
+    pub merged_heights_m: Option<[f64; 2]>,
+    /// The shots, in the order of the file.
+    pub shots: Vec<MeasuredRelease>,
+    /// The session of each; empty if the file does not say.
+    pub sessions: Vec<String>,
+    /// Rows that are kept out, and why.
+    pub rejected: Vec<(u64, String)>,
+    /// Where the backspin comes from.
+    pub spin: SpinSource,
+    /// Unit of the speeds in the file, and its size in m/s.
+    pub speed_unit: (&'static str, f64),
+    /// The tracked points in free flight of each shot.
+    pub tracks: Vec<Vec<TrackedPoint>>,
+    /// Squared residuals of each trajectory, and what is expected of them.
+    pub chi_squares: Vec<(f64, f64)>,
+    /// Releases that were measured beside the landings.
+    pub differences: Vec<ReleaseDifference>,
+}
+
+/// A shot before its place is known.
+pub(super) struct RawShot {
+    pub(super) row: u64,
+    pub(super) session: String,
+    pub(super) made: Option<bool>,
+    pub(super) place: Place,
+    pub(super) measured: Raw,
+}
+
+/// What was measured of it.
+pub(super) enum Raw {
+    Release(Values),
+    Landing(Landing, f64),
+    Flight(Box<FlightFit>, Vec<TrackedPoint>),
+}

@@ -1,0 +1,138 @@
+//! Tracked shots: the points of each, and the flight that is fitted to them.
+
+use super::columns::{Label, Quantity, parse_made};
+use super::row_reader::{FARTHEST_LANDING_M, RowReader};
+use super::shooter_shots::{Raw, RawShot};
+use crate::fitting::{TrackedPoint, fit_flight};
+use crate::units::FOOT_M;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A height that every shot rises through, m.
+const LOW_RELEASE_M: f64 = 1.5;
+
+/// The flights of the tracked shots, each at its own place.
+pub(super) fn tracked_shots(
+    reader: &RowReader<'_>,
+    rows: &[(u64, &[String])],
+    rejected: &mut Vec<(u64, String)>,
+) -> Vec<RawShot> {
+    let mut by_shot: Vec<(String, Vec<(u64, &[String])>)> = Vec::new();
+    let mut index = BTreeMap::new();
+    for &(row, cells) in rows {
+        let session = reader.label(cells, Label::Session).unwrap_or_default();
+        let shot = format!(
+            "{session}\n{}",
+            reader.label(cells, Label::Shot).unwrap_or_default()
+        );
+        let at = *index.entry(shot.clone()).or_insert_with(|| {
+            by_shot.push((shot, Vec::new()));
+            by_shot.len() - 1
+        });
+        by_shot[at].1.push((row, cells));
+    }
+    let z0 = reader.simulator.physics().hoop_plane_height_m();
+    let tracks: Vec<(
+        u64,
+        String,
+        Result<(Vec<TrackedPoint>, Option<bool>), String>,
+    )> = by_shot
+        .iter()
+        .map(|(_, rows)| {
+            let (first, cells) = rows[0];
+            let session = reader
+                .label(cells, Label::Session)
+                .unwrap_or_default()
+                .to_owned();
+            (first, session, track(reader, rows, z0))
+        })
+        .collect();
+    let noise = &reader.options.noise;
+    let backspin = reader.options.backspin_rad_s.unwrap_or(0.0);
+    let height = reader.options.release_height_m.unwrap_or_else(|| {
+        let begins = tracks.par_iter().filter_map(|(_, _, track)| {
+            let (points, _) = track.as_ref().ok()?;
+            let fit = fit_flight(reader.simulator, points, noise, LOW_RELEASE_M, backspin).ok()?;
+            Some(fit.begins_at_m)
+        });
+        let mut begins: Vec<f64> = begins.collect();
+        begins.sort_by(f64::total_cmp);
+        begins
+            .get(begins.len() / 2)
+            .map_or(LOW_RELEASE_M, |height| height.max(LOW_RELEASE_M))
+    });
+    let fits: Vec<Result<RawShot, (u64, String)>> = tracks
+        .into_par_iter()
+        .map(|(row, session, track)| {
+            let (points, made) = track.map_err(|reason| (row, reason))?;
+            let fit = fit_flight(reader.simulator, &points, noise, height, backspin)
+                .map_err(|error| (row, format!("trajectory: {error}")))?;
+            let used = points[fit.points.clone()].to_vec();
+            Ok(RawShot {
+                row,
+                session,
+                made,
+                place: fit.place,
+                measured: Raw::Flight(Box::new(fit), used),
+            })
+        })
+        .collect();
+    let mut raw = Vec::new();
+    for fit in fits {
+        match fit {
+            Ok(shot) => raw.push(shot),
+            Err(reason) => rejected.push(reason),
+        }
+    }
+    raw
+}
+
+/// The points of one shot in the coordinates of the hoop, and whether it went in.
+fn track(
+    reader: &RowReader<'_>,
+    rows: &[(u64, &[String])],
+    z0: f64,
+) -> Result<(Vec<TrackedPoint>, Option<bool>), String> {
+    let mut points = Vec::with_capacity(rows.len());
+    let mut made = None;
+    for &(row, cells) in rows {
+        let need = |quantity: Quantity| {
+            let value = reader
+                .value(cells, quantity)
+                .map_err(|error| format!("row {row}: {error}"))?;
+            value.ok_or_else(|| format!("column {} is missing", quantity.name()))
+        };
+        made = made.or(parse_made(
+            reader.label(cells, Label::Made).unwrap_or_default(),
+        )?);
+        points.push(TrackedPoint {
+            time_s: need(Quantity::Time)?,
+            position_m: [
+                need(Quantity::X)?,
+                need(Quantity::Y)?,
+                need(Quantity::Z)? - z0,
+            ],
+        });
+    }
+    let floor: Vec<(f64, f64)> = points
+        .iter()
+        .map(|p| (p.position_m[0], p.position_m[1]))
+        .collect();
+    for (point, (x, y)) in points
+        .iter_mut()
+        .zip(reader.options.frame.from_hoop(&floor))
+    {
+        (point.position_m[0], point.position_m[1]) = (x, y);
+    }
+    let nearest = points
+        .iter()
+        .map(|p| libm::hypot(p.position_m[0], p.position_m[1]))
+        .fold(f64::INFINITY, f64::min);
+    if nearest > 2.0 * FARTHEST_LANDING_M {
+        return Err(format!(
+            "the ball comes no nearer than {:.1} ft to the hoop: is it another hoop, or another --frame?",
+            nearest / FOOT_M
+        ));
+    }
+    Ok((points, made))
+}
