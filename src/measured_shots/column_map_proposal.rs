@@ -8,7 +8,13 @@ use crate::fitting::CENTRE_DEPTH_M;
 const OTHER_NAMES: [(&str, &[&str]); 16] = [
     (
         "release_height",
-        &["releaseheight", "releaseht", "heightofrelease"],
+        &[
+            "releaseheight",
+            "releaseht",
+            "heightofrelease",
+            "relheight",
+            "releasez",
+        ],
     ),
     ("entry_angle", &["entry", "incoming"]),
     ("depth", &["depth", "longshort", "shortlong"]),
@@ -185,9 +191,10 @@ fn is_positive_to(name: &str, side: &str) -> bool {
     let is_negative = says(format!("-={side}"))
         || says(format!("{side}negative"))
         || says(format!("negative={side}"));
-    // `Azimuth_deg_right`
-    let is_last = lower.ends_with(&format!("_{side}"));
-    let is_positive = is_last
+    // `Azimuth_deg_right`, `azimuth_right_deg`
+    let mut parts = lower.split('_').skip(1);
+    let is_part = parts.any(|part| part == side) && !lower.contains(other);
+    let is_positive = is_part
         || says(format!("+={side}"))
         || says(format!("{side}positive"))
         || says(format!("positive={side}"));
@@ -346,6 +353,9 @@ mod tests {
             ("Left-right (in)", "left", false),
             ("Side (deg, + = right)", "right", true),
             ("Side (deg)", "right", false),
+            ("azimuth_deg_right", "right", true),
+            ("azimuth_right_deg", "right", true),
+            ("left_right_in", "left", false),
         ] {
             assert_eq!(is_positive_to(name, side), expected, "{name}");
         }
@@ -355,5 +365,10 @@ mod tests {
         assert_eq!(unit_of("EntryAngle", Quantity::EntryAngle), Some("deg"));
         assert_eq!(unit_of("margin", Quantity::Depth), None);
         assert_eq!(unit_of("Spin", Quantity::Backspin), None);
+        assert_eq!(unit_of("spin_hz", Quantity::Backspin), Some("rev_s"));
+        assert_eq!(
+            target_of("rel_height_m", false, &[]),
+            Some("release_height")
+        );
     }
 }

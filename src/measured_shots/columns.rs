@@ -221,11 +221,15 @@ enum Meaning {
 }
 
 /// Units as others write them, longest first, and their suffixes here.
-pub(super) const OTHER_UNITS: [(&str, &str); 24] = [
+pub(super) const OTHER_UNITS: [(&str, &str); 30] = [
     ("degrees", "deg"),
     ("inches", "in"),
     ("metres", "m"),
     ("meters", "m"),
+    ("rad/s", "rad_s"),
+    ("rad_s", "rad_s"),
+    ("rev/s", "rev_s"),
+    ("rev_s", "rev_s"),
     ("km/h", "km_h"),
     ("feet", "ft"),
     ("ft/s", "ft_s"),
@@ -238,8 +242,10 @@ pub(super) const OTHER_UNITS: [(&str, &str); 24] = [
     ("m_s", "m_s"),
     ("mps", "m_s"),
     ("rpm", "rpm"),
+    ("rps", "rev_s"),
     ("deg", "deg"),
     ("rad", "rad"),
+    ("hz", "rev_s"),
     ("cm", "cm"),
     ("mm", "mm"),
     ("m", "m"),
