@@ -262,7 +262,12 @@ impl BestShotSearch<'_> {
         let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
         for side_spin_rad_s in start_side_spins(self.profile, self.plan) {
             let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
-            let maxima = self.maxima_by_pitch(&self.table(&plan));
+            let table = self.table(&plan);
+            let maxima = if table.pitch_rad.len() == 1 {
+                self.maxima_by_speed(&table)
+            } else {
+                self.maxima_by_pitch(&table)
+            };
             for (starts, maxima) in starts.iter_mut().zip(maxima) {
                 let separated = separated(&maxima);
                 starts.extend(separated.into_iter().map(|(_, nominal)| nominal));
@@ -298,6 +303,38 @@ impl BestShotSearch<'_> {
             .map(|pitch| self.maxima_at_pitch(table, pitch))
             .collect();
         ShotKind::ALL.map(|kind| rows.iter().map(|row| row[kind.index()]).collect())
+    }
+
+    /// For each kind, where the pitch angle is fixed: the best nominal shot at each speed that has
+    /// a higher P than those at the speeds beside it. One pitch angle can have several such
+    /// speeds, for example over and off the front of the ring.
+    fn maxima_by_speed(&self, table: &NominalProbabilities) -> [Vec<Option<Candidate>>; 2] {
+        let mut best = ShotKind::ALL.map(|_| vec![None::<Candidate>; table.speed_m_s.len()]);
+        for speed in 0..table.speed_m_s.len() {
+            for polar in 0..table.polar_rad.len() {
+                for spin in 0..table.backspin_rad_s.len() {
+                    let (p, nominal) = table.at([0, polar, spin, speed]);
+                    if !(p > 0.0) {
+                        continue;
+                    }
+                    let slot = &mut best[ShotKind::of(self.profile, &nominal).index()][speed];
+                    if slot.is_none_or(|(most, _)| p > most) {
+                        *slot = Some((p, nominal));
+                    }
+                }
+            }
+        }
+        best.map(|by_speed| {
+            let p = |i: Option<usize>| {
+                i.and_then(|i| by_speed.get(i).copied().flatten())
+                    .map_or(0.0, |(p, _)| p)
+            };
+            let is_top =
+                |i: usize| p(Some(i)) >= p(i.checked_sub(1)) && p(Some(i)) > p(Some(i + 1));
+            let tops = by_speed.iter().enumerate();
+            tops.map(|(i, candidate)| candidate.filter(|_| is_top(i)))
+                .collect()
+        })
     }
 
     fn maxima_at_pitch(
@@ -596,7 +633,7 @@ impl BestShotSearch<'_> {
     }
 }
 
-/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles away
+/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles (or speeds) away
 /// from those before.
 fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
     let mut order: Vec<(usize, Candidate)> = maxima

@@ -91,6 +91,13 @@ fn load(
     fixed: &[NominalVariable],
     quiet: bool,
 ) -> Result<(Profile, String), Failure> {
+    // The folder of a fit or of a run holds its profile.
+    let in_folder = path.join("profile.toml");
+    let path = if in_folder.is_file() {
+        &in_folder
+    } else {
+        path
+    };
     let is_table = |end: &std::ffi::OsStr| end == "csv" || end == "parquet";
     if path.extension().is_some_and(is_table) {
         return Err(Failure::usage(format!(

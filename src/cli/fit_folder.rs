@@ -41,10 +41,30 @@ fn damaged(path: &Path, message: impl std::fmt::Display) -> Failure {
 }
 
 impl FitFolder {
-    /// P of the usual shot at the first place.
-    pub(crate) fn usual_probabilities(&self) -> DrawProbabilities {
-        usual_probabilities(&self.profiles[0], &self.posterior, 0, SHOTS)
+    /// P of the usual shot at a place.
+    pub(crate) fn usual_probabilities(&self, place: usize) -> DrawProbabilities {
+        usual_probabilities(&self.profiles[place], &self.posterior, place, SHOTS)
     }
+
+    /// The index of the place with a number, from 1; without a number the first.
+    pub(crate) fn place_numbered(&self, number: Option<u32>) -> Result<usize, Failure> {
+        index_of_place(number, self.profiles.len())
+    }
+}
+
+/// The index of the place with a number, from 1, of so many; without a number the first.
+pub(crate) fn index_of_place(number: Option<u32>, places: usize) -> Result<usize, Failure> {
+    let number = number.unwrap_or(1) as usize;
+    if number > places {
+        return Err(Failure::usage(format!(
+            "--place {number}: there {}",
+            match places {
+                1 => "is one place".to_owned(),
+                more => format!("are {more} places"),
+            }
+        )));
+    }
+    Ok(number - 1)
 }
 
 /// Refuses options that only a file of measured shots has a use for.

@@ -26,7 +26,8 @@ pub(crate) struct MeasuredShotsOptions {
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
     /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a
-    /// TOML file with its noise [default: lab for releases, noah for landings, optical_25hz for
+    /// TOML file with its noise, one standard deviation each: speed = "0.05 ft/s", pitch, polar,
+    /// backspin; or depth = "0.5 in", left_right, entry_angle; or position [default: lab for releases, noah for landings, optical_25hz for
     /// trajectories].
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
@@ -255,23 +256,33 @@ impl MeasuredShotsOptions {
     }
 
     fn noise(&self, source: Source) -> Result<(TrackerNoise, (String, String)), Failure> {
-        let name = self.tracker.as_deref().unwrap_or(source.usual_tracker());
-        if let Some(tracker) = Tracker::named(name) {
-            return Ok((tracker.noise, (name.to_owned(), tracker.source.to_owned())));
-        }
-        let path = Path::new(name);
-        if !path.exists() {
-            let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
-            return Err(Failure::usage(format!(
-                "--tracker {name}: is neither a tracker ({}) nor a file{}",
-                names.join(", "),
-                units::suggestion(name, names.iter().copied())
-            )));
-        }
-        let noise = tracker_of_file(&read_text(path)?, source)
-            .map_err(|error| Failure::usage(format!("{name}: {error}")))?;
-        Ok((noise, (name.to_owned(), "given".to_owned())))
+        tracker_noise(
+            self.tracker.as_deref().unwrap_or(source.usual_tracker()),
+            source,
+        )
     }
+}
+
+/// The noise of a tracker by its name or from its file, its name, and where the noise is from.
+pub(crate) fn tracker_noise(
+    name: &str,
+    source: Source,
+) -> Result<(TrackerNoise, (String, String)), Failure> {
+    if let Some(tracker) = Tracker::named(name) {
+        return Ok((tracker.noise, (name.to_owned(), tracker.source.to_owned())));
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
+        return Err(Failure::usage(format!(
+            "--tracker {name}: is neither a tracker ({}) nor a file{}",
+            names.join(", "),
+            units::suggestion(name, names.iter().copied())
+        )));
+    }
+    let noise = tracker_of_file(&read_text(path)?, source)
+        .map_err(|error| Failure::usage(format!("{name}: {error}")))?;
+    Ok((noise, (name.to_owned(), "given".to_owned())))
 }
 
 /// The noise of a tracker's TOML file. What it does not say is that of the usual tracker.

@@ -21,7 +21,14 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
     ("speed", &["speed", "velocity", "velo", "v0"]),
     (
         "pitch",
-        &["pitch", "releaseangle", "launch", "elevation", "arc"],
+        &[
+            "pitch",
+            "releaseangle",
+            "launch",
+            "elevation",
+            "arc",
+            "theta",
+        ],
     ),
     ("polar", &["polar", "azimuth"]),
     ("aim", &["aim", "direction", "lateral", "horizontalangle"]),
@@ -90,8 +97,18 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
             }
         });
     }
-    if is_landing && !maps.is_empty() {
-        for quantity in [Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight] {
+    let is_release = taken.contains(&"speed") && !is_landing;
+    let needed: &[Quantity] = match () {
+        () if maps.is_empty() => &[],
+        () if is_landing => &[Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight],
+        () if is_release && (taken.contains(&"polar") || taken.contains(&"aim")) => {
+            &[Quantity::Pitch]
+        }
+        () if is_release => &[Quantity::Pitch, Quantity::Aim],
+        () => &[],
+    };
+    {
+        for quantity in needed.iter().copied() {
             let name = quantity.name();
             if !taken.contains(&name) && columns.quantity(quantity).is_none() {
                 maps.push(format!("--map '{name}=COLUMN:UNIT'"));

@@ -11,8 +11,9 @@ use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 /// A shot that is farther than this from the hoop's centre where it falls through its height is not
 /// aimed at it, m.
 pub(super) const FARTHEST_LANDING_M: f64 = 1.5;
-/// Depths that a sensor can report: half a foot before and behind the ring, m.
-const DEPTHS_M: (f64, f64) = (-9.0 * INCH_M, 27.0 * INCH_M);
+/// Depths of a shot at the hoop: up to a foot and a half before and behind the ring, m. Were long
+/// shots kept out, a long shooter would look better than they are.
+const DEPTHS_M: (f64, f64) = (-18.0 * INCH_M, 36.0 * INCH_M);
 /// The end of the reason of a row without a value.
 pub(super) const IS_MISSING: &str = "is missing";
 
@@ -132,7 +133,7 @@ impl RowReader<'_> {
             };
             if !(DEPTHS_M.0..=DEPTHS_M.1).contains(&landing.depth_m) {
                 return Err(format!(
-                    "{}: {:.1} in is outside the ring by more than it can be (0 in is its front, 18 in its back; -9 to 27 are read)",
+                    "{}: {:.1} in is no shot at this hoop (0 in is the front of the ring, 18 in its back; -18 to 36 are read)",
                     self.column_name(Quantity::Depth),
                     landing.depth_m / INCH_M
                 ));

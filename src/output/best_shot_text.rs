@@ -4,6 +4,7 @@ use super::best_shot_json::bank_minus_direct;
 use crate::analysis::bank_aim::{closed_form_polar_rad, meeting_behind_board_m};
 use crate::analysis::sensitivity::{Difference, ErrorCost, Sensitivity, ShotWindow};
 use crate::best_shot::{BestShot, BestShots, Limit, ShotKind};
+use crate::dynamics::OutcomeKind;
 use crate::shooter::{NominalVariable, Profile, ReleaseVariable};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use comfy_table::{CellAlignment, Table, presets};
@@ -70,7 +71,7 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
         nominal.speed_m_s / metre,
         nominal.pitch_rad / DEGREE_RAD
     );
-    let aim = aim_lines(*kind, shot, units).join(" ");
+    let aim = aim_lines(profile, *kind, shot, units).join(" ");
     match kind {
         _ if aim.is_empty() => {}
         ShotKind::Direct => text += &format!("Aim {aim}.\n"),
@@ -102,7 +103,7 @@ pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) 
     for (kind, shot) in best.by_kind() {
         match shot {
             Ok(shot) => {
-                table.add_row(table_row(kind, shot, units));
+                table.add_row(table_row(profile, kind, shot, units));
                 notes.extend(notes_of(profile, kind, shot));
             }
             Err(reason) => notes.push(format!("{}: {reason}.", kind.name())),
@@ -123,7 +124,7 @@ pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) 
     text
 }
 
-fn table_row(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
+fn table_row(profile: &Profile, kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
     let (_, metre) = units.length();
     let nominal = &shot.nominal;
     let estimate = &shot.estimate;
@@ -143,13 +144,14 @@ fn table_row(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> 
             "{:.4} ± {:.4}",
             estimate.probability, estimate.standard_error
         ),
-        aim_lines(kind, shot, units).join("\n"),
+        aim_lines(profile, kind, shot, units).join("\n"),
     ]
 }
 
 /// Where a shot is aimed, in short lines: on the board for a bank shot, else relative to the hoop's
-/// centre.
-fn aim_lines(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
+/// centre. Nothing for a direct shot whose undisturbed path leads through the board: it goes in off
+/// the ring.
+fn aim_lines(profile: &Profile, kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
     let (short, short_metre) = units.short_length();
     match (kind, shot.outcome.board_point_m, shot.aim_past_centre_m) {
         (ShotKind::Bank, Some((_, y, z)), _) => {
@@ -160,7 +162,7 @@ fn aim_lines(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> 
                 across_text(y / short_metre, short),
             ]
         }
-        (_, _, Some(past)) => {
+        (_, _, Some(past)) if past < profile.physics().board_distance_m => {
             let side = if past < 0.0 { "short of" } else { "past" };
             vec![
                 format!("{:.1} {short} {side}", past.abs() / short_metre),
@@ -274,6 +276,14 @@ fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<S
             kind_of_shot.other().name(),
             100.0 * of_other_kind
         ));
+    }
+    let off = match shot.outcome.kind {
+        OutcomeKind::RimIn => Some("off the ring"),
+        OutcomeKind::BankRimIn => Some("off the board and the ring"),
+        _ => None,
+    };
+    if let Some(off) = off {
+        notes.push(format!("{kind}: goes in {off} even without an error."));
     }
     if shot.estimate.standard_error > profile.search().standard_error {
         notes.push(format!(

@@ -167,7 +167,8 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         }
     });
     format!(
-        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}: {} of 100 go in{direct}. Aim at {}.",
+        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}{}: {} of 100 go in{direct}. Aim at {}.",
+        if most.name.is_some() { "at " } else { "" },
         place,
         in_hundred(most.bank).unwrap_or_default(),
         aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))

@@ -95,7 +95,7 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
                 })
             }),
         format!(
-            "physics.ball_mass: a ball of {mass_g:.0} g with the bounce of a basketball (board_restitution {:.2}, hoop_restitution {:.2}); give both, from a drop test: the square root of bounce height over drop height",
+            "physics.ball_mass: a ball of {mass_g:.0} g with the bounce of a basketball (board_restitution {:.2}, hoop_restitution {:.2}); give both, from a drop test: the square root of bounce height over drop height; and inertia_ratio, 0.4 for a solid ball",
             physics.restitution_on(SolidId::Board),
             physics.restitution_on(SolidId::Ring)
         ),

@@ -285,7 +285,7 @@ impl SearchSettings {
                 Some(pitch) => checks.refuse(
                     "nominal.pitch",
                     format!(
-                        "{:.1} deg: must be from 1 to 89 deg (the search leaves pitch out, so it uses this one)",
+                        "{:.1} deg: must be from 1 to 89 deg (search.choose leaves pitch out, so every shot has this one)",
                         pitch / DEGREE_RAD
                     ),
                 ),

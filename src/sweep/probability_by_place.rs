@@ -129,12 +129,13 @@ impl PlaceProbabilities {
         Some(difference(self.bank?, self.direct?))
     }
 
-    /// The place: its name, or where it is.
+    /// The place: its name in quotes, or where it is.
     #[must_use]
     pub fn in_words(&self, units: UnitSystem) -> String {
-        self.name
-            .clone()
-            .unwrap_or_else(|| self.place.location().in_words(units))
+        self.name.as_ref().map_or_else(
+            || self.place.location().in_words(units),
+            |name| format!("\"{name}\""),
+        )
     }
 
     /// The same for a list of places: with the mirror image of the place, where that is in the list

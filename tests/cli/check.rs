@@ -396,7 +396,8 @@ fn contract_odd_nominal_angles_and_balls_are_named() {
     let fixed = format!("{steep}[search]\nchoose = [\"speed\", \"polar\", \"backspin\"]\n");
     let profile = write_file(&folder, "fixed.toml", fixed);
     let refused = check(&profile).exits(2);
-    refused.says("nominal.pitch: 95.0 deg: must be from 1 to 89 deg");
+    refused
+        .says("nominal.pitch: 95.0 deg: must be from 1 to 89 deg (search.choose leaves pitch out");
     let foam = |more: &str| {
         let physics = format!("preset = \"ncaa\"\nball_mass = \"136 g\"\n{more}");
         let text = FREE_THROW.replace("preset = \"paper\"", &physics);

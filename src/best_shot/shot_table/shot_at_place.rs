@@ -88,7 +88,8 @@ pub(super) fn table_shot(
 
 /// When an error-free shot first falls to the height of the hoop, s, and its angle below the
 /// horizontal then, rad. The ring is left out: times after bounces off it would jump from place to
-/// place. A shot that meets the board first is followed from where it leaves it.
+/// place. A shot that meets the board first is followed from where it leaves it. `None` for one that
+/// would fall behind the board.
 fn fall_to_hoop(here: &Profile, nominal: &Nominal) -> Option<(f64, f64)> {
     let simulator = here.simulator();
     let release = here.release(nominal);
@@ -101,6 +102,11 @@ fn fall_to_hoop(here: &Profile, nominal: &Nominal) -> Option<(f64, f64)> {
         (release.state(), 0.0)
     };
     let (state, fall_s) = simulator.undisturbed_fall_to_hoop(&start)?;
+    // Beyond the face of the board it cannot fall: a shot from near by that hits the ring on its
+    // way up.
+    if state.position_m.x < -here.physics().board_distance_m {
+        return None;
+    }
     let v = state.velocity_m_s;
     let entry_rad = libm::atan2(-v.z, libm::hypot(v.x, v.y));
     Some((before_s + fall_s, entry_rad))

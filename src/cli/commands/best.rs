@@ -69,8 +69,8 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     if options.out.is_none() {
         run_folder::link_latest(&folder);
     }
-    print_answer(&if options.json {
-        format!("{:#}\n", best_shots_json(&profile, &best, units))
+    if options.json {
+        print_answer(&format!("{:#}\n", best_shots_json(&profile, &best, units)))?;
     } else {
         let mut text = answer_in_words(&profile, &best, units);
         text += &best_shots_table(&profile, &best, units);
@@ -81,8 +81,8 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         if options.draws.is_none() {
             text += PROFILE_IS_EXACT;
         }
-        text
-    })?;
+        print_prose(&text)?;
+    }
     if let Some((folder, fit)) = &draws {
         for (kind, shot) in best.by_kind() {
             if let Ok(shot) = shot {

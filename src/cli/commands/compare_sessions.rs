@@ -46,6 +46,10 @@ pub(crate) struct CompareSessionsOptions {
     /// Of a file with more than two sessions, one of the two to compare; give it twice.
     #[arg(long, value_name = "NAME", conflicts_with = "after")]
     pub(crate) session: Vec<String>,
+    /// Of sessions from several places, the number of the place to compare [default: 1, the first
+    /// that both have].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) place: Option<u32>,
     /// Print one JSON object; of a file with several shooters, an array of them.
     #[arg(long)]
     pub(crate) json: bool,
@@ -56,14 +60,15 @@ struct Session {
     name: String,
     /// Whether the name is from the column of a file.
     is_of_column: bool,
-    /// The number of places; the first one is compared.
+    /// The number of places, and the index of the one that is compared.
     places: usize,
+    place: usize,
     posterior: Posterior,
-    /// Made, and all with a result.
+    /// Made at this place, and all with a result; of a folder with several places none.
     makes: (usize, usize),
-    /// P of the usual shot at the first place.
+    /// P of the usual shot at this place.
     probabilities: DrawProbabilities,
-    /// The profile at the first place.
+    /// The profile at this place.
     profile: Profile,
     /// Their name, if the file has it.
     shooter: Option<String>,
@@ -82,19 +87,27 @@ impl Session {
         }
     }
 
-    fn of(name: String, shots: &ShooterShots, mut fit: ShooterFit) -> Self {
-        Self {
+    fn of(
+        name: String,
+        shots: &ShooterShots,
+        mut fit: ShooterFit,
+        number: Option<u32>,
+    ) -> Result<Self, Failure> {
+        let place = fit_folder::index_of_place(number, fit.places.len())?;
+        let makes = fit.makes.at_place(place);
+        Ok(Self {
             name,
             is_of_column: false,
             places: fit.places.len(),
+            place,
             posterior: fit.posterior,
-            makes: (fit.makes.made, fit.makes.labelled),
-            probabilities: fit.probabilities.swap_remove(0),
-            profile: fit.profiles.swap_remove(0),
+            makes: (makes.made, makes.labelled),
+            probabilities: fit.probabilities.swap_remove(place),
+            profile: fit.profiles.swap_remove(place),
             shooter: Some(shots.name.clone()).filter(|name| !name.is_empty()),
             warnings: fit.warnings.iter().map(ToString::to_string).collect(),
             units: None,
-        }
+        })
     }
 }
 
@@ -119,7 +132,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             let mut compared = Vec::new();
             bars.begin("fitting sessions", 2 * file.shooters.len() as u64);
             for shots in &file.shooters {
-                match fit_by_session(&file, shots, &options.session, &bars) {
+                match fit_by_session(&file, shots, options, &bars) {
                     Ok(sessions) => compared.push(sessions),
                     // The others can still be compared.
                     Err(error) if several => {
@@ -143,10 +156,17 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
     let mut jsons = Vec::new();
     let mut all = compared.iter().flatten();
     if let Some(session) = all.find(|session| session.places > 1) {
-        let words = session.profile.location().in_words(UnitSystem::default());
-        print_remark(&format!(
-            "shots from several places: speed, pitch, aim and P are those of the first, {words}; the scatter is that of all"
-        ));
+        let units = options.measured.units_or(session.units.unwrap_or_default());
+        if !options.json {
+            let (long, metre) = units.length();
+            print_prose(&format!(
+                "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}, released {:.2} {long} up; the scatter is that of all.\n\n",
+                session.places,
+                session.place + 1,
+                session.profile.location().in_words(units),
+                session.profile.shooter().release_height_m / metre
+            ))?;
+        }
     }
     for (number, sessions) in compared.iter().enumerate() {
         check_conditions(sessions)?;
@@ -192,14 +212,20 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
     let name = path.display().to_string();
     if path.is_dir() {
         let fit = fit_folder::read(path)?;
+        let place = fit.place_numbered(options.place)?;
         return Ok(Session {
             name,
             is_of_column: false,
             places: fit.profiles.len(),
-            probabilities: fit.usual_probabilities(),
+            place,
+            probabilities: fit.usual_probabilities(place),
             posterior: fit.posterior,
-            makes: fit.observed,
-            profile: fit.profiles[0].clone(),
+            makes: if fit.profiles.len() == 1 {
+                fit.observed
+            } else {
+                (0, 0)
+            },
+            profile: fit.profiles[place].clone(),
             shooter: fit.shooter,
             warnings: fit.warnings,
             units: Some(fit.units),
@@ -211,7 +237,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
     let fit = file
         .fit(shots, &file.physics)
         .map_err(|error| failure(&name, &error))?;
-    Ok(Session::of(name, shots, fit))
+    Session::of(name, shots, fit, options.place)
 }
 
 /// Fits of one physics can be compared, and P of one place.
@@ -253,9 +279,10 @@ const SAME_PLACE_M: f64 = 0.15;
 fn fit_by_session(
     file: &MeasuredFile,
     shots: &ShooterShots,
-    wanted: &[String],
+    options: &CompareSessionsOptions,
     bars: &ProgressBars,
 ) -> Result<[Session; 2], Failure> {
+    let wanted = &options.session[..];
     let place = file.file.display().to_string();
     report_rejected(file, shots, file.shooters.len() == 1);
     let mut names: Vec<&String> = Vec::new();
@@ -302,7 +329,7 @@ fn fit_by_session(
         bars.advance(1);
         Ok(Session {
             is_of_column: true,
-            ..Session::of(session.clone(), shots, fit)
+            ..Session::of(session.clone(), shots, fit, options.place)?
         })
     };
     Ok([fit(first, second)?, fit(second, first)?])
@@ -368,7 +395,7 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
         };
         add(
             "mean",
-            compare_sessions(posteriors, |draw| draw.means[0][i]),
+            compare_sessions(posteriors, |draw| draw.means[before.place][i]),
         );
         add("sd", compare_sessions(posteriors, |draw| draw.sds[i]));
     }

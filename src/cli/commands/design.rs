@@ -2,24 +2,26 @@
 
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::find_kinds;
-use crate::cli::config_files::load_profile;
+use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
+use crate::cli::measured_shots_flags::tracker_noise;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{self, PhysicsArg};
 use crate::fitting::{
-    Covariance, DesignRow, FitError, Landing, POWER, Place, Tracker, design, landing_of,
-    nominal_of, release_of_landing, values_of,
+    Covariance, DesignRow, FitError, Landing, POWER, Place, Tracker, TrackerNoise, design,
+    landing_of, nominal_of, release_of_landing, values_of,
 };
+use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
 use crate::shooter::{Nominal, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, REV_RAD, suggestion};
+use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use clap::Args;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -40,9 +42,13 @@ pub(crate) struct DesignOptions {
     /// The sizes of the tests.
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "25,50,100,200", value_parser = clap::value_parser!(u32).range(10..=5000))]
     pub(crate) shots: Vec<u32>,
-    /// The tracker: lab, noah, optical_25hz or optical_60hz [default: that of the fit, else lab].
-    #[arg(long, value_name = "NAME")]
+    /// The tracker: lab, noah, optical_25hz, optical_60hz, or a TOML file with its noise as for
+    /// `fit` [default: that of the fit, else lab].
+    #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
+    /// Of a fit with several places, the number of the place [default: 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) place: Option<u32>,
     /// Also ask how many shots make P known to this many points (one standard deviation).
     #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
     pub(crate) target: Option<f64>,
@@ -54,14 +60,39 @@ pub(crate) struct DesignOptions {
     pub(crate) repetitions: u64,
 }
 
-fn tracker_named(name: &str) -> Result<Tracker, Failure> {
-    Tracker::named(name).ok_or_else(|| {
-        let names: Vec<&str> = Tracker::ALL.iter().map(|tracker| tracker.name).collect();
-        let meant = suggestion(name, names.iter().copied());
-        Failure::usage(format!(
-            "--tracker {name}: must be one of {}{meant}",
-            names.join(", ")
-        ))
+/// What a tracker measures.
+struct TrackerOfTest {
+    /// Its name or its file, and where its noise is from.
+    name: (String, String),
+    noise: TrackerNoise,
+    /// Whether it sees landings; else it sees releases.
+    sees_landings: bool,
+}
+
+/// The tracker of a name or of a file. A file with an error of the depth is that of a gym sensor.
+fn tracker_named(name: &str) -> Result<TrackerOfTest, Failure> {
+    let is_file = Tracker::named(name).is_none();
+    let keys: toml::Table = if is_file && Path::new(name).exists() {
+        read_text(Path::new(name))?.parse().unwrap_or_default()
+    } else {
+        toml::Table::new()
+    };
+    if keys.contains_key("position") {
+        return Err(Failure::usage(format!(
+            "{name}: position: a test is designed for errors of releases (speed, pitch, polar) or of landings (depth, left_right, entry_angle)"
+        )));
+    }
+    let sees_landings = name == "noah" || keys.contains_key("depth");
+    let source = if sees_landings {
+        Source::Landings
+    } else {
+        Source::Releases
+    };
+    let (noise, name) = tracker_noise(name, source)?;
+    Ok(TrackerOfTest {
+        name,
+        noise,
+        sees_landings,
     })
 }
 
@@ -69,15 +100,21 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let named = options.tracker.as_deref().map(tracker_named).transpose()?;
     let (profile, nominal, own_tracker) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
-        let usual = nominal_of(&fit.posterior.typical().means[0]);
+        let place = fit.place_numbered(options.place)?;
+        let usual = nominal_of(&fit.posterior.typical().means[place]);
         if fit.profiles.len() > 1 && !quiet {
             print_remark(&format!(
-                "the fit has {} places: tests from the first, {}",
+                "the fit has {} places: tests from place {}, {}",
                 fit.profiles.len(),
-                fit.profiles[0].location().in_words(fit.units)
+                place + 1,
+                fit.profiles[place].location().in_words(fit.units)
             ));
         }
-        (fit.profiles[0].clone(), usual, fit.tracker)
+        (fit.profiles[place].clone(), usual, fit.tracker)
+    } else if options.place.is_some() {
+        return Err(Failure::usage(
+            "--place: only the folder of a fit has places",
+        ));
     } else {
         let profile = load_profile(&options.profile, &options.physics, quiet)?;
         let nominal = if options.nominal.is_given(&profile) {
@@ -128,8 +165,8 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let mut text = format!(
         "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^26}\n{:>6} {:>9} {:>9} {:>9}  {:>12} {:>12}\n",
         profile.shooter().name,
-        tracker.name,
-        tracker.source,
+        tracker.name.0,
+        tracker.name.1,
         options.repetitions,
         "",
         "scatter is known to",
@@ -181,6 +218,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             ),
         };
     }
+    let sd = |i: usize, size: f64| noise[(i, i)].max(0.0).sqrt() / size;
+    text += &format!(
+        "\nAt this shot the tracker errs by {:.2} ft/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
+        sd(0, FOOT_M),
+        sd(1, DEGREE_RAD),
+        sd(2, DEGREE_RAD)
+    );
     print_prose(&text)
 }
 
@@ -258,7 +302,12 @@ fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
     })
 }
 
-fn json(name: &str, tracker: &Tracker, rows: &[DesignRow], needed: Option<(f64, usize)>) -> Value {
+fn json(
+    name: &str,
+    tracker: &TrackerOfTest,
+    rows: &[DesignRow],
+    needed: Option<(f64, usize)>,
+) -> Value {
     let listed = rows.iter().map(|row| {
         let [speed, pitch, polar] = row.sd_errors.map(number);
         json!({
@@ -272,8 +321,8 @@ fn json(name: &str, tracker: &Tracker, rows: &[DesignRow], needed: Option<(f64, 
     });
     json!({
         "shooter": name,
-        "tracker": tracker.name,
-        "tracker_noise": tracker.source,
+        "tracker": tracker.name.0,
+        "tracker_noise": tracker.name.1,
         "tests": listed.collect::<Value>(),
         "target": needed.map(|(points, shots)| json!({
             "probability_error": number(points / 100.0),
@@ -283,8 +332,12 @@ fn json(name: &str, tracker: &Tracker, rows: &[DesignRow], needed: Option<(f64, 
 }
 
 /// The tracker's errors as errors of the usual release.
-fn noise(tracker: &Tracker, profile: &Profile, nominal: &Nominal) -> Result<Covariance, Failure> {
-    if tracker.name != "noah" {
+fn noise(
+    tracker: &TrackerOfTest,
+    profile: &Profile,
+    nominal: &Nominal,
+) -> Result<Covariance, Failure> {
+    if !tracker.sees_landings {
         return Ok(tracker.noise.release_covariance());
     }
     let place = Place {

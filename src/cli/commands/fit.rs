@@ -94,6 +94,14 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     };
     if let [shots] = &file.shooters[..] {
         run_folder::refuse_other_results(&out, RunKind::Fit)?;
+        if out.join("shooters.csv").exists() {
+            return Err(Failure::usage(format!(
+                "{0}: holds the fits of several shooters; name a folder in it: --out {1}",
+                out.display(),
+                out.join(run_folder::safe_name(&file.name_of(shots)))
+                    .display()
+            )));
+        }
         if options.out.is_none() && options.measured.shooter.is_some() {
             refuse_other_shooter(&out, &shots.name)?;
         }
@@ -206,11 +214,12 @@ fn fit_all(
         print_remark(warning);
     }
     if !quiet {
+        print_sessions(&file.shooters);
         print_unused(file);
         print_remark(&format!(
             "written: {}, and a folder for each shooter; next: bankshot advise {}",
             path.display(),
-            folders[0].display()
+            out.display()
         ));
     }
     Ok(worst)
@@ -327,6 +336,22 @@ fn fit_one(
             .map(|warning| format!("{name}: warning: {warning}"))
             .collect(),
     })
+}
+
+/// Says that sessions were fitted as one.
+fn print_sessions(shooters: &[ShooterShots]) {
+    let mut names: Vec<&str> = Vec::new();
+    for name in shooters.iter().flat_map(|shots| &shots.sessions) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    if names.len() > 1 {
+        print_remark(&format!(
+            "{} sessions are fitted as one; `bankshot compare-sessions` compares two of them",
+            names.len()
+        ));
+    }
 }
 
 /// Names the columns that nothing was taken from.
@@ -522,6 +547,7 @@ fn answer(
             print_remark(&format!("warning: {words}"));
         }
         print_merged_heights(shots, units);
+        print_sessions(std::slice::from_ref(shots));
         print_unused(file);
         print_remark(&format!(
             "written to {}; next: bankshot advise {}",

@@ -394,6 +394,31 @@ fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
     text
 }
 
+/// A table of places and players is printed up to this size.
+const MOST_COLUMNS: usize = 5;
+/// See [`MOST_COLUMNS`].
+const MOST_ROWS: usize = 16;
+
+/// Makes in 100 of both kinds, for each place and player.
+fn place_table(players: &[PlayerSweep], units: UnitSystem) -> String {
+    let name = |player: &PlayerSweep| shortened(&player.name, 9);
+    let header = std::iter::once("from".to_owned()).chain(players.iter().map(name));
+    let mut table = table_of(header.collect());
+    for (place, known) in players[0].places.iter().enumerate() {
+        let cell = |player: &PlayerSweep| {
+            let p = |p: Option<Difference>| {
+                p.map_or("-".to_owned(), |p| format!("{:.0}", 100.0 * p.value))
+            };
+            let here = &player.places[place];
+            format!("{} / {}", p(here.direct), p(here.bank))
+        };
+        let mut row = vec![textwrap::fill(&known.in_words(units), 20)];
+        row.extend(players.iter().map(cell));
+        table.add_row(row);
+    }
+    table.trim_fmt()
+}
+
 fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     let best = best_players(players);
     let header = [
@@ -433,6 +458,12 @@ fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
         text += &format!(
             "At {level} of {} places two or more are level: within 1 in 100 (team.csv names them).\n",
             best.len()
+        );
+    }
+    if players.len() <= MOST_COLUMNS && best.len() <= MOST_ROWS {
+        text += &format!(
+            "\nat each place: direct / bank\n{}\n",
+            place_table(players, units)
         );
     }
     text += "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n";

@@ -3,6 +3,7 @@
 use super::fit_json::interval_json;
 use super::fit_text::percent;
 use super::parameters::value_units;
+use crate::best_shot::{BestShot, Limit};
 use crate::fitting::{
     Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, SpinSource, TrainingGain, Values,
     values_of, wilson_interval,
@@ -119,8 +120,9 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
     let changes = words.of_releases(&advice.usual, &steps.advised);
     let gain = &steps.gain;
     let mut text = format!(
-        "With the same scatter you can make {:.0} % (95 %: {:+.0} to {:+.0} points): {changes}.",
+        "With the same scatter you can make {:.0} %, {:.0} points more (95 %: {:+.0} to {:+.0}): {changes}.",
         100.0 * (p + gain.mean),
+        100.0 * gain.mean,
         100.0 * gain.low,
         100.0 * gain.high
     );
@@ -190,7 +192,8 @@ pub fn advice_text(
             .filter(|(_, shots)| *shots > 0)
             .map_or_else(String::new, |(made, shots)| {
                 let count = wilson_interval(made, shots);
-                let but = if count.low <= p.high && p.low <= count.high {
+                let error = libm::hypot(0.25 * (count.high - count.low), p.sd);
+                let but = if libm::fabs(count.share - p.mean) < 2.0 * error {
                     String::new()
                 } else {
                     format!(
@@ -290,6 +293,10 @@ pub fn advice_text(
             text += &format!("  {what:<42} {}\n", points(&step.gain));
             from = step.release;
         }
+    }
+    let is_at_limit = |best: &BestShot| best.at_limits.contains(&Limit::MaxBackspin);
+    if advice.best.as_ref().is_some_and(is_at_limit) {
+        text += "  The best shot uses all the backspin allowed: max_backspin of the profile, assumed.\n";
     }
     if advice.spin != SpinSource::Measured {
         text += &format!(

@@ -129,6 +129,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         100.0 * posterior.prior_weights[1],
         100.0 * posterior.prior_weights[2]
     );
+    text += "The intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.\n";
     for warning in &fit.warnings {
         text += &format!("warning: {warning}\n");
     }

@@ -43,6 +43,12 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
         source.tracker.0, source.tracker.1, source.physics
     ));
     line("# An error is the root mean square over all draws; its interval and its source are beside it.".to_owned());
+    if fit.places.len() > 1 {
+        line(format!(
+            "# The location, the usual shot and `speed` are those of the first of {} places.",
+            fit.places.len()
+        ));
+    }
     for warning in &fit.warnings {
         line(format!("# Warning: {warning}."));
     }
@@ -59,12 +65,21 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     ));
     line(String::new());
     line("[shooter.errors]".to_owned());
+    let has_growth = fit.posterior.growth_terms > 0;
+    let of_speed = comment("speed_sd");
     line(format!(
         "speed = \"{:.5} ft/s\"  {}",
         errors.c10_m_s / FOOT_M,
-        comment("speed_sd")
+        if has_growth {
+            format!(
+                "# c10; with c11 and c12 {}",
+                of_speed.trim_start_matches("# ")
+            )
+        } else {
+            of_speed
+        }
     ));
-    if fit.posterior.growth_terms > 0 {
+    if has_growth {
         line(format!("c11 = {:.6}", errors.c11));
         line(format!("c12 = \"{:.7} s/ft\"", errors.c12_s_m * FOOT_M));
     }

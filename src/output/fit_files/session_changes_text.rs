@@ -131,8 +131,8 @@ fn verdict(changes: &[SessionChange]) -> String {
                 ) + &values_in_words(changes);
             }
             format!(
-                "These shots do not show that the chance of a shot changed: it {direction} by {points:.0} {unit} \
-                 ({interval}). The chance that it {direction} at all is {sure:.0} %.\n"
+                "These shots do not show that the chance of a shot changed. The best estimate is that it \
+                 {direction} by {points:.0} {unit} ({interval}), and it {direction} at all with {sure:.0} %.\n"
             )
         };
     }

@@ -117,42 +117,85 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     let (long, _) = units.length();
     let speed_unit = format!("{long}/s");
     let tolerance_unit = format!("{long}/s, deg");
-    let header = [
+    // One angle needs no column of its own: there is room for both sides of the margins.
+    let is_one_angle = table.angles_rad.len() == 1;
+    let header: [Vec<&str>; 2] = if is_one_angle {
         [
-            "from", "angle", "speed", "pitch", "aim", "spin", "time", "entry", "P", "margin",
-            "goes in",
-        ],
+            vec![
+                "from", "speed", "pitch", "aim", "spin", "time", "entry", "P", "margin", "margin",
+                "goes in",
+            ],
+            vec![
+                long,
+                &speed_unit,
+                "deg",
+                "deg",
+                "rev/s",
+                "s",
+                "deg",
+                "",
+                &speed_unit,
+                "deg",
+                "",
+            ],
+        ]
+    } else {
         [
-            long,
-            "deg",
-            &speed_unit,
-            "deg",
-            "deg",
-            "rev/s",
-            "s",
-            "deg",
-            "",
-            &tolerance_unit,
-            "",
-        ],
-    ];
+            vec![
+                "from", "angle", "speed", "pitch", "aim", "spin", "time", "entry", "P", "margin",
+                "goes in",
+            ],
+            vec![
+                long,
+                "deg",
+                &speed_unit,
+                "deg",
+                "deg",
+                "rev/s",
+                "s",
+                "deg",
+                "",
+                &tolerance_unit,
+                "",
+            ],
+        ]
+    };
+    let widths: &[usize] = if is_one_angle {
+        &[6, 5, 5, 6, 5, 4, 5, 5, 10, 8]
+    } else {
+        &[6, 5, 6, 5, 6, 5, 4, 5, 5, 10]
+    };
     let mut text = String::new();
     for sentence in [
         shooter_note(table, profile, units),
         physics_note(profile, units),
         format!(
             "{}. from: distance from the hoop's centre. aim: positive to the left. P: \
-             the chance of each. margin: by how much speed and pitch can be off, to the side that allows less (CSV and JSON have both), one \
+             the chance of each. margin: by how much speed and pitch can be off, {}, one \
              at a time and with all else exact, until the shot first misses (beyond that more may go \
              in). time, entry: where it \
-             first falls to the height of the hoop, as if there were no ring.",
-            what_shots(table.kind)
+             first falls to the height of the hoop, as if there were no ring (-: it hits the ring from below first; time is then that of the \
+             make).{}",
+            what_shots(table.kind),
+            if is_one_angle {
+                "down and up"
+            } else {
+                "to the side that allows less (CSV and JSON have both)"
+            },
+            if table.added_distances_m.is_empty() && table.added_angles_rad.is_empty() {
+                ""
+            } else {
+                " +: added for the interpolation."
+            }
         ),
     ] {
         text += &wrapped(&sentence);
     }
     for cells in header {
-        text += &line(&cells.map(str::to_owned));
+        text += &line(
+            &cells.into_iter().map(str::to_owned).collect::<Vec<_>>(),
+            widths,
+        );
     }
     let columns = columns(table.kind, units);
     let cell = |shot: &TableShot, i: usize| {
@@ -174,29 +217,47 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         let (decimals, size) = [(2, units.length().1), (2, DEGREE_RAD)][i];
         format!("{:.decimals$}", below.min(above) / size)
     };
+    let both_sides = |shot: &TableShot, i: usize| {
+        let (decimals, size) = [(2, units.length().1), (1, DEGREE_RAD)][i];
+        let [below, above] = shot.tolerances[i].map(|side| {
+            let value = side / size;
+            let decimals = if value < 9.95 { decimals } else { 0 };
+            format!("{value:.decimals$}")
+        });
+        format!("-{below}+{above}")
+    };
     for TableNode {
         distance,
         angle,
+        is_added,
         shot,
-        ..
     } in nodes(table, units)
     {
-        text += &match shot {
-            Some(shot) => line(&[
-                short(distance),
-                format!("{angle:.1}"),
-                cell(shot, 0),
-                cell(shot, 1),
-                cell(shot, 2),
-                cell(shot, 3),
-                cell(shot, 4),
-                cell(shot, 5),
-                cell(shot, 6),
-                format!("{}, {}", margin(shot, 0), margin(shot, 1)),
-                shot.outcome.name().to_owned(),
-            ]),
-            None => format!("{:>6} {angle:>5.1} no shot goes in\n", short(distance)),
+        let from = format!("{distance:.2}");
+        let from = format!(
+            "{}{}",
+            if is_added { "+" } else { "" },
+            from.trim_end_matches('0').trim_end_matches('.')
+        );
+        let mut cells = vec![from];
+        if !is_one_angle {
+            cells.push(format!("{angle:.1}"));
+        }
+        let Some(shot) = shot else {
+            text += &format!(
+                "{} no shot within the limits goes in\n",
+                line(&cells, widths).trim_end_matches('\n')
+            );
+            continue;
         };
+        cells.extend((0..7).map(|i| cell(shot, i)));
+        if is_one_angle {
+            cells.extend([both_sides(shot, 0), both_sides(shot, 1)]);
+        } else {
+            cells.push(format!("{}, {}", margin(shot, 0), margin(shot, 1)));
+        }
+        cells.push(shot.outcome.name().to_owned());
+        text += &line(&cells, widths);
     }
     let notes = notes(table, units);
     text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
@@ -212,14 +273,14 @@ pub fn what_shots(kind: TableKind) -> String {
 }
 
 /// A line of the table for people.
-fn line(cells: &[String; 11]) -> String {
-    const WIDTHS: [usize; 10] = [6, 5, 6, 5, 6, 5, 4, 5, 5, 10];
+fn line(cells: &[String], widths: &[usize]) -> String {
     let mut line = String::new();
-    for (cell, width) in cells.iter().zip(WIDTHS) {
+    for (cell, width) in cells.iter().zip(widths) {
         line += &format!("{cell:>width$} ");
     }
-    line.push(' ');
-    line += &cells[WIDTHS.len()];
+    if let Some(last) = cells.get(widths.len()) {
+        line += last;
+    }
     line.truncate(line.trim_end().len());
     line + "\n"
 }
