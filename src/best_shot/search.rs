@@ -633,7 +633,8 @@ impl BestShotSearch<'_> {
     }
 }
 
-/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles (or speeds) away
+/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles (or
+/// speeds) away
 /// from those before.
 fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
     let mut order: Vec<(usize, Candidate)> = maxima

@@ -273,7 +273,12 @@ fn repetition(
         .map(|(_, value)| (value(truth), posterior.draws.iter().map(value).collect()))
         .collect();
     if with_p {
-        judged.push(probabilities(&posterior, truth, seed));
+        // The shots of a cell with heavy tails have them, and so has their P.
+        let with_tails = Draw {
+            tail_weight: cell.tails.map_or(0.0, |freedom| 1.0 / freedom),
+            ..truth.clone()
+        };
+        judged.push(probabilities(&posterior, &with_tails, seed));
     }
     let weights: Vec<f64> = posterior.draws.iter().map(weight_of_aims).collect();
     judged

@@ -88,8 +88,8 @@ pub(super) fn table_shot(
 
 /// When an error-free shot first falls to the height of the hoop, s, and its angle below the
 /// horizontal then, rad. The ring is left out: times after bounces off it would jump from place to
-/// place. A shot that meets the board first is followed from where it leaves it. `None` for one that
-/// would fall behind the board.
+/// place. A shot that meets the board first is followed from where it leaves it. `None` for one
+/// that would fall behind the board.
 fn fall_to_hoop(here: &Profile, nominal: &Nominal) -> Option<(f64, f64)> {
     let simulator = here.simulator();
     let release = here.release(nominal);

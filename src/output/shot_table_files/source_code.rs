@@ -57,8 +57,8 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 10] {
     ]
 }
 
-/// Of the last values, tolerances and kind, the smaller one holds between two nodes. (Both nodes of a
-/// cell have the same kind.)
+/// Of the last values, tolerances and kind, the smaller one holds between two nodes. (Both nodes
+/// of a cell have the same kind.)
 const NOT_INTERPOLATED: usize = 3;
 
 /// The source in a language (Java: with the name of the class).
