@@ -274,10 +274,8 @@ fn repetition(
         .collect();
     if with_p {
         // The shots of a cell with heavy tails have them, and so has their P.
-        let with_tails = Draw {
-            tail_weight: cell.tails.map_or(0.0, |freedom| 1.0 / freedom),
-            ..truth.clone()
-        };
+        let mut with_tails = truth.clone();
+        with_tails.tail_weight = cell.tails.map_or(0.0, |freedom| 1.0 / freedom);
         judged.push(probabilities(&posterior, &with_tails, seed));
     }
     let weights: Vec<f64> = posterior.draws.iter().map(weight_of_aims).collect();
