@@ -309,21 +309,27 @@ impl BestShotSearch<'_> {
     /// a higher P than those at the speeds beside it. One pitch angle can have several such
     /// speeds, for example over and off the front of the ring.
     fn maxima_by_speed(&self, table: &NominalProbabilities) -> [Vec<Option<Candidate>>; 2] {
-        let mut best = ShotKind::ALL.map(|_| vec![None::<Candidate>; table.speed_m_s.len()]);
-        for speed in 0..table.speed_m_s.len() {
+        let best_at = |speed: usize| {
+            let mut best: [Option<Candidate>; 2] = [None, None];
             for polar in 0..table.polar_rad.len() {
                 for spin in 0..table.backspin_rad_s.len() {
                     let (p, nominal) = table.at([0, polar, spin, speed]);
                     if !(p > 0.0) {
                         continue;
                     }
-                    let slot = &mut best[ShotKind::of(self.profile, &nominal).index()][speed];
+                    let slot = &mut best[ShotKind::of(self.profile, &nominal).index()];
                     if slot.is_none_or(|(most, _)| p > most) {
                         *slot = Some((p, nominal));
                     }
                 }
             }
-        }
+            best
+        };
+        let rows: Vec<[Option<Candidate>; 2]> = (0..table.speed_m_s.len()).map(best_at).collect();
+        let best = ShotKind::ALL.map(|kind| {
+            let of_kind = rows.iter().map(|row| row[kind.index()]);
+            of_kind.collect::<Vec<_>>()
+        });
         best.map(|by_speed| {
             let p = |i: Option<usize>| {
                 i.and_then(|i| by_speed.get(i).copied().flatten())
