@@ -589,7 +589,7 @@ fn campaign_unseen_backspin_is_told_by_made_and_missed() {
 /// `design` against the scatter of the answers of repeated tests. 400 tests know a scatter to 3.5
 /// %.
 #[test]
-#[ignore = "twelve minutes: cargo test --test validation campaign_design -- --ignored --nocapture"]
+#[ignore = "two minutes: cargo test --test validation campaign_design -- --ignored --nocapture"]
 fn campaign_design_agrees_with_repeated_tests() {
     let repetitions: u64 =
         std::env::var("BANKSHOT_REPETITIONS").map_or(400, |n| n.parse().unwrap());
