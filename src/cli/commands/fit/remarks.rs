@@ -1,0 +1,79 @@
+//! What is said beside a fit: shots that were kept out, sessions, columns, heights.
+
+use crate::cli::measured_shots_flags::MeasuredFile;
+use crate::cli::terminal::print_remark;
+use crate::measured_shots::shooter_shots::ShooterShots;
+use crate::units::UnitSystem;
+
+/// Rejected rows that are named.
+const MOST_NAMED: usize = 20;
+
+/// Names the shots that were kept out, or the first of them.
+pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only: bool) {
+    if shots.rejected.is_empty() {
+        return;
+    }
+    let of = if shots.name.is_empty() {
+        String::new()
+    } else {
+        format!("{}: ", shots.name)
+    };
+    // Of several shooters, fewer of each.
+    let most_named = if is_only { MOST_NAMED } else { 3 };
+    for (row, reason) in shots.rejected.iter().take(most_named) {
+        print_remark(&format!(
+            "{}: {} {row}: {reason}",
+            file.file.display(),
+            file.row_name
+        ));
+    }
+    if shots.rejected.len() > most_named {
+        print_remark(&format!(
+            "... and {} more; `fit` lists all in its shots.csv",
+            shots.rejected.len() - most_named
+        ));
+    }
+    print_remark(&format!(
+        "{of}{} shots are used, {} were kept out",
+        shots.shots.len(),
+        shots.rejected.len()
+    ));
+}
+
+/// Says that sessions were fitted as one.
+pub(super) fn print_sessions(shooters: &[ShooterShots]) {
+    let mut names: Vec<&str> = Vec::new();
+    for name in shooters.iter().flat_map(|shots| &shots.sessions) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    if names.len() > 1 {
+        print_remark(&format!(
+            "{} sessions are fitted as one; `bankshot compare-sessions` compares two of them",
+            names.len()
+        ));
+    }
+}
+
+/// Names the columns that nothing was taken from.
+pub(super) fn print_unused(file: &MeasuredFile) {
+    if !file.unused.is_empty() {
+        print_remark(&format!(
+            "columns that were not used: {}",
+            file.unused.join(", ")
+        ));
+    }
+}
+
+/// Says that the heights of the releases differ, and what is taken for P.
+pub(super) fn print_merged_heights(shots: &ShooterShots, units: UnitSystem) {
+    if let Some([least, greatest]) = shots.merged_heights_m {
+        let (long, metre) = units.length();
+        print_remark(&format!(
+            "the releases are {:.2} to {:.2} {long} high; P is that of their mean height",
+            least / metre,
+            greatest / metre
+        ));
+    }
+}

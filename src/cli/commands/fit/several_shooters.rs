@@ -1,0 +1,310 @@
+//! The fits of several shooters: a folder for each, and one table over all.
+
+use super::FitOptions;
+use super::one_shooter::write;
+use super::remarks::{print_sessions, print_unused};
+use crate::cli::failure::{Failure, code};
+use crate::cli::measured_shots_flags::MeasuredFile;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::run_folder;
+use crate::cli::terminal::{print_answer, print_remark};
+use crate::fitting::{Place, ShooterFit};
+use crate::measured_shots::shooter_shots::ShooterShots;
+use crate::output::atomic_file;
+use crate::plots::svg::shortened;
+use crate::probability::Progress;
+use crate::units::{DEGREE_RAD, UnitSystem};
+use comfy_table::{Table, presets};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// Fits several shooters side by side: one folder for each, and one table.
+pub(super) fn fit(
+    file: &MeasuredFile,
+    out: &Path,
+    options: &FitOptions,
+    quiet: bool,
+) -> Result<u8, Failure> {
+    let bars = ProgressBars::new(quiet);
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for shots in &file.shooters {
+        let name = run_folder::safe_name(&file.name_of(shots));
+        let mut folder = out.join(&name);
+        let mut number = 1;
+        // Different names can be the same as folders.
+        while folders.contains(&folder) {
+            number += 1;
+            folder = out.join(format!("{name}-{number}"));
+        }
+        folders.push(folder);
+    }
+    bars.begin("fitting shooters", file.shooters.len() as u64);
+    let rows = file
+        .shooters
+        .par_iter()
+        .zip(&folders)
+        .map(|(shots, folder)| {
+            let row = fit_one(file, shots, folder, options);
+            bars.advance(1);
+            row
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bars.end();
+    if rows.iter().all(|row| row.result.is_err()) {
+        return Err(Failure::usage(format!(
+            "{}: no shooter could be fitted",
+            options.shots.display()
+        )));
+    }
+    let mut records = Vec::new();
+    // Places are only named where there are several.
+    let names_places = rows
+        .iter()
+        .any(|row| row.result.as_ref().is_ok_and(|places| places.len() > 1));
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    let place = names_places.then_some("from");
+    let header = ["shooter"].into_iter().chain(place);
+    table.set_header(header.chain(["shots", "made", "expected", "P of the usual\nshot (95 %)"]));
+    let mut worst = code::DONE;
+    for row in &rows {
+        records.extend(row.records.clone());
+        match &row.result {
+            Ok(places) => {
+                for place in places {
+                    let from = names_places.then_some(&place.from);
+                    let cells = std::iter::once(&place.shooter).chain(from);
+                    table.add_row(cells.chain(&place.cells));
+                }
+            }
+            Err(error) => {
+                print_remark(error);
+                worst = code::INCOMPLETE;
+            }
+        }
+    }
+    let path = out.join(TABLE_FILE);
+    write_table(
+        &path,
+        &table_header(options.measured.unit_system()),
+        &records,
+    )?;
+    let assumptions = match &file.shooters[..] {
+        [first, ..] => {
+            let source = file.source(first);
+            format!(
+                "{} shooters: {}, tracker {} ({}), physics {}\n",
+                file.shooters.len(),
+                source.kind,
+                source.tracker.0,
+                source.tracker.1,
+                source.physics
+            )
+        }
+        [] => String::new(),
+    };
+    print_answer(&format!("{assumptions}{}\n", table.trim_fmt()))?;
+    for warning in rows.iter().flat_map(|row| &row.warnings) {
+        print_remark(warning);
+    }
+    if !quiet {
+        print_sessions(&file.shooters);
+        print_unused(file);
+        print_remark(&format!(
+            "written: {}, and a folder for each shooter; next: bankshot advise {}",
+            path.display(),
+            out.display()
+        ));
+    }
+    Ok(worst)
+}
+
+/// A shooter's row of the tables.
+struct ShooterRow {
+    /// The rows of shooters.csv, one for each place.
+    records: Vec<Record>,
+    /// A row of the printed table for each place, or why there is no fit.
+    result: Result<Vec<PlaceRow>, String>,
+    warnings: Vec<String>,
+}
+
+/// A place in a cell of the table, such as `13.75 ft, 0 deg, from 7.00 ft up`.
+fn place_in_short(place: &Place, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    format!(
+        "{:.2} {long}, {:.0} deg,\n{:.2} {long} up",
+        place.location.distance_m / metre,
+        place.location.angle_rad / DEGREE_RAD,
+        place.release_height_m / metre
+    )
+}
+
+/// A row of the printed table.
+struct PlaceRow {
+    /// The name, in the first row of a shooter.
+    shooter: String,
+    from: String,
+    /// Shots, made, expected, P.
+    cells: [String; 4],
+}
+
+fn fit_one(
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    folder: &Path,
+    options: &FitOptions,
+) -> Result<ShooterRow, Failure> {
+    let name = file.name_of(shots);
+    let fit = match file.fit(shots, &file.physics) {
+        Ok(fit) => fit,
+        Err(error) => {
+            let mut record = Record::default();
+            record[0].clone_from(&name);
+            record[1] = shots.shots.len().to_string();
+            record[10] = error.to_string();
+            return Ok(ShooterRow {
+                records: vec![record],
+                result: Err(format!("{name}: {error}")),
+                warnings: Vec::new(),
+            });
+        }
+    };
+    write(folder, file, (shots, &fit, &[]), options)?;
+    let mut places = Vec::new();
+    for (index, place) in fit.places.iter().enumerate() {
+        let p = fit.probabilities[index].interval();
+        let makes = fit.makes.at_place(index);
+        let percent = |p: f64| format!("{:.1}", 100.0 * p);
+        // A place takes two lines, so the interval does too.
+        let is_one = fit.places.len() == 1;
+        let [made, expected] = if makes.labelled > 0 {
+            [
+                format!("{} of {}", makes.made, makes.labelled),
+                format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
+            ]
+        } else {
+            [String::new(), String::new()]
+        };
+        places.push(PlaceRow {
+            shooter: if index == 0 {
+                shortened(&name, 20)
+            } else {
+                String::new()
+            },
+            from: place_in_short(place, options.measured.unit_system()),
+            cells: [
+                makes.shots.len().to_string(),
+                made,
+                expected,
+                format!(
+                    "{} %{}{} to {}{}",
+                    percent(p.mean),
+                    if is_one { " (" } else { "\n" },
+                    percent(p.low),
+                    percent(p.high),
+                    if is_one { ")" } else { "" }
+                ),
+            ],
+        });
+    }
+    Ok(ShooterRow {
+        records: records(&name, &fit, folder, options.measured.unit_system()),
+        result: Ok(places),
+        warnings: fit
+            .warnings
+            .iter()
+            .map(|warning| format!("{name}: warning: {warning}"))
+            .collect(),
+    })
+}
+
+/// The table over the shooters of a file, in the folder of their fits.
+pub(super) const TABLE_FILE: &str = "shooters.csv";
+
+/// A row of [`TABLE_FILE`].
+type Record = [String; 11];
+
+fn table_header(units: UnitSystem) -> Record {
+    let (long, _) = units.length();
+    [
+        "shooter".to_owned(),
+        "shots".to_owned(),
+        "made".to_owned(),
+        format!("distance_{long}"),
+        "court_angle_deg".to_owned(),
+        format!("release_height_{long}"),
+        "probability".to_owned(),
+        "low".to_owned(),
+        "high".to_owned(),
+        "folder".to_owned(),
+        "error".to_owned(),
+    ]
+}
+
+/// The rows of a fit, one for each place.
+fn records(name: &str, fit: &ShooterFit, folder: &Path, units: UnitSystem) -> Vec<Record> {
+    let (_, metre) = units.length();
+    let places = fit.places.iter().enumerate();
+    places
+        .map(|(index, place)| {
+            let p = fit.probabilities[index].interval();
+            let makes = fit.makes.at_place(index);
+            let made = (makes.labelled > 0).then(|| makes.made.to_string());
+            [
+                name.to_owned(),
+                makes.shots.len().to_string(),
+                made.unwrap_or_default(),
+                format!("{:.3}", place.location.distance_m / metre),
+                format!("{:.2}", place.location.angle_rad / DEGREE_RAD),
+                format!("{:.3}", place.release_height_m / metre),
+                format!("{:.4}", p.mean),
+                format!("{:.4}", p.low),
+                format!("{:.4}", p.high),
+                folder.display().to_string(),
+                String::new(),
+            ]
+        })
+        .collect()
+}
+
+fn write_table(path: &Path, header: &Record, records: &[Record]) -> Result<(), Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for record in std::iter::once(header).chain(records) {
+        writer.write_record(record).map_err(Failure::bug)?;
+    }
+    let bytes = writer.into_inner().map_err(Failure::bug)?;
+    atomic_file::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))
+}
+
+/// Puts a fit that was made alone into the table of the folder above, in place of that shooter's
+/// rows.
+pub(super) fn renew_table(
+    file: &MeasuredFile,
+    (shots, fit): (&ShooterShots, &ShooterFit),
+    folder: &Path,
+    options: &FitOptions,
+) -> Result<(), Failure> {
+    let Some(path) = folder.parent().map(|above| above.join(TABLE_FILE)) else {
+        return Ok(());
+    };
+    let header = table_header(options.measured.unit_system());
+    let Ok(mut reader) = csv::Reader::from_path(&path) else {
+        return Ok(());
+    };
+    let rows: Vec<Record> = reader.deserialize().filter_map(Result::ok).collect();
+    let is_same_table = reader.headers().is_ok_and(|own| own.iter().eq(&header));
+    let name = file.name_of(shots);
+    let is_own = |row: &Record| row[0] == name;
+    let Some(first) = rows.iter().position(is_own).filter(|_| is_same_table) else {
+        print_remark(&format!(
+            "{}: is not renewed: it has no row of {name}, or is in other units",
+            path.display()
+        ));
+        return Ok(());
+    };
+    let units = options.measured.unit_system();
+    let mut renewed: Vec<Record> = rows[..first].to_vec();
+    renewed.extend(records(&name, fit, folder, units));
+    renewed.extend(rows[first..].iter().filter(|row| !is_own(row)).cloned());
+    write_table(&path, &header, &renewed)
+}

@@ -1,0 +1,187 @@
+//! `--free`: what the shots say of a parameter that was not measured.
+
+use crate::cli::failure::Failure;
+use crate::cli::measured_shots_flags::MeasuredFile;
+use crate::fitting::{
+    ShooterFit, SpinSource, UnseenParameter, fit_drag_coefficient, likelihood_curve,
+};
+use crate::measured_shots::shooter_shots::ShooterShots;
+use crate::model::{Preset, SolidId};
+use crate::units::{REV_RAD, rounded};
+use serde_json::{Value, json};
+
+/// Refuses names that `--free` does not know.
+pub(super) fn check_names(free: &[String]) -> Result<(), Failure> {
+    for name in free {
+        if name != "drag_coefficient" && UnseenParameter::named(name).is_none() {
+            return Err(Failure::usage(format!(
+                "--free {name}: must be backspin, hoop_restitution or drag_coefficient"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses to ask shots for what they cannot tell, before anything is written.
+pub(super) fn check_shots(
+    free: &[String],
+    shots: &ShooterShots,
+    fit: &ShooterFit,
+) -> Result<(), Failure> {
+    let (made, labelled) = (fit.makes.made, fit.makes.labelled);
+    for name in free {
+        if name == "drag_coefficient" {
+            if shots.tracks.is_empty() {
+                return Err(Failure::usage(
+                    "--free drag_coefficient: only trajectories tell it",
+                ));
+            }
+        } else if labelled == 0 || made == 0 || made == labelled {
+            return Err(Failure::usage(format!(
+                "--free {name}: needs shots that were made and shots that were missed; {made} of {labelled} with a result were made"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// What the shots say of a parameter that was not measured.
+pub(super) struct UnmeasuredParameter {
+    pub(super) text: String,
+    pub(super) json: Value,
+}
+
+/// The fit for programs, with the parameters that `--free` asked for.
+pub(super) fn with_free(mut fit: Value, free: &[UnmeasuredParameter]) -> Value {
+    if !free.is_empty() {
+        fit["free"] = free
+            .iter()
+            .map(|parameter| parameter.json.clone())
+            .collect();
+    }
+    fit
+}
+
+/// What the shots say of a parameter that was not measured, and how to use it.
+pub(super) fn estimate(
+    name: &str,
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    fit: &ShooterFit,
+) -> Result<UnmeasuredParameter, Failure> {
+    let Some(parameter) = UnseenParameter::named(name) else {
+        let tracks: Vec<_> = shots.tracks.iter().map(Vec::as_slice).collect();
+        let backspin = file.backspin_rad_s.unwrap_or(0.0);
+        let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
+        return Ok(match found {
+            Some((best, [low, high])) => UnmeasuredParameter {
+                text: format!(
+                    "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n{}",
+                    tracks.len(),
+                    file.physics_name,
+                    file.physics.air.drag_coefficient,
+                    physics_with(file, &format!("drag_coefficient = {best:.3}"))
+                ),
+                json: json!({ "name": name, "unit": "", "best": best, "low": low, "high": high, "is_decided": true }),
+            },
+            None => UnmeasuredParameter {
+                text: "drag_coefficient  these flights cannot tell\n".to_owned(),
+                json: json!({ "name": name, "unit": "", "is_decided": false }),
+            },
+        });
+    };
+    let labelled = fit.makes.labelled;
+    let is_measured = shots.spin == SpinSource::Measured;
+    let curve = likelihood_curve(
+        parameter,
+        &fit.profiles,
+        &shots.shots,
+        &fit.typical,
+        is_measured,
+    )?;
+    let (unit, size) = match parameter {
+        UnseenParameter::Backspin => (" rev/s", REV_RAD),
+        UnseenParameter::HoopRestitution => ("", 1.0),
+    };
+    let best = curve.best / size;
+    let (fitted_with, use_it) = match parameter {
+        UnseenParameter::Backspin => (
+            format!(
+                "the fit's mean is {:.2} rev/s",
+                fit.typical.means[0][3] / REV_RAD
+            ),
+            format!(
+                "This fit did not use it. To use it, fit again with --backspin '{best:.2} rev/s'; \
+                 that takes the value as exact.\n"
+            ),
+        ),
+        UnseenParameter::HoopRestitution => (
+            format!(
+                "the physics {} has {:.2}",
+                file.physics_name,
+                file.physics.restitution_on(SolidId::Ring)
+            ),
+            physics_with(file, &format!("hoop_restitution = {best:.2}")),
+        ),
+    };
+    let [low, high] = curve.interval.map(|end| end / size);
+    let ends = [curve.points.first(), curve.points.last()];
+    let is_at_end = ends.iter().flatten().any(|(end, _)| *end == curve.best);
+    let mut text = format!(
+        "{name}  {best:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}; {fitted_with}\n",
+        if curve.is_decided {
+            ""
+        } else if is_at_end {
+            "; the likeliest value is at an end of the range, so more than this value is wrong: look at distance, release height, air, tracker, and how a make was recorded"
+        } else {
+            "; the interval reaches the end of the range: these shots cannot tell"
+        }
+    );
+    let usual = parameter.usual_range();
+    let is_usual = (usual.0..=usual.1).contains(&curve.best);
+    if curve.is_decided && !is_usual {
+        text += &format!(
+            "That is not what sources give ({:.2} to {:.2}{unit}). Makes and misses answer for all that is wrong here: look first at distance, release height, air, tracker, and how a make was recorded.\n",
+            usual.0 / size,
+            usual.1 / size
+        );
+    }
+    for (value, logarithm) in &curve.points {
+        text += &format!(
+            "  {:>7.3}{unit}  log-likelihood {logarithm:>8.2}\n",
+            value / size
+        );
+    }
+    if curve.is_decided && is_usual && !(parameter == UnseenParameter::Backspin && is_measured) {
+        text += &use_it;
+    }
+    let curve_json = curve.points.iter().map(|(value, logarithm)| {
+        json!({ "value": rounded(value / size), "log_likelihood": rounded(*logarithm) })
+    });
+    let json = json!({
+        "name": name,
+        "unit": unit.trim(),
+        "best": rounded(best),
+        "low": rounded(low),
+        "high": rounded(high),
+        "is_decided": curve.is_decided,
+        "is_usual": is_usual,
+        "curve": curve_json.collect::<Value>(),
+    });
+    Ok(UnmeasuredParameter { text, json })
+}
+
+/// How the fit is made with another constant of the physics.
+fn physics_with(file: &MeasuredFile, line: &str) -> String {
+    if Preset::named(&file.physics_name).is_some() {
+        format!(
+            "This fit did not use it. To use it, write a file with these lines, and fit again with --physics FILE:\n  [physics]\n  preset = \"{}\"\n  {line}\n",
+            file.physics_name
+        )
+    } else {
+        format!(
+            "This fit did not use it. To use it, write {line} into [physics] of {}, and fit again.\n",
+            file.physics_name
+        )
+    }
+}
