@@ -148,7 +148,7 @@ fn load(
 fn warnings_of_fit(profile: &Path) -> Vec<String> {
     let is_of_fit = profile
         .file_name()
-        .is_some_and(|name| name == "profile.toml");
+        .is_some_and(|name| name.to_string_lossy().starts_with("profile"));
     let fit = profile.with_file_name("fit.json");
     if !is_of_fit || !fit.is_file() {
         return Vec::new();

@@ -195,7 +195,7 @@ angle = \"0 deg\"
     fn contract_an_error_in_percent_grows_with_the_value() {
         let percent = PROFILE
             .replace("0.25 ft/s", "1.5 %")
-            .replace("0.3 rev/s", "5 %");
+            .replace("0.3 rev/s", "5 percent");
         let percent = parse_profile(&percent, "a").unwrap();
         let written = PROFILE
             .replace("speed = \"0.25 ft/s\"", "c10 = \"0 ft/s\"\nc11 = 0.015")

@@ -1,7 +1,7 @@
 //! Reads TOML tables key by key. It collects the errors instead of stopping at the first.
 
 use super::diagnostics::{ConfigError, Diagnostic};
-use crate::units::{Dimension, meant_by, parse};
+use crate::units::{Dimension, PERCENT, meant_by, parse};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -263,8 +263,9 @@ impl<'t, 'i> TableReader<'t, 'i> {
             return None;
         }
         let name = names.into_iter().find(|name| self.has(name))?;
+        let is_percentage = |text: &str| PERCENT.iter().any(|unit| text.ends_with(unit));
         let text = match self.table?.get(name)?.get_ref() {
-            DeValue::String(text) if text.trim_end().ends_with('%') => text.to_string(),
+            DeValue::String(text) if is_percentage(text.trim_end()) => text.to_string(),
             _ => return None,
         };
         let share = parse(&text, Dimension::Number).ok()?;

@@ -120,7 +120,10 @@ impl std::fmt::Display for FitWarning {
                 out,
                 "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in; {LOOK_AT}"
             ),
-            Self::Drift(name, p) => write!(out, "{name} drifts over the session (p = {p:.4})"),
+            Self::Drift(name, p) => write!(
+                out,
+                "{name} drifts from the first shot to the last (p = {p:.4})"
+            ),
             Self::SerialCorrelation(name, p) => write!(
                 out,
                 "{name}: a shot is like the one before it (p = {p:.4}); intervals are then too narrow"

@@ -124,7 +124,10 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         return text;
     }
     // One a line, so that they can be copied whole.
-    text += &format!("\nperhaps:\n  {}", maps.join(" \\\n  "));
+    text += &format!(
+        "\nadd to the command, where it fits:\n  {}",
+        maps.join(" \\\n  ")
+    );
     for quantity in has_no_unit {
         text += &format!(
             "\n  UNIT of {}: {}",

@@ -6,7 +6,7 @@ use crate::fitting::{
     CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, Values, landing_of, nominal_of,
     release_of_landing,
 };
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, INCH_M, UnitSystem};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -15,6 +15,9 @@ const MISSED: &str = "#d55e00";
 const UNKNOWN: &str = "#666666";
 const ZONE: [u8; 4] = [190, 225, 190, 255];
 const OUTSIDE: [u8; 4] = [250, 250, 250, 255];
+/// The picture of the make zone reaches this far from the hoop's centre, at least and at most.
+const LEAST_HALF_WIDTH_M: f64 = 16.0 * INCH_M;
+const MOST_HALF_WIDTH_M: f64 = 36.0 * INCH_M;
 /// Cells of the make zone along depth and across.
 const ZONE_CELLS: (usize, usize) = (72, 72);
 /// Two-dimensional normal: 95 % are within this many standard deviations.
@@ -24,7 +27,7 @@ const MOST_NAMED_SESSIONS: usize = 8;
 /// Points of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
-/// All plots of a fit at its first place. `sessions` has the session of each shot, with empty texts
+/// All plots of a fit; of several places, the releases and the make zone of each. `sessions` has the session of each shot, with empty texts
 /// where there is none.
 #[must_use]
 pub fn all(
@@ -33,10 +36,11 @@ pub fn all(
     sessions: &[String],
     units: UnitSystem,
 ) -> Vec<Plot> {
-    let mut plots = vec![
-        release_scatter(fit, shots, units),
-        make_zone(fit, shots, units),
-    ];
+    let mut plots = Vec::new();
+    for place in 0..fit.places.len() {
+        plots.push(release_scatter(fit, place, shots, units));
+        plots.push(make_zone(fit, place, shots, units));
+    }
     if !fit.makes.bins.is_empty() {
         plots.push(reliability(fit));
     }
@@ -56,6 +60,21 @@ fn named(fit: &ShooterFit, name: &str, what: &str, svg: Svg) -> Plot {
         caption: title.clone(),
         svg: svg.finish(&title),
     }
+}
+
+/// The name of a plot and what it shows, at a place.
+fn of_place(fit: &ShooterFit, place: usize, names: [&str; 2], units: UnitSystem) -> [String; 2] {
+    let [name, what] = names;
+    if fit.places.len() == 1 {
+        return [name.to_owned(), what.to_owned()];
+    }
+    let from = fit.places[place].location.in_words(units);
+    // The first place has the name that the only one would have.
+    let name = match place {
+        0 => name.to_owned(),
+        _ => format!("{name}_place_{}", place + 1),
+    };
+    [name, format!("{what}, place {}: {from}", place + 1)]
 }
 
 /// The marker of a shot.
@@ -93,8 +112,9 @@ fn key(svg: &mut Svg, (x, y): (f64, f64), shots: &[MeasuredRelease], last: &str)
     svg.text((at + 28.0, y), 11.0, Anchor::Start, last);
 }
 
-fn shots_here(shots: &[MeasuredRelease]) -> Vec<&MeasuredRelease> {
-    shots.iter().filter(|shot| shot.place == 0).collect()
+fn shots_at(shots: &[MeasuredRelease], place: usize) -> Vec<MeasuredRelease> {
+    let here = shots.iter().filter(|shot| shot.place == place);
+    here.cloned().collect()
 }
 
 /// A range of values with a margin.
@@ -106,12 +126,12 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// The 95 % ellipse of two of the values.
-fn ellipse(fit: &ShooterFit, (i, j): (usize, usize)) -> Vec<(f64, f64)> {
+/// The 95 % ellipse of two of the values at a place.
+fn ellipse(fit: &ShooterFit, place: usize, (i, j): (usize, usize)) -> Vec<(f64, f64)> {
     let draw = &fit.typical;
-    let sds = draw.sds_at(0);
+    let sds = draw.sds_at(place);
     let correlation = draw.correlation[(i, j)];
-    let (mean, other) = (draw.means[0][i], draw.means[0][j]);
+    let (mean, other) = (draw.means[place][i], draw.means[place][j]);
     let root = (1.0 - correlation * correlation).max(0.0).sqrt();
     (0..=ELLIPSE_POINTS)
         .map(|k| {
@@ -126,12 +146,18 @@ fn ellipse(fit: &ShooterFit, (i, j): (usize, usize)) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn release_scatter(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot {
+fn release_scatter(
+    fit: &ShooterFit,
+    place: usize,
+    shots: &[MeasuredRelease],
+    units: UnitSystem,
+) -> Plot {
     let (long, metre) = units.length();
-    let angle = fit.places[0].location.angle_rad;
-    let shots = shots_here(shots);
+    let angle = fit.places[place].location.angle_rad;
+    let shots = shots_at(shots, place);
+    let [name, title] = of_place(fit, place, ["releases", "Measured releases"], units);
     let mut svg = Svg::new(980.0, 470.0);
-    svg.heading((20.0, 26.0), 16.0, Anchor::Start, "Measured releases");
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
     let display = |k: usize, value: f64| match k {
         0 => value / metre,
         2 => (value - angle) / DEGREE_RAD,
@@ -144,7 +170,7 @@ fn release_scatter(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSyste
         "aim from the line to the hoop (deg, left is +)",
     ];
     for (panel, (i, j)) in [(0, 1), (2, 0)].into_iter().enumerate() {
-        let curve = ellipse(fit, (i, j));
+        let curve = ellipse(fit, place, (i, j));
         let x = range(
             shots
                 .iter()
@@ -177,44 +203,49 @@ fn release_scatter(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSyste
         );
         axes.draw(&mut svg, "", labels[i], labels[j]);
     }
-    let own: Vec<MeasuredRelease> = shots.into_iter().cloned().collect();
     key(
         &mut svg,
         (80.0, 452.0),
-        &own,
+        &shots,
         "95 % of the shooter's releases, without the tracker's error",
     );
-    named(fit, "releases", "measured releases", svg)
+    named(fit, &name, &title, svg)
 }
 
-/// The landing of a shot in short lengths: depth and right.
-fn landing(fit: &ShooterFit, values: &Values, inch: f64) -> Option<(f64, f64)> {
-    let simulator = fit.profiles[0].simulator();
-    let landing = landing_of(simulator, &fit.places[0], values)?;
+/// The landing of a shot in short lengths: right and depth.
+fn landing(fit: &ShooterFit, place: usize, values: &Values, inch: f64) -> Option<(f64, f64)> {
+    let simulator = fit.profiles[place].simulator();
+    let landing = landing_of(simulator, &fit.places[place], values)?;
     Some((landing.right_m / inch, landing.depth_m / inch))
 }
 
-fn make_zone(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> Plot {
+fn make_zone(
+    fit: &ShooterFit,
+    place_index: usize,
+    shots: &[MeasuredRelease],
+    units: UnitSystem,
+) -> Plot {
     let (short, inch) = units.short_length();
-    let shots = shots_here(shots);
-    let place = &fit.places[0];
-    let profile = &fit.profiles[0];
+    let shots = shots_at(shots, place_index);
+    let place = &fit.places[place_index];
+    let profile = &fit.profiles[place_index];
     let simulator = profile.simulator();
-    let usual = &fit.typical.means[0];
+    let usual = &fit.typical.means[place_index];
     let entry = landing_of(simulator, place, usual).map_or(0.75, |landing| landing.entry_angle_rad);
     let landings: Vec<((f64, f64), Option<bool>)> = shots
         .iter()
-        .filter_map(|shot| Some((landing(fit, &shot.values, inch)?, shot.made)))
+        .filter_map(|shot| Some((landing(fit, place_index, &shot.values, inch)?, shot.made)))
         .collect();
-    let half = 16.0 * 0.0254 / inch;
     let centre = CENTRE_DEPTH_M / inch;
-    let mut svg = Svg::new(640.0, 660.0);
-    svg.heading(
-        (20.0, 26.0),
-        16.0,
-        Anchor::Start,
-        "Where shots fall, and the make zone",
-    );
+    // As wide as the shots need it, within limits.
+    let farthest = |((x, y), _): &((f64, f64), Option<bool>)| x.abs().max((y - centre).abs());
+    let needed = 1.05 * landings.iter().map(farthest).fold(0.0, f64::max);
+    let half = needed.clamp(LEAST_HALF_WIDTH_M / inch, MOST_HALF_WIDTH_M / inch);
+    let outside = landings.iter().filter(|l| farthest(l) > half).count();
+    let names = ["make_zone", "Where shots fall, and the make zone"];
+    let [name, title] = of_place(fit, place_index, names, units);
+    let mut svg = Svg::new(640.0, 680.0);
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
     let axes = Axes {
         corner: (80.0, 70.0),
         size: (500.0, 500.0),
@@ -253,7 +284,7 @@ fn make_zone(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> 
         &format!("fill=\"none\" stroke=\"{FAINT}\" stroke-width=\"2\""),
     );
     // The ellipse of the landings, by the derivatives of the landing at the usual release.
-    let curve = landing_ellipse(fit, inch);
+    let curve = landing_ellipse(fit, place_index, inch);
     svg.clipped(axes.corner, axes.size, |svg| {
         for (at, made) in &landings {
             mark(svg, axes.pixel(*at), *made);
@@ -270,8 +301,12 @@ fn make_zone(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> 
         &format!("left and right of the shot's line ({short})"),
         &format!("depth from the front of the ring ({short})"),
     );
-    let own: Vec<MeasuredRelease> = shots.into_iter().cloned().collect();
-    key(&mut svg, (80.0, 626.0), &own, "95 % of the shooter's shots");
+    key(
+        &mut svg,
+        (80.0, 626.0),
+        &shots,
+        "95 % of the shooter's shots",
+    );
     svg.footnote(
         (80.0, 646.0),
         &format!(
@@ -279,14 +314,25 @@ fn make_zone(fit: &ShooterFit, shots: &[MeasuredRelease], units: UnitSystem) -> 
             entry / DEGREE_RAD
         ),
     );
-    named(fit, "make_zone", "where shots fall, and the make zone", svg)
+    if outside > 0 {
+        let lie = if outside == 1 {
+            "shot lies"
+        } else {
+            "shots lie"
+        };
+        svg.footnote(
+            (80.0, 664.0),
+            &format!("{outside} {lie} outside the picture."),
+        );
+    }
+    named(fit, &name, &title, svg)
 }
 
 /// The 95 % ellipse of right and depth.
-fn landing_ellipse(fit: &ShooterFit, inch: f64) -> Vec<(f64, f64)> {
-    let usual = &fit.typical.means[0];
-    let sds = fit.typical.sds_at(0);
-    let Some(centre) = landing(fit, usual, inch) else {
+fn landing_ellipse(fit: &ShooterFit, place: usize, inch: f64) -> Vec<(f64, f64)> {
+    let usual = &fit.typical.means[place];
+    let sds = fit.typical.sds_at(place);
+    let Some(centre) = landing(fit, place, usual, inch) else {
         return Vec::new();
     };
     let mut slopes = [(0.0, 0.0); 3];
@@ -295,7 +341,7 @@ fn landing_ellipse(fit: &ShooterFit, inch: f64) -> Vec<(f64, f64)> {
         let at = |sign: f64| {
             let mut moved = *usual;
             moved[i] += sign * step;
-            landing(fit, &moved, inch)
+            landing(fit, place, &moved, inch)
         };
         if let (Some(up), Some(down)) = (at(1.0), at(-1.0)) {
             *slope = ((up.0 - down.0) / 0.1, (up.1 - down.1) / 0.1);
@@ -414,23 +460,32 @@ fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
     let (long, metre) = units.length();
     let posterior = &fit.posterior;
     let of_sd = |i: usize, unit: f64| posterior.summary(|draw| draw.sds[i]).scaled(1.0 / unit);
-    let p = fit.probabilities[0].interval().scaled(100.0);
-    let mut rows: Vec<(String, Interval)> = vec![
-        ("P of the usual shot (%)".to_owned(), p),
+    let has_several_places = fit.places.len() > 1;
+    let mut rows: Vec<(String, Interval)> = Vec::new();
+    for (place, probabilities) in fit.probabilities.iter().enumerate() {
+        let at = if has_several_places {
+            format!(", place {}", place + 1)
+        } else {
+            String::new()
+        };
+        let p = probabilities.interval().scaled(100.0);
+        rows.push((format!("P of the usual shot{at} (%)"), p));
+        let makes = fit.makes.at_place(place);
+        if makes.labelled > 0 {
+            let counted = Interval {
+                mean: 100.0 * makes.share.share,
+                sd: 0.0,
+                low: 100.0 * makes.share.low,
+                high: 100.0 * makes.share.high,
+            };
+            rows.push((format!("share of makes, counted{at} (%)"), counted));
+        }
+    }
+    rows.extend([
         (format!("scatter of speed ({long}/s)"), of_sd(0, metre)),
         ("scatter of pitch (deg)".to_owned(), of_sd(1, DEGREE_RAD)),
         ("scatter of aim (deg)".to_owned(), of_sd(2, DEGREE_RAD)),
-    ];
-    if fit.makes.labelled > 0 {
-        let share = &fit.makes.share;
-        let counted = Interval {
-            mean: 100.0 * share.share,
-            sd: 0.0,
-            low: 100.0 * share.low,
-            high: 100.0 * share.high,
-        };
-        rows.insert(1, ("share of makes, counted (%)".to_owned(), counted));
-    }
+    ]);
     let mut svg = Svg::new(860.0, 70.0 + 90.0 * rows.len() as f64);
     svg.heading(
         (20.0, 26.0),

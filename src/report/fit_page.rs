@@ -69,7 +69,6 @@ pub fn fit_page(
 }
 
 fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
-    let p = fit.probabilities[0].interval();
     let makes = &fit.makes;
     let seen = if makes.labelled > 0 {
         format!(
@@ -84,12 +83,22 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         .iter()
         .map(|warning| format!(" Warning: {warning}."))
         .collect();
+    let places = fit.places.iter().zip(&fit.probabilities);
+    let chances: Vec<String> = places
+        .map(|(place, probabilities)| {
+            let p = probabilities.interval();
+            format!(
+                "{}: {:.1} % of the usual shots go in (95 %: {:.1} to {:.1} %)",
+                place.location.in_words(units),
+                100.0 * p.mean,
+                100.0 * p.low,
+                100.0 * p.high,
+            )
+        })
+        .collect();
     format!(
-        "From {}, {:.1} % of the usual shots go in (95 %: {:.1} to {:.1} %), by {} {}.{seen}{}",
-        fit.places[0].location.in_words(units),
-        100.0 * p.mean,
-        100.0 * p.low,
-        100.0 * p.high,
+        "{}, by {} {}.{seen}{}",
+        chances.join("; "),
         fit.posterior.shots,
         source.kind,
         warnings.concat()

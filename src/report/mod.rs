@@ -16,6 +16,7 @@ mod report_error;
 mod sensitivity_table;
 mod shot_in_words;
 pub mod sweep_page;
+pub mod team_page;
 
 pub use html_table::HtmlTable;
 pub use page_data::Scene;

@@ -6,8 +6,8 @@ mod quantity;
 mod unit_system;
 
 pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
-pub(crate) use quantity::meant_by;
 pub use quantity::{Dimension, QuantityError, parse, suggestion};
+pub(crate) use quantity::{PERCENT, meant_by};
 pub use unit_system::UnitSystem;
 
 /// The value with 12 significant digits. A table shows 6 and not 6.000000000000001, the last digits

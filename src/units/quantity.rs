@@ -4,6 +4,9 @@
 
 use super::constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
 
+/// The ways to write a percentage after its number.
+pub(crate) const PERCENT: [&str; 3] = ["%", "percent", "pct"];
+
 /// The physical dimension of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
@@ -222,7 +225,7 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityError> {
             text: shown(),
         });
     }
-    if dimension == Dimension::Number && unit == "%" {
+    if dimension == Dimension::Number && PERCENT.contains(&unit.as_str()) {
         return Ok(value / 100.0);
     }
     if let Some(inches) = feet_and_inches(value, &unit, dimension) {

@@ -652,6 +652,33 @@ fn contract_places_of_a_shooter_are_told_apart() {
     assert_ne!(rows[0][6], rows[1][6]);
     let shots = fs::read_to_string(out.join("ann").join("shots.csv")).unwrap();
     assert!(shots.starts_with("row,session,place,"));
+    // Each place has its profile and its plots.
+    let read = |name: &str| fs::read_to_string(out.join("ann").join(name)).unwrap();
+    let own = "release_height = \"8.5000 ft\"";
+    assert!(!read("profile.toml").contains(own) && read("profile_place_2.toml").contains(own));
+    assert!(read("plots/make_zone_place_2.svg").contains("place 2"));
+    let mut command = bankshot();
+    Answer::of(
+        command
+            .arg("check")
+            .arg(out.join("ann/profile_place_2.toml")),
+    )
+    .exits(0);
+    // A later fit of one shooter, from one place, renews that shooter's rows and files alone.
+    let low: Vec<&str> = all.lines().filter(|row| !row.contains(",8.5,")).collect();
+    write_file(&folder, "places.csv", low.join("\n"));
+    let (ann, flags) = (out.join("ann"), ["--shooter", "Ann"]);
+    fit(path.to_str().unwrap(), &ann, &flags).exits(0);
+    let renewed = fs::read_to_string(out.join("shooters.csv")).unwrap();
+    let names: Vec<&str> = renewed.lines().map(|row| &row[..3]).collect();
+    assert_eq!(names, ["sho", "Ann", "Bob", "Bob"], "{renewed}");
+    assert_eq!(renewed.lines().last(), csv.lines().last());
+    assert!(!ann.join("profile_place_2.toml").exists());
+    assert!(!ann.join("plots/make_zone_place_2.svg").exists());
+    // A folder of fits is a team.
+    let mut command = bankshot();
+    let team = Answer::of(command.arg("team").arg(&out).arg("--quiet")).exits(0);
+    assert!(team.stdout().contains("Ann") && team.stdout().contains("Bob"));
     // The place that both sessions have is compared: P of the second session is that of a fit of it
     // alone.
     let sessions = write_file(&folder, "sessions.csv", &sessions);

@@ -46,7 +46,14 @@ fn contract_a_team_has_a_table_maps_and_posters() {
     let out = folder.path().join("out");
     assert_eq!(
         file_names(&out),
-        ["ann", "bo-b", "team.csv", "team.png", "team.svg"]
+        [
+            "ann",
+            "bo-b",
+            "team.csv",
+            "team.html",
+            "team.png",
+            "team.svg"
+        ]
     );
     for player in ["ann", "bo-b"] {
         let files = file_names(&out.join(player));
@@ -56,6 +63,9 @@ fn contract_a_team_has_a_table_maps_and_posters() {
         let html = fs::read_to_string(out.join(player).join("poster.html")).unwrap();
         assert!(html.contains("Your surest place is") && !html.contains("<b>"));
     }
+    let page = fs::read_to_string(out.join("team.html")).unwrap();
+    assert!(page.contains("href=\"ann/poster.html\"") && page.contains(">the best of the team<"));
+    assert!(!page.contains("<b>"));
     let maps = fs::read_to_string(out.join("team.svg")).unwrap();
     assert!(maps.contains(">the best of the team<") && maps.contains(">level<"));
     let csv = fs::read_to_string(out.join("team.csv")).unwrap();

@@ -145,7 +145,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             bars.end();
             if compared.is_empty() {
                 return Err(Failure::usage(format!(
-                    "{}: no shooter has two sessions to compare",
+                    "{}: the sessions of no shooter could be compared; the reasons are above",
                     options.before.display()
                 )));
             }

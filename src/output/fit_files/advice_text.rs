@@ -265,6 +265,7 @@ pub fn advice_text(
             100.0 * probability.high,
             100.0 * advice.gain_is_positive
         );
+        text += "usual shot: as measured; advised shot: with the changes that are sure; best shot: the best of all\n";
         text += &words.release("usual shot", &advice.usual);
         if let Some(steps) = &advice.steps {
             text += &words.release("advised shot", &steps.advised);

@@ -1,14 +1,23 @@
 //! `profile.toml`: the fitted profile, each value with what is known of it.
 
 use super::fit_json::FitSource;
-use super::parameters::{parameters, value_units};
+use super::parameters::{mean_name, parameters, value_units};
 use crate::fitting::{ShooterFit, SpinSource, VALUE_NAMES};
-use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
-/// The text of the profile at the first place. `physics` is the text of its `[physics]` table.
+/// The text of the profile at a place, by its index. `physics` is the text of its `[physics]`
+/// table.
 #[must_use]
-pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &str) -> String {
-    let listed = parameters(&fit.posterior, source.kind, UnitSystem::Imperial);
+pub fn fitted_profile_toml(
+    fit: &ShooterFit,
+    place_index: usize,
+    source: &FitSource<'_>,
+    physics: &str,
+    units: UnitSystem,
+) -> String {
+    let (long, metre) = units.length();
+    let listed = parameters(&fit.posterior, source.kind, units);
+    let has_several_places = fit.places.len() > 1;
     let comment = |name: &str| {
         let found = listed.iter().find(|parameter| parameter.name == name);
         found.map_or_else(String::new, |parameter| {
@@ -24,8 +33,8 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
             )
         })
     };
-    let place = &fit.places[0];
-    let shooter = fit.profiles[0].shooter();
+    let place = &fit.places[place_index];
+    let shooter = fit.profiles[place_index].shooter();
     let errors = &shooter.dispersion;
     let mut text = String::new();
     let mut line = |words: String| {
@@ -43,9 +52,10 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
         source.tracker.0, source.tracker.1, source.physics
     ));
     line("# An error is the root mean square over all draws; its interval and its source are beside it.".to_owned());
-    if fit.places.len() > 1 {
+    if has_several_places {
         line(format!(
-            "# The location, the usual shot and `speed` are those of the first of {} places.",
+            "# The location, the usual shot and `speed` are those of place {} of {}.",
+            place_index + 1,
             fit.places.len()
         ));
     }
@@ -56,8 +66,8 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     line("[shooter]".to_owned());
     line(format!("name = {}", quoted(&fit.name)));
     line(format!(
-        "release_height = \"{:.4} ft\"",
-        place.release_height_m / FOOT_M
+        "release_height = \"{:.4} {long}\"",
+        place.release_height_m / metre
     ));
     line(format!(
         "max_backspin = \"{:.3} rev/s\"  # assumed; a search for the best shot goes up to it",
@@ -68,8 +78,8 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     let has_growth = fit.posterior.growth_terms > 0;
     let of_speed = comment("speed_sd");
     line(format!(
-        "speed = \"{:.5} ft/s\"  {}",
-        errors.c10_m_s / FOOT_M,
+        "speed = \"{:.5} {long}/s\"  {}",
+        errors.c10_m_s / metre,
         if has_growth {
             format!(
                 "# c10; with c11 and c12 {}",
@@ -81,7 +91,7 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     ));
     if has_growth {
         line(format!("c11 = {:.6}", errors.c11));
-        line(format!("c12 = \"{:.7} s/ft\"", errors.c12_s_m * FOOT_M));
+        line(format!("c12 = \"{:.7} s/{long}\"", errors.c12_s_m * metre));
     }
     line(format!(
         "pitch = \"{:.5} deg\"  {}",
@@ -118,8 +128,8 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     line(String::new());
     line("[location]".to_owned());
     line(format!(
-        "distance = \"{:.4} ft\"",
-        place.location.distance_m / FOOT_M
+        "distance = \"{:.4} {long}\"",
+        place.location.distance_m / metre
     ));
     line(format!(
         "angle = \"{:.4} deg\"",
@@ -128,15 +138,18 @@ pub fn fitted_profile_toml(fit: &ShooterFit, source: &FitSource<'_>, physics: &s
     line(String::new());
     line("# The usual shot. A search for the best shot does not look at it.".to_owned());
     line("[nominal]".to_owned());
-    let units_of = value_units(UnitSystem::Imperial);
+    let units_of = value_units(units);
     for (i, name) in VALUE_NAMES.iter().enumerate() {
         let (unit, size) = units_of[i];
-        let value = fit.typical.means[0][i];
+        let value = fit.typical.means[place_index][i];
         line(format!(
             "{name} = \"{:.4} {unit}\"  {}",
             value / size,
-            comment(&format!("{name}_mean"))
+            comment(&mean_name(place_index, name))
         ));
+    }
+    if units == UnitSystem::Metric {
+        line("\n[output]\nunits = \"metric\"".to_owned());
     }
     line(String::new());
     line(physics.trim().to_owned());

@@ -32,6 +32,14 @@ pub fn value_units(units: UnitSystem) -> [(&'static str, f64); 4] {
     ]
 }
 
+/// The name of the mean of a value at a place, by its index; the first has no number.
+pub(super) fn mean_name(place: usize, value: &str) -> String {
+    match place {
+        0 => format!("{value}_mean"),
+        _ => format!("place_{}_{value}_mean", place + 1),
+    }
+}
+
 /// All parameters of a posterior: means (of further places with the number of the place), standard
 /// deviations, correlations, the tail weight (one over the degrees of freedom) where it was fitted,
 /// and the coefficients of the speed's standard deviation where there are several. `kind` is what
@@ -69,11 +77,7 @@ pub fn parameters(posterior: &Posterior, kind: &str, units: UnitSystem) -> Vec<P
         };
     for place in 0..posterior.draws[0].means.len() {
         for (i, name) in VALUE_NAMES.iter().enumerate() {
-            let name = if place == 0 {
-                format!("{name}_mean")
-            } else {
-                format!("place_{}_{name}_mean", place + 1)
-            };
+            let name = mean_name(place, name);
             add(name, of_value[i], source(i), &|draw| draw.means[place][i]);
         }
     }

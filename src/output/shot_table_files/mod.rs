@@ -1,4 +1,9 @@
 //! A table of best shots: as text, CSV, JSON, and as source of a program that interpolates in it.
 
+mod columns;
+pub mod csv_json;
+mod notes;
 pub mod source_code;
 pub mod table_text;
+
+pub use notes::notes;

@@ -3,7 +3,7 @@
 //! Each has one function of distance and court angle, linear between the nodes. It gives NaN
 //! outside the table and beside a place without a shot.
 
-use super::table_text::{notes, physics_note, shooter_note, what_shots};
+use super::notes::{notes, physics_note, shooter_note, what_shots};
 use crate::best_shot::{ShotTable, TableShot};
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};

@@ -84,24 +84,29 @@ pub(super) fn write(
     let sessions = rows
         .zip(shots.sessions.iter().map(String::as_str))
         .collect();
-    let contents: [(&str, Vec<u8>); 4] = [
+    let mut contents: Vec<(String, Vec<u8>)> = vec![
         (
-            "fit.json",
+            "fit.json".to_owned(),
             format!("{:#}\n", with_free(fit_json(fit, &source, units), free)).into_bytes(),
         ),
         (
-            "profile.toml",
-            fitted_profile_toml(fit, &source, &file.physics_toml).into_bytes(),
-        ),
-        (
-            "draws.parquet",
+            "draws.parquet".to_owned(),
             draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?,
         ),
         (
-            "shots.csv",
+            "shots.csv".to_owned(),
             shots_csv(fit, &sessions, &shots.rejected, units),
         ),
     ];
+    for place in 0..fit.places.len() {
+        let name = match place {
+            0 => "profile.toml".to_owned(),
+            _ => format!("profile_place_{}.toml", place + 1),
+        };
+        let toml = fitted_profile_toml(fit, place, &source, &file.physics_toml, units);
+        contents.push((name, toml.into_bytes()));
+    }
+    remove_further_places(folder, fit.places.len());
     for (name, bytes) in contents {
         let path = folder.join(name);
         atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
@@ -112,6 +117,23 @@ pub(super) fn write(
     let html = page.html()?;
     let path = folder.join("report.html");
     atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
+}
+
+/// Removes the profiles and plots of places that an earlier fit had beyond these.
+fn remove_further_places(folder: &Path, places: usize) {
+    for number in places + 1.. {
+        let profile = folder.join(format!("profile_place_{number}.toml"));
+        if !profile.exists() {
+            return;
+        }
+        let plots = ["releases", "make_zone"].into_iter().flat_map(|plot| {
+            ["svg", "png"].map(|end| format!("plots/{plot}_place_{number}.{end}"))
+        });
+        for path in plots.map(|plot| folder.join(plot)).chain([profile]) {
+            // What cannot be removed is old, but harms nothing.
+            let _ = std::fs::remove_file(path);
+        }
+    }
 }
 
 fn answer(
@@ -139,6 +161,12 @@ fn answer(
         }
         print_merged_heights(shots, units);
         print_sessions(std::slice::from_ref(shots));
+        if fit.places.len() > 1 {
+            print_remark(&format!(
+                "profile.toml is that of place 1, profile_place_N.toml that of place N (2 to {})",
+                fit.places.len()
+            ));
+        }
         print_unused(file);
         print_remark(&format!(
             "written to {}; next: bankshot advise {}",

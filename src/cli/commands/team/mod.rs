@@ -1,11 +1,14 @@
 //! `bankshot team`: who should bank from where, and who is best from where.
 
+mod court_results;
+
 use super::plan_sweep_time_and_memory::forecast_s;
 use super::sweep::{compute, run_options};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
 use crate::best_shot::{ShotKind, find_kinds};
 use crate::cli::config_files::{load_profile, read_sweep_without_shooter, read_text};
 use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
@@ -22,28 +25,31 @@ use crate::sweep::job_list::Shard;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::sweep_toml::{is_sweep, parse_sweep};
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::DEGREE_RAD;
 use clap::Args;
 use comfy_table::{Table, presets};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use court_results::{PlayerSweep, best_players, team_csv, team_page, team_text};
+
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Without --sweep each player shoots from the location of their profile, and one table is printed.
 
-With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.csv has every place and \
-player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
+With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.html is a page to look at, OUT/team.csv has \
+every place and player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
 the same command continues.
 
 Examples:
   bankshot team ann.toml bo.toml cy.toml
+  bankshot team results/season-fit
   bankshot team ann.toml bo.toml cy.toml \\
     --sweep configs/half_court_3ft.toml --plan
   bankshot team ann.toml bo.toml cy.toml \\
     --sweep configs/half_court_3ft.toml --out team")]
 pub(crate) struct TeamOptions {
-    /// The players' profiles.
+    /// The players' profiles, the folders of their fits, or the folder of a fit of several shooters.
     #[arg(required = true, num_args = 1..)]
     pub(crate) players: Vec<PathBuf>,
     /// A sweep: its places and its search. Each player takes the place of its shooter.
@@ -76,29 +82,47 @@ fn table_of(header: Vec<String>) -> Table {
     table
 }
 
+/// The files of the profiles: in place of the folder of a fit its profile, and those of all
+/// shooters in place of the folder of their fits.
+fn files_of_players(paths: &[PathBuf]) -> Vec<PathBuf> {
+    let fits = paths.iter().flat_map(|path| {
+        let shooters = fit_folder::of_shooters(path);
+        if shooters.is_empty() {
+            vec![path.clone()]
+        } else {
+            shooters
+        }
+    });
+    fits.map(|path| {
+        let profile = path.join("profile.toml");
+        if profile.is_file() { profile } else { path }
+    })
+    .collect()
+}
+
 /// The players' profiles. Each has a name of its own, which is also that of its folder.
-fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<Profile>, Failure> {
-    let mut players: Vec<Profile> = Vec::new();
-    for path in paths {
-        if is_sweep(&read_text(path)?) {
+fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<(PathBuf, Profile)>, Failure> {
+    let mut players: Vec<(PathBuf, Profile)> = Vec::new();
+    for path in files_of_players(paths) {
+        if is_sweep(&read_text(&path)?) {
             return Err(Failure::usage(format!(
                 "{path}: this is a sweep, not a player; name the players alone, and the sweep with --sweep {path}",
                 path = path.display()
             )));
         }
-        let player = load_profile(path, &PhysicsArg::default(), quiet)?;
+        let player = load_profile(&path, &PhysicsArg::default(), quiet)?;
         let name = &player.shooter().name;
         let folder = run_folder::safe_name(name);
         if players
             .iter()
-            .any(|other| run_folder::safe_name(&other.shooter().name) == folder)
+            .any(|(_, other)| run_folder::safe_name(&other.shooter().name) == folder)
         {
             return Err(Failure::usage(format!(
                 "{}: two players have the name \"{name}\"; give each their own",
                 path.display()
             )));
         }
-        players.push(player);
+        players.push((path, player));
     }
     Ok(players)
 }
@@ -112,7 +136,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
     let mut names_by_preference: [(Preference, Vec<String>); 3] =
         [Preference::Bank, Preference::Direct, Preference::Either].map(|kind| (kind, Vec::new()));
-    for profile in &profiles {
+    for (_, profile) in &profiles {
         let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
         let p: Vec<Option<Difference>> = shots
             .iter()
@@ -185,38 +209,15 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
 
 /// Longest name of a player in the tables, in characters.
 const LONGEST_NAME: usize = 24;
-/// Places to bank from that are printed for each player.
-const MOST_BANK_PLACES: usize = 5;
-
-/// A player's finished sweep.
-struct PlayerSweep {
-    name: String,
-    places: Vec<PlaceProbabilities>,
-}
-
-impl PlayerSweep {
-    /// The places where a bank shot is better, those with the greatest gain first.
-    fn bank_places(&self) -> Vec<&PlaceProbabilities> {
-        let mut places: Vec<&PlaceProbabilities> = self
-            .places
-            .iter()
-            .filter(|place| place.preference() == Some(Preference::Bank))
-            .collect();
-        let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
-        places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
-        places
-    }
-}
-
 fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8, Failure> {
     let texts = read_sweep_without_shooter(sweep)?;
     // Every profile is read before anything is computed.
     let mut sweeps = Vec::new();
     let mut folders: Vec<PathBuf> = Vec::new();
     let players = load_players(&options.players, quiet)?;
-    for (path, player) in options.players.iter().zip(players) {
+    for (path, player) in players {
         let mut texts = texts.clone();
-        texts.shooter = Some(read_text(path)?);
+        texts.shooter = Some(read_text(&path)?);
         let config = parse_sweep(&texts, &sweep.display().to_string())?;
         let name = player.shooter().name.clone();
         folders.push(options.out.join(run_folder::safe_name(&name)));
@@ -258,7 +259,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         .map(|(config, rows)| SweepResults::new(config, rows))
         .collect();
     let maps = team_maps::draw(&results, &best_players(&players));
-    plot_files::write(&options.out, &maps.into_iter().collect::<Vec<_>>())?;
+    plot_files::write(&options.out, maps.as_slice())?;
     let is_one_sided = finished.iter().any(|(config, _)| {
         let correlation = &config.settings.shooter.dispersion.correlation;
         ReleaseVariable::ALL.into_iter().any(|other| {
@@ -270,6 +271,14 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     let file = options.out.join("team.csv");
     atomic_file::write(&file, csv.as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
+    let posters = players.iter().map(|player| {
+        let file = format!("{}/poster.html", run_folder::safe_name(&player.name));
+        (player.name.clone(), file)
+    });
+    let page = team_page(&players, maps, posters.collect(), units);
+    let page_file = options.out.join("team.html");
+    atomic_file::write(&page_file, page.html().as_bytes())
+        .map_err(|error| Failure::io(page_file.display(), &error))?;
     print_prose(&team_text(&players, units))?;
     if is_one_sided {
         print_prose(
@@ -278,8 +287,8 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     }
     if !quiet {
         print_remark(&format!(
-            "written: {}, team.svg beside it, and in each player's folder bank_and_direct.svg and poster.html",
-            file.display()
+            "written: {} (to look at or print), team.csv and team.svg beside it, and in each player's folder bank_and_direct.svg and poster.html",
+            page_file.display()
         ));
         if let [first, second, ..] = &folders[..] {
             print_remark(&format!(
@@ -320,184 +329,4 @@ fn write_pictures(
         plots.push(poster.plot);
     }
     plot_files::write(folder, &plots)
-}
-
-/// Players whose P differs by less than this are level.
-const LEVEL: f64 = 0.01;
-
-/// The players with the greatest P at each place: those who are not surely worse than the best one
-/// by a shot in 100, or by twice the error of the difference.
-fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
-    (0..players[0].places.len())
-        .map(|place| {
-            let found: Vec<(usize, Difference)> = players
-                .iter()
-                .enumerate()
-                .filter_map(|(i, player)| Some((i, player.places[place].best()?)))
-                .collect();
-            let best = found.iter().map(|(_, p)| *p);
-            let Some(best) = best.reduce(|a, b| if b.value > a.value { b } else { a }) else {
-                return Vec::new();
-            };
-            let is_level = |(_, p): &&(usize, Difference)| {
-                let error = libm::hypot(p.standard_error, best.standard_error);
-                best.value - p.value <= LEVEL.max(2.0 * error)
-            };
-            found.iter().filter(is_level).map(|(i, _)| *i).collect()
-        })
-        .collect()
-}
-
-fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
-    let (unit, metre) = units.length();
-    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let mut text =
-        format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_players");
-    for player in players {
-        for column in ["direct", "direct error", "bank", "bank error", "shoot"] {
-            text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
-        }
-    }
-    text.push('\n');
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.5}"));
-    for (place, best) in best_players(players).into_iter().enumerate() {
-        let known = &players[0].places[place];
-        let location = known.place.location();
-        text += &format!(
-            "{place},{},{:.3},{:.3},{:.3},{:.2},{}",
-            known.name.as_deref().map_or(String::new(), quoted),
-            known.place.x_m / metre,
-            known.place.y_m / metre,
-            location.distance_m / metre,
-            location.angle_rad / DEGREE_RAD,
-            match &best[..] {
-                [] => String::new(),
-                best => {
-                    let names: Vec<&str> = best.iter().map(|i| players[*i].name.as_str()).collect();
-                    quoted(&names.join("; "))
-                }
-            }
-        );
-        for player in players {
-            let chances = &player.places[place];
-            for p in [chances.direct, chances.bank] {
-                text += &format!(
-                    ",{},{}",
-                    number(p.map(|p| p.value)),
-                    number(p.map(|p| p.standard_error))
-                );
-            }
-            text += &format!(",{}", chances.preference().map_or("", Preference::name));
-        }
-        text.push('\n');
-    }
-    text
-}
-
-/// A table of places and players is printed up to this size.
-const MOST_COLUMNS: usize = 5;
-/// See [`MOST_COLUMNS`].
-const MOST_ROWS: usize = 16;
-
-/// Makes in 100 of both kinds, for each place and player.
-fn place_table(players: &[PlayerSweep], units: UnitSystem) -> String {
-    let name = |player: &PlayerSweep| shortened(&player.name, 9);
-    let header = std::iter::once("from".to_owned()).chain(players.iter().map(name));
-    let mut table = table_of(header.collect());
-    for (place, known) in players[0].places.iter().enumerate() {
-        let cell = |player: &PlayerSweep| {
-            let p = |p: Option<Difference>| {
-                p.map_or("-".to_owned(), |p| format!("{:.0}", 100.0 * p.value))
-            };
-            let here = &player.places[place];
-            format!("{} / {}", p(here.direct), p(here.bank))
-        };
-        let mut row = vec![textwrap::fill(&known.in_words(units), 20)];
-        row.extend(players.iter().map(cell));
-        table.add_row(row);
-    }
-    table.trim_fmt()
-}
-
-fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
-    let best = best_players(players);
-    let header = [
-        "player",
-        "mean of\nall places,\nbest kind",
-        "banks at",
-        "alone the\nbest at",
-    ];
-    let mut table = table_of(header.map(str::to_owned).to_vec());
-    let mean = |player: &PlayerSweep| {
-        let found = player.places.iter().filter_map(PlaceProbabilities::best);
-        let found: Vec<f64> = found.map(|p| p.value).collect();
-        found.iter().sum::<f64>() / found.len().max(1) as f64
-    };
-    let mut order: Vec<(usize, f64)> = players.iter().map(mean).enumerate().collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    for &(number, mean) in &order {
-        let player = &players[number];
-        let own = best.iter().filter(|of| of[..] == [number]).count();
-        table.add_row(vec![
-            shortened(&player.name, LONGEST_NAME),
-            in_hundred(mean),
-            format!(
-                "{} of {} places",
-                player.bank_places().len(),
-                player.places.len()
-            ),
-            format!("{own} of {} places", best.len()),
-        ]);
-    }
-    let mut text = format!(
-        "makes in 100 shots, the surest player first\n{}\n",
-        table.trim_fmt()
-    );
-    let level = best.iter().filter(|of| of.len() > 1).count();
-    if level > 0 {
-        text += &format!(
-            "At {level} of {} places two or more are level: within 1 in 100 (team.csv names them).\n",
-            best.len()
-        );
-    }
-    if players.len() <= MOST_COLUMNS && best.len() <= MOST_ROWS {
-        text += &format!(
-            "\nat each place: direct / bank\n{}\n",
-            place_table(players, units)
-        );
-    }
-    text += "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n";
-    for player in order.iter().map(|(number, _)| &players[*number]) {
-        let bank = player.bank_places();
-        text += &format!("{}: ", shortened(&player.name, LONGEST_NAME));
-        if bank.is_empty() {
-            text += "no place where a bank shot is better by 1 in 100.\n";
-            continue;
-        }
-        text += "bank it from\n";
-        let words = |chances: &PlaceProbabilities| chances.in_words_with_mirror(&bank, units);
-        let mut listed: Vec<String> = Vec::new();
-        for chances in &bank {
-            if listed.contains(&words(chances)) {
-                continue;
-            }
-            listed.push(words(chances));
-            if listed.len() > MOST_BANK_PLACES {
-                continue;
-            }
-            let points =
-                |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
-            text += &format!(
-                "  {}: {} (direct {})\n",
-                shortened(&words(chances), 54),
-                points(chances.bank),
-                points(chances.direct)
-            );
-        }
-        if listed.len() > MOST_BANK_PLACES {
-            let more = listed.len() - MOST_BANK_PLACES;
-            text += &format!("  and {more} more: team.csv\n");
-        }
-    }
-    text
 }

@@ -1,0 +1,290 @@
+//! What the sweeps of a team say: who is best from where, who should bank from where; as text, CSV
+//! and a page.
+
+use super::{LONGEST_NAME, in_hundred, table_of};
+use crate::analysis::sensitivity::Difference;
+use crate::plots::svg::{Plot, shortened};
+use crate::report::team_page::{PageTable, TeamPage};
+use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
+use crate::units::{DEGREE_RAD, UnitSystem};
+
+/// Places to bank from that are printed for each player.
+const MOST_BANK_PLACES: usize = 5;
+
+/// A player's finished sweep.
+pub(super) struct PlayerSweep {
+    pub(super) name: String,
+    pub(super) places: Vec<PlaceProbabilities>,
+}
+
+impl PlayerSweep {
+    /// The places where a bank shot is better, those with the greatest gain first.
+    fn bank_places(&self) -> Vec<&PlaceProbabilities> {
+        let mut places: Vec<&PlaceProbabilities> = self
+            .places
+            .iter()
+            .filter(|place| place.preference() == Some(Preference::Bank))
+            .collect();
+        let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
+        places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+        places
+    }
+}
+
+/// Players whose P differs by less than this are level.
+const LEVEL: f64 = 0.01;
+
+/// The players with the greatest P at each place: those who are not surely worse than the best one
+/// by a shot in 100, or by twice the error of the difference.
+pub(super) fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
+    (0..players[0].places.len())
+        .map(|place| {
+            let found: Vec<(usize, Difference)> = players
+                .iter()
+                .enumerate()
+                .filter_map(|(i, player)| Some((i, player.places[place].best()?)))
+                .collect();
+            let best = found.iter().map(|(_, p)| *p);
+            let Some(best) = best.reduce(|a, b| if b.value > a.value { b } else { a }) else {
+                return Vec::new();
+            };
+            let is_level = |(_, p): &&(usize, Difference)| {
+                let error = libm::hypot(p.standard_error, best.standard_error);
+                best.value - p.value <= LEVEL.max(2.0 * error)
+            };
+            found.iter().filter(is_level).map(|(i, _)| *i).collect()
+        })
+        .collect()
+}
+
+pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
+    let (unit, metre) = units.length();
+    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
+    let mut text =
+        format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_players");
+    for player in players {
+        for column in ["direct", "direct error", "bank", "bank error", "shoot"] {
+            text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
+        }
+    }
+    text.push('\n');
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.5}"));
+    for (place, best) in best_players(players).into_iter().enumerate() {
+        let known = &players[0].places[place];
+        let location = known.place.location();
+        text += &format!(
+            "{place},{},{:.3},{:.3},{:.3},{:.2},{}",
+            known.name.as_deref().map_or(String::new(), quoted),
+            known.place.x_m / metre,
+            known.place.y_m / metre,
+            location.distance_m / metre,
+            location.angle_rad / DEGREE_RAD,
+            match &best[..] {
+                [] => String::new(),
+                best => {
+                    let names: Vec<&str> = best.iter().map(|i| players[*i].name.as_str()).collect();
+                    quoted(&names.join("; "))
+                }
+            }
+        );
+        for player in players {
+            let chances = &player.places[place];
+            for p in [chances.direct, chances.bank] {
+                text += &format!(
+                    ",{},{}",
+                    number(p.map(|p| p.value)),
+                    number(p.map(|p| p.standard_error))
+                );
+            }
+            text += &format!(",{}", chances.preference().map_or("", Preference::name));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A table of places and players is printed up to this size.
+const MOST_COLUMNS: usize = 5;
+/// Longest name at the top of its columns, in characters.
+const LONGEST_IN_HEADER: usize = 9;
+/// See [`MOST_COLUMNS`].
+const MOST_ROWS: usize = 16;
+/// The page has one up to this many rows.
+const MOST_PAGE_ROWS: usize = 60;
+
+/// A place in words, and `direct / bank` of each player there.
+fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
+    let row = |(place, known): (usize, &PlaceProbabilities)| {
+        let cell = |player: &PlayerSweep| {
+            let p = |p: Option<Difference>| {
+                p.map_or("-".to_owned(), |p| format!("{:.0}", 100.0 * p.value))
+            };
+            let here = &player.places[place];
+            format!("{} / {}", p(here.direct), p(here.bank))
+        };
+        let words = known.in_words(units);
+        std::iter::once(words)
+            .chain(players.iter().map(cell))
+            .collect()
+    };
+    players[0].places.iter().enumerate().map(row).collect()
+}
+
+/// The names of the columns of [`place_rows`].
+fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<String> {
+    let names = players
+        .iter()
+        .map(|player| shortened(&player.name, longest_name));
+    std::iter::once("from".to_owned()).chain(names).collect()
+}
+
+/// The numbers of the players by the mean of P over all places, the greatest first, with that mean.
+fn by_mean(players: &[PlayerSweep]) -> Vec<(usize, f64)> {
+    let mean = |player: &PlayerSweep| {
+        let found = player.places.iter().filter_map(PlaceProbabilities::best);
+        let found: Vec<f64> = found.map(|p| p.value).collect();
+        found.iter().sum::<f64>() / found.len().max(1) as f64
+    };
+    let mut order: Vec<(usize, f64)> = players.iter().map(mean).enumerate().collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    order
+}
+
+/// A row for each player: name, mean, places to bank from, places where nobody is as good.
+fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>> {
+    let row = |(number, mean): (usize, f64)| {
+        let player = &players[number];
+        let own = best.iter().filter(|of| of[..] == [number]).count();
+        vec![
+            shortened(&player.name, LONGEST_NAME),
+            in_hundred(mean),
+            format!(
+                "{} of {} places",
+                player.bank_places().len(),
+                player.places.len()
+            ),
+            format!("{own} of {} places", best.len()),
+        ]
+    };
+    by_mean(players).into_iter().map(row).collect()
+}
+
+/// The columns of [`player_rows`].
+const PLAYER_COLUMNS: [&str; 4] = [
+    "player",
+    "mean of\nall places,\nbest kind",
+    "banks at",
+    "alone the\nbest at",
+];
+
+/// What is to be said of places where players are level, and of what is taken as exact.
+fn remarks(best: &[Vec<usize>]) -> (String, &'static str) {
+    let level = best.iter().filter(|of| of.len() > 1).count();
+    let of_level = if level > 0 {
+        format!(
+            "At {level} of {} places two or more are level: within 1 in 100 (team.csv names them).\n",
+            best.len()
+        )
+    } else {
+        String::new()
+    };
+    (
+        of_level,
+        "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n",
+    )
+}
+
+/// From where a player should bank.
+fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
+    let bank = player.bank_places();
+    let mut text = format!("{}: ", shortened(&player.name, LONGEST_NAME));
+    if bank.is_empty() {
+        return text + "no place where a bank shot is better by 1 in 100.\n";
+    }
+    text += "bank it from\n";
+    let words = |chances: &PlaceProbabilities| chances.in_words_with_mirror(&bank, units);
+    let mut listed: Vec<String> = Vec::new();
+    for chances in &bank {
+        if listed.contains(&words(chances)) {
+            continue;
+        }
+        listed.push(words(chances));
+        if listed.len() > MOST_BANK_PLACES {
+            continue;
+        }
+        let points = |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
+        text += &format!(
+            "  {}: {} (direct {})\n",
+            shortened(&words(chances), 54),
+            points(chances.bank),
+            points(chances.direct)
+        );
+    }
+    if listed.len() > MOST_BANK_PLACES {
+        let more = listed.len() - MOST_BANK_PLACES;
+        text += &format!("  and {more} more: team.csv\n");
+    }
+    text
+}
+
+/// The same of all players, the surest first.
+fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<String> {
+    let order = by_mean(players).into_iter();
+    order
+        .map(|(number, _)| bank_text(&players[number], units))
+        .collect()
+}
+
+/// The answer for people.
+pub(super) fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
+    let best = best_players(players);
+    let mut table = table_of(PLAYER_COLUMNS.map(str::to_owned).to_vec());
+    for row in player_rows(players, &best) {
+        table.add_row(row);
+    }
+    let (of_level, of_profiles) = remarks(&best);
+    let mut text = format!(
+        "makes in 100 shots, the surest player first\n{}\n{of_level}",
+        table.trim_fmt()
+    );
+    if players.len() <= MOST_COLUMNS && best.len() <= MOST_ROWS {
+        let mut table = table_of(place_header(players, LONGEST_IN_HEADER));
+        for mut row in place_rows(players, units) {
+            row[0] = textwrap::fill(&row[0], 20);
+            table.add_row(row);
+        }
+        text += &format!("\nat each place: direct / bank\n{}\n", table.trim_fmt());
+    }
+    text += of_profiles;
+    text + &bank_texts(players, units).concat()
+}
+
+/// The page: the tables, the maps and the posters.
+pub(super) fn team_page(
+    players: &[PlayerSweep],
+    maps: Option<Plot>,
+    posters: Vec<(String, String)>,
+    units: UnitSystem,
+) -> TeamPage {
+    let best = best_players(players);
+    let (of_level, of_profiles) = remarks(&best);
+    let mut tables = vec![PageTable {
+        caption: "Makes in 100 shots, the surest player first".to_owned(),
+        columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
+        rows: player_rows(players, &best),
+    }];
+    if best.len() <= MOST_PAGE_ROWS {
+        tables.push(PageTable {
+            caption: "Makes in 100 at each place: direct / bank".to_owned(),
+            columns: place_header(players, LONGEST_NAME),
+            rows: place_rows(players, units),
+        });
+    }
+    TeamPage {
+        answer: bank_texts(players, units).concat(),
+        tables,
+        maps,
+        posters,
+        footer: format!("{of_level}{of_profiles}"),
+    }
+}

@@ -1,0 +1,358 @@
+//! What a reader of a table of best shots must know.
+
+use crate::best_shot::{ShotKind, ShotTable, TableKind, TableShot};
+use crate::model::SolidId;
+use crate::shooter::{Location, Profile, ReleaseVariable};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+
+/// What a reader of the table must know: what interpolation costs, which nodes were added, where
+/// shots are not clean, and where the other kind is better.
+#[must_use]
+pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
+    let notes = [
+        kinds_note(table, units),
+        Some(check_note(table, units)),
+        added_note(table, units),
+        jump_note(table, units),
+        bounce_note(table),
+        nearly_other_kind_note(table, units),
+        unlikely_note(table, units),
+        other_kind_note(table, units),
+    ];
+    notes.into_iter().flatten().collect()
+}
+
+/// Whose shots these are: name, release height and the standard deviations at the first place.
+#[must_use]
+pub(super) fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let shooter = profile.shooter();
+    let is_allowed = |c: char| !c.is_control() && c != '\\';
+    let name: String = shooter.name.chars().filter(|c| is_allowed(*c)).collect();
+    let mut note = format!(
+        "Shooter: {name}, released at {} {long}",
+        short(shooter.release_height_m / metre)
+    );
+    let first = table.shots.iter().position(Option::is_some);
+    if let Some((index, shot)) = first.and_then(|i| Some((i, table.shots[i].as_ref()?))) {
+        let sd = |variable| shooter.dispersion.sigma(variable, &shot.nominal);
+        let distance_m = table.distances_m[index % table.distances_m.len()];
+        let of_speed = shooter.dispersion.c11;
+        let percent = if of_speed > 0.0 {
+            format!(
+                " ({} % of the speed)",
+                short(100.0 * sd(ReleaseVariable::Speed) / shot.nominal.speed_m_s)
+            )
+        } else {
+            String::new()
+        };
+        note += &format!(
+            ", with standard deviations (at {} {long}) of {} {long}/s{percent}, {} deg up, {} deg sideways, {} rev/s",
+            short(distance_m / metre),
+            short(sd(ReleaseVariable::Speed) / metre),
+            short(sd(ReleaseVariable::Pitch) / DEGREE_RAD),
+            short(sd(ReleaseVariable::Polar) / DEGREE_RAD),
+            short(sd(ReleaseVariable::Backspin) / REV_RAD),
+        );
+    }
+    note + "."
+}
+
+/// Ball, hoop and air, so that tables for two balls can be told apart.
+#[must_use]
+pub(super) fn physics_note(profile: &Profile, units: UnitSystem) -> String {
+    let physics = profile.physics();
+    let (unit, size) = units.short_length();
+    let air = if physics.air.density_kg_m3 > 0.0 {
+        format!(
+            "drag coefficient {} in air of {} kg/m3",
+            short(physics.air.drag_coefficient),
+            short(physics.air.density_kg_m3)
+        )
+    } else {
+        "no air".to_owned()
+    };
+    format!(
+        "Physics: a ball of {} kg and {:.2} {unit}, restitution {:.2} on the hoop and {:.2} on the board, {air}.",
+        short(physics.ball_mass_kg),
+        2.0 * physics.ball_radius_m / size,
+        physics.restitution_on(SolidId::Ring),
+        physics.restitution_on(SolidId::Board)
+    )
+}
+
+/// What interpolation costs, and by how much the interpolated P errs.
+fn check_note(table: &ShotTable, units: UnitSystem) -> String {
+    let (Some(costliest), Some(most_wrong)) = (table.costliest(), table.most_wrong()) else {
+        return "No place between could be checked.".to_owned();
+    };
+    format!(
+        "Checked at {} places, the quarters between the table's: interpolated shots lose at most \
+         {:.4} in P (at {}), and their interpolated P errs by at most {:.4} (at {}).",
+        table.checks.len(),
+        costliest.loss().max(0.0),
+        place_text(table, &costliest.location, units),
+        most_wrong.error().abs(),
+        place_text(table, &most_wrong.location, units),
+    )
+}
+
+/// The place of an angle and a distance, by their indices.
+fn location(table: &ShotTable, angle: usize, distance: usize) -> Location {
+    Location {
+        distance_m: table.distances_m[distance],
+        angle_rad: table.angles_rad[angle],
+    }
+}
+
+/// Rows of a table: stretches of neighbours along the distance, each row by the indices of its
+/// angle and distance.
+struct Places(Vec<Vec<(usize, usize)>>);
+
+impl Places {
+    /// The rows whose shot is `wanted`.
+    fn of(table: &ShotTable, mut wanted: impl FnMut(&TableShot) -> bool) -> Self {
+        let mut stretches: Vec<Vec<(usize, usize)>> = Vec::new();
+        for angle in 0..table.angles_rad.len() {
+            let mut is_continued = false;
+            for distance in 0..table.distances_m.len() {
+                let is_wanted = table.at(angle, distance).is_some_and(&mut wanted);
+                match stretches.last_mut() {
+                    Some(stretch) if is_wanted && is_continued => stretch.push((angle, distance)),
+                    _ if is_wanted => stretches.push(vec![(angle, distance)]),
+                    _ => {}
+                }
+                is_continued = is_wanted;
+            }
+        }
+        Self(stretches)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn count(&self) -> usize {
+        self.0.iter().map(Vec::len).sum()
+    }
+
+    fn count_text(&self) -> String {
+        match self.count() {
+            1 => "one row".to_owned(),
+            count => format!("{count} rows"),
+        }
+    }
+
+    /// The stretches; the longest of them if there are many.
+    fn text(&self, table: &ShotTable, units: UnitSystem) -> String {
+        const MOST_NAMED: usize = 8;
+        let mut named: Vec<&Vec<(usize, usize)>> = self.0.iter().collect();
+        named.sort_by_key(|stretch| std::cmp::Reverse(stretch.len()));
+        named.truncate(MOST_NAMED);
+        named.sort();
+        let texts = named.into_iter().filter_map(|stretch| {
+            let (first, last) = (stretch.first()?, stretch.last()?);
+            let [from, to] = [first, last].map(|(a, d)| location(table, *a, *d));
+            let text = place_text(table, &to, units);
+            // A jump has two rows of one distance.
+            let is_one_place = from.distance_m == to.distance_m;
+            let from = short(from.distance_m / units.length().1);
+            Some(if is_one_place {
+                text
+            } else {
+                format!("{from} to {text}")
+            })
+        });
+        let named = texts.collect::<Vec<_>>().join("; ");
+        match self.0.len().saturating_sub(MOST_NAMED) {
+            0 => named,
+            1 => named + " and one shorter stretch",
+            more => format!("{named} and {more} shorter stretches"),
+        }
+    }
+}
+
+/// A place; without its angle where the table has one alone.
+fn place_text(table: &ShotTable, place: &Location, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let distance = short(place.distance_m / metre);
+    if table.angles_rad.len() == 1 {
+        format!("{distance} {long}")
+    } else {
+        format!(
+            "{distance} {long}, {} deg",
+            short(place.angle_rad / DEGREE_RAD)
+        )
+    }
+}
+
+/// At most four decimals, without zeros at the end.
+fn short(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Which distances and angles were added to those that were asked for.
+fn added_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let (long, metre) = units.length();
+    let list = |values: &[f64], unit: f64, name: &str| {
+        let texts: Vec<String> = values.iter().map(|value| short(value / unit)).collect();
+        (!texts.is_empty()).then(|| format!("{} {name}", texts.join(", ")))
+    };
+    let parts = [
+        list(&table.added_distances_m, metre, long),
+        list(&table.added_angles_rad, DEGREE_RAD, "deg"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("Added for the interpolation: {}.", parts.join(" and ")))
+}
+
+/// Where the best shot jumps.
+fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let (long, metre) = units.length();
+    let jumps: Vec<String> = table
+        .jumps_m()
+        .map(|jump_m| short(jump_m / metre))
+        .collect();
+    let what = match table.kind {
+        TableKind::One(_) => "the best shot jumps",
+        TableKind::Better => "the better kind changes or the best shot jumps",
+    };
+    (!jumps.is_empty()).then(|| {
+        format!(
+            "At {} {long} {what}: of two rows the first holds below, the second from \
+             there on.",
+            jumps.join(", ")
+        )
+    })
+}
+
+/// From where to where each kind is the better one.
+fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    if table.kind != TableKind::Better {
+        return None;
+    }
+    let (long, metre) = units.length();
+    let mut stretches: Vec<(ShotKind, f64, f64)> = Vec::new();
+    for (distance_m, shot) in table.distances_m.iter().zip(&table.shots) {
+        let Some(shot) = shot else { continue };
+        match stretches.last_mut() {
+            Some((kind, _, to_m)) if *kind == shot.kind => *to_m = *distance_m,
+            _ => stretches.push((shot.kind, *distance_m, *distance_m)),
+        }
+    }
+    let texts: Vec<String> = stretches
+        .iter()
+        .map(|(kind, from_m, to_m)| {
+            let [from, to] = [from_m, to_m].map(|m| short(m / metre));
+            if from == to {
+                format!("{} at {from} {long}", kind.name())
+            } else {
+                format!("{} from {from} to {to} {long}", kind.name())
+            }
+        })
+        .collect();
+    (!texts.is_empty()).then(|| format!("The better kind: {}.", texts.join(", ")))
+}
+
+/// How many shots touch more than they should.
+fn bounce_note(table: &ShotTable) -> Option<String> {
+    let shots = table.shots.iter().flatten();
+    let bouncing = shots.filter(|shot| !table.is_clean(shot)).count();
+    let off = match table.kind {
+        TableKind::One(ShotKind::Direct) => "off the ring or the board",
+        TableKind::One(ShotKind::Bank) => "off the ring too",
+        TableKind::Better => "off the ring too (a direct one off the ring or the board)",
+    };
+    (bouncing > 0).then(|| {
+        format!(
+            "In {bouncing} of {} rows the best shot goes in {off} even without an error.",
+            table.shots.len()
+        )
+    })
+}
+
+/// Share of the makes above which a shot is also one of the other kind.
+const MANY_OF_OTHER_KIND: f64 = 0.25;
+
+/// Where many of the makes are those of the other kind.
+fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let mut most = 0.0_f64;
+    let places = Places::of(table, |shot| {
+        let share = match shot.kind {
+            ShotKind::Direct => shot.banked,
+            ShotKind::Bank => 1.0 - shot.banked,
+        };
+        let is_many = share > MANY_OF_OTHER_KIND;
+        if is_many {
+            most = most.max(share);
+        }
+        is_many
+    });
+    let touch = match table.kind {
+        TableKind::One(ShotKind::Direct) => "direct shot touch the board first",
+        TableKind::One(ShotKind::Bank) => "bank shot do not touch the board first",
+        TableKind::Better => "shot are of the other kind",
+    };
+    (!places.is_empty()).then(|| {
+        format!(
+            "Nearly the other kind: more than a quarter, up to {:.0} %, of the makes of the {touch} at {}.",
+            100.0 * most,
+            places.text(table, units)
+        )
+    })
+}
+
+/// Where even the best shot seldom goes in.
+fn unlikely_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let places = Places::of(table, |shot| shot.probability < UNLIKELY);
+    (!places.is_empty()).then(|| {
+        format!(
+            "At {} even the best shot goes in by luck, with P below {UNLIKELY}: {}.",
+            places.count_text(),
+            places.text(table, units)
+        )
+    })
+}
+
+/// P below which a shot is luck.
+const UNLIKELY: f64 = 0.1;
+
+/// Where the best shot of the other kind has the higher P.
+fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let TableKind::One(kind) = table.kind else {
+        return None;
+    };
+    let other = kind.other().name();
+    let gain = |shot: &TableShot| shot.other_kind.map_or(0.0, |p| p - shot.probability);
+    let places = Places::of(table, |shot| gain(shot) > LEAST_GAIN);
+    let gains = places.0.iter().flatten().filter_map(|(angle, distance)| {
+        let shot = table.at(*angle, *distance)?;
+        Some((gain(shot), location(table, *angle, *distance)))
+    });
+    let (gain, place) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let most = format!(
+        "most at {} (P {gain:.3} higher)",
+        place_text(table, &place, units)
+    );
+    if places.count() == table.shots.len() {
+        return Some(format!("A {other} shot is better at every place, {most}."));
+    }
+    Some(format!(
+        "A {other} shot is better at {}, {most}: {}.",
+        places.count_text(),
+        places.text(table, units),
+    ))
+}
+
+/// Least gain in P for which the other kind is named.
+const LEAST_GAIN: f64 = 0.005;
+
+/// Which shots a table has.
+#[must_use]
+pub(super) fn what_shots(kind: TableKind) -> String {
+    match kind {
+        TableKind::One(kind) => format!("Best {} shots", kind.name()),
+        TableKind::Better => "Best shots, direct or bank, the kind with the higher P".to_owned(),
+    }
+}

@@ -1,0 +1,84 @@
+//! The page of a team: who should bank from where, who is best from where, and the way to the
+//! players' posters.
+
+use crate::plots::svg::{Plot, escaped};
+
+/// A plain table.
+pub struct PageTable {
+    /// What it shows.
+    pub caption: String,
+    /// The names of its columns.
+    pub columns: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// The content of the page.
+pub struct TeamPage {
+    /// From where each player should bank, a line each.
+    pub answer: String,
+    /// Tables.
+    pub tables: Vec<PageTable>,
+    /// The maps side by side.
+    pub maps: Option<Plot>,
+    /// Name and file of each player's poster.
+    pub posters: Vec<(String, String)>,
+    /// What else must be said.
+    pub footer: String,
+}
+
+impl PageTable {
+    fn html(&self) -> String {
+        let columns: String = self
+            .columns
+            .iter()
+            .map(|name| format!("<th scope=\"col\" class=\"text\">{}</th>", escaped(name)))
+            .collect();
+        let row = |cells: &Vec<String>| {
+            let cells = cells.iter().zip(&self.columns).map(|(cell, column)| {
+                format!(
+                    "<td class=\"text\" data-label=\"{}\">{}</td>",
+                    escaped(column),
+                    escaped(cell)
+                )
+            });
+            format!("<tr>{}</tr>\n", cells.collect::<String>())
+        };
+        format!(
+            "<h2>{}</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr>{columns}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n",
+            escaped(&self.caption),
+            self.rows.iter().map(row).collect::<String>()
+        )
+    }
+}
+
+impl TeamPage {
+    /// The page as one HTML file. The posters stay files of their own.
+    #[must_use]
+    pub fn html(&self) -> String {
+        let posters: Vec<String> = self
+            .posters
+            .iter()
+            .map(|(name, file)| format!("<a href=\"{}\">{}</a>", escaped(file), escaped(name)))
+            .collect();
+        let maps = self.maps.as_ref().map_or_else(String::new, |plot| {
+            format!(
+                "<figure class=\"wide\">\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
+                plot.svg,
+                escaped(&plot.caption)
+            )
+        });
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width\">\n<title>The team</title>\n\
+             <style>\n{}figure.wide {{ width: 100%; }}\n</style>\n<h1>The team</h1>\n\
+             <p class=\"answer\">{}</p>\n{}{maps}<p>Posters to print: {}</p>\n\
+             <footer><p>{}</p></footer>\n</html>\n",
+            include_str!("../../assets/report/page.css"),
+            escaped(self.answer.trim_end()),
+            self.tables.iter().map(PageTable::html).collect::<String>(),
+            posters.join(", "),
+            escaped(self.footer.trim_end())
+        )
+    }
+}
