@@ -10,7 +10,11 @@
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::measured_release::MeasuredRelease;
 use super::prior::{PopulationPrior, Spread};
+use crate::math::exponential::exponential;
 use crate::math::normal_distribution::cdf;
+use crate::math::real::{Real, SimdReal};
+use crate::math::simd::F64x8;
+use fearless_simd::{Level, Simd};
 use hammer_and_sample::Model;
 use nalgebra::{Cholesky, SMatrix, SVector};
 
@@ -36,6 +40,7 @@ pub(super) struct StudentPosterior<const D: usize> {
     /// Of each place the means of the measurements and their standard errors, the unit of the
     /// parameters.
     means: Vec<[Spread; D]>,
+    level: Level,
 }
 
 /// `1/w` and the logarithm of its probability for each node.
@@ -55,11 +60,74 @@ fn scale_nodes(tail_weight: f64) -> [(f64, f64); NODES] {
     nodes
 }
 
-/// The logarithm of a sum of exponentials.
-fn log_sum_exp(terms: &[f64; NODES]) -> f64 {
-    let greatest = terms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = terms.iter().map(|term| libm::exp(term - greatest)).sum();
-    greatest + libm::log(sum)
+/// The normal densities of measurements of one group, at each node.
+struct DensitiesAtNodes<const D: usize> {
+    /// The logarithms of the probability of the node and of the density at the mean, together.
+    constants: [f64; NODES],
+    /// The inverse covariances, entry by entry.
+    inverses: [[[f64; NODES]; D]; D],
+}
+
+/// Factors of a product whose logarithm is taken.
+const MOST_FACTORS: usize = 64;
+/// Nodes that are summed at a time.
+const LANES: usize = 8;
+
+impl<const D: usize> DensitiesAtNodes<D> {
+    /// The sum of the logarithms of the densities of measurements, each summed over the nodes.
+    #[inline(always)]
+    fn log_likelihood<S: Simd>(
+        &self,
+        simd: S,
+        values: &[SVector<f64, D>],
+        mean: &SVector<f64, D>,
+    ) -> f64 {
+        const { assert!(NODES == 2 * LANES) };
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut sum = 0.0;
+                // Sums from 1 to NODES: their product is below 1e78, with one logarithm.
+                let mut product = 1.0;
+                for (number, y) in values.iter().enumerate() {
+                    let deviation = y - mean;
+                    let first = self.log_densities(simd, &deviation, 0);
+                    let second = self.log_densities(simd, &deviation, LANES);
+                    let mut lanes = [0.0; LANES];
+                    Real::max(first, second).store(&mut lanes);
+                    let greatest = lanes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                    let all = exponential(first - greatest) + exponential(second - greatest);
+                    all.store(&mut lanes);
+                    sum += greatest;
+                    product *= lanes.iter().sum::<f64>();
+                    if number % MOST_FACTORS == 0 {
+                        sum += libm::log(product);
+                        product = 1.0;
+                    }
+                }
+                sum + libm::log(product)
+            },
+        )
+    }
+
+    /// The logarithm of the density of a deviation from the mean, at the nodes from `node` on.
+    #[inline(always)]
+    fn log_densities<S: Simd>(
+        &self,
+        simd: S,
+        deviation: &SVector<f64, D>,
+        node: usize,
+    ) -> F64x8<S> {
+        let mut square = F64x8::broadcast(simd, 0.0);
+        for i in 0..D {
+            let mut row = F64x8::broadcast(simd, 0.0);
+            for j in 0..D {
+                row += F64x8::load(simd, &self.inverses[i][j][node..]) * deviation[j];
+            }
+            square += row * deviation[i];
+        }
+        F64x8::load(simd, &self.constants[node..]) - square * 0.5
+    }
 }
 
 impl<const D: usize> StudentPosterior<D> {
@@ -95,6 +163,7 @@ impl<const D: usize> StudentPosterior<D> {
             means: (0..places)
                 .map(|place| std::array::from_fn(|i| mean_of(place, i)))
                 .collect(),
+            level: Level::new(),
         }
     }
 
@@ -117,23 +186,27 @@ impl<const D: usize> StudentPosterior<D> {
         for group in &self.groups {
             let factor = self.normal.release_factor(dispersion, group.place);
             let scale = factor * factor.transpose() * (1.0 - 2.0 * tail_weight);
-            let mut inverses = [SMatrix::<f64, D, D>::zeros(); NODES];
-            let mut constants = [0.0; NODES];
+            let mut at_nodes = DensitiesAtNodes::<D> {
+                constants: [0.0; NODES],
+                inverses: [[[0.0; NODES]; D]; D],
+            };
             for (k, (inverse_w, log_probability)) in nodes.iter().enumerate() {
                 let cholesky = Cholesky::new(scale * *inverse_w + group.noise)?;
                 let diagonal = cholesky.l_dirty().diagonal();
                 let half: f64 = diagonal.iter().map(|entry| libm::log(*entry)).sum();
-                inverses[k] = cholesky.inverse();
-                constants[k] = log_probability - half;
+                at_nodes.constants[k] = log_probability - half;
+                let inverse = cholesky.inverse();
+                for i in 0..D {
+                    for j in 0..D {
+                        at_nodes.inverses[i][j][k] = inverse[(i, j)];
+                    }
+                }
             }
             let mean = self.mean(point, group.place);
-            for y in &group.values {
-                let deviation = y - mean;
-                let terms = std::array::from_fn(|k| {
-                    constants[k] - 0.5 * deviation.dot(&(inverses[k] * deviation))
-                });
-                sum += log_sum_exp(&terms);
-            }
+            sum += fearless_simd::dispatch!(
+                self.level,
+                simd => at_nodes.log_likelihood(simd, &group.values, &mean)
+            );
         }
         Some(sum)
     }
@@ -194,10 +267,18 @@ mod tests {
     fn val_mixture_is_the_t_distribution() {
         for freedom in [3.0, 5.0, 12.0, 60.0, 1000.0] {
             let nodes = scale_nodes(1.0 / freedom);
+            let at_nodes = DensitiesAtNodes::<1> {
+                constants: nodes.map(|(inverse_w, log_probability)| {
+                    log_probability - 0.5 * libm::log(inverse_w)
+                }),
+                inverses: [[nodes.map(|(inverse_w, _)| 1.0 / inverse_w)]],
+            };
             let log_density = |x: f64| {
-                log_sum_exp(&nodes.map(|(inverse_w, log_probability)| {
-                    log_probability - 0.5 * libm::log(inverse_w) - 0.5 * x * x / inverse_w
-                }))
+                let (values, mean) = ([SVector::from([x])], SVector::zeros());
+                fearless_simd::dispatch!(
+                    Level::new(),
+                    simd => at_nodes.log_likelihood(simd, &values, &mean)
+                )
             };
             for x in [0.5, 1.0, 2.0, 4.0, 8.0] {
                 let seen = log_density(x) - log_density(0.0);
