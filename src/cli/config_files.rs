@@ -4,7 +4,8 @@ use super::failure::{Failure, io_in_words, refuse_missing};
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::config::{
-    MAX_FILE_BYTES, MAX_TOML_BYTES, has_physics_table, parse_physics, parse_profile,
+    MAX_FILE_BYTES, MAX_TOML_BYTES, has_physics_table, is_physics_alone, parse_physics,
+    parse_profile,
 };
 use crate::dynamics::Integrator;
 use crate::model::{PRESETS, Physics, Preset};
@@ -113,12 +114,23 @@ fn load(
         )));
     }
     let origin = path.display().to_string();
+    if is_physics_alone(&text) {
+        return Err(Failure::usage(format!(
+            "{origin}: this is a physics, not a profile: give a profile, and the physics as --physics {origin}"
+        )));
+    }
     // The profile itself must be valid, with its own physics.
     let own = parse_profile(&text, &origin)?;
     if !quiet {
         let not_fixed = nominal_values_not_fixed(&own, fixed);
         for words in implausible_values(&own).into_iter().chain(not_fixed) {
             print_remark(&format!("warning: {words}"));
+        }
+        let is_first_place = path.file_name().is_some_and(|name| name == "profile.toml");
+        if is_first_place && path.with_file_name("profile_place_2.toml").is_file() {
+            print_remark(&format!(
+                "{origin}: is that of the first place of its fit; the others are beside it, profile_place_2.toml and so on"
+            ));
         }
         for words in warnings_of_fit(path) {
             print_remark(&format!("warning: {origin}: its fit warned: {words}"));
@@ -145,7 +157,7 @@ fn load(
 }
 
 /// What the fit that wrote a profile warned of: its `fit.json` lies beside it.
-fn warnings_of_fit(profile: &Path) -> Vec<String> {
+pub(crate) fn warnings_of_fit(profile: &Path) -> Vec<String> {
     let is_of_fit = profile
         .file_name()
         .is_some_and(|name| name.to_string_lossy().starts_with("profile"));

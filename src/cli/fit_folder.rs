@@ -21,8 +21,8 @@ pub(crate) struct FitFolder {
     /// The fitted profile at each place.
     pub(crate) profiles: Vec<Profile>,
     pub(crate) posterior: Posterior,
-    /// Made and all shots with a result.
-    pub(crate) observed: (usize, usize),
+    /// At each place: made and all shots with a result.
+    pub(crate) observed: Vec<(usize, usize)>,
     /// What the fit warned of.
     pub(crate) warnings: Vec<String>,
     /// The name of the tracker, or the path of its file.
@@ -92,6 +92,10 @@ pub(crate) fn of_shooters(folder: &Path) -> Vec<PathBuf> {
     if !is_of_fits || folder.join("fit.json").exists() {
         return Vec::new();
     }
+    let listed = listed_folders(folder);
+    if !listed.is_empty() {
+        return listed;
+    }
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
     let mut fits: Vec<PathBuf> = paths
@@ -99,6 +103,31 @@ pub(crate) fn of_shooters(folder: &Path) -> Vec<PathBuf> {
         .collect();
     fits.sort();
     fits
+}
+
+/// The folders of the fits that `shooters.csv` lists. (One that is not in it is of an older fit.)
+fn listed_folders(folder: &Path) -> Vec<PathBuf> {
+    let Ok(mut reader) = csv::Reader::from_path(folder.join("shooters.csv")) else {
+        return Vec::new();
+    };
+    let column = reader
+        .headers()
+        .ok()
+        .and_then(|names| names.iter().position(|name| name == "folder"));
+    let Some(column) = column else {
+        return Vec::new();
+    };
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for row in reader.records().flatten() {
+        let name = row.get(column).map(Path::new).and_then(Path::file_name);
+        let Some(path) = name.map(|name| folder.join(name)) else {
+            continue;
+        };
+        if path.join("fit.json").exists() && !folders.contains(&path) {
+            folders.push(path);
+        }
+    }
+    folders
 }
 
 /// Reads the folder of a fit.
@@ -125,7 +154,6 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     }
     let json: serde_json::Value = serde_json::from_str(&read_text(&json_path)?)
         .map_err(|error| damaged(&json_path, error))?;
-    let count = |name: &str| json["observed"][name].as_u64().unwrap_or(0) as usize;
     let spin = json["parameters"]
         .as_array()
         .and_then(|all| all.iter().find(|p| p["name"] == "backspin_mean"))
@@ -157,7 +185,7 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     Ok(FitFolder {
         profiles,
         posterior,
-        observed: (count("made"), count("shots")),
+        observed: observed(&json, places.len()),
         tracker: json["source"]["tracker"]
             .as_str()
             .unwrap_or_default()
@@ -178,6 +206,22 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
             .filter_map(|warning| warning.as_str().map(str::to_owned))
             .collect(),
     })
+}
+
+/// Made and all shots with a result at each place of `fit.json`. Before a place had its own there
+/// was the count of all, which is that of an only place.
+fn observed(json: &serde_json::Value, places: usize) -> Vec<(usize, usize)> {
+    let count = |of: &serde_json::Value, name: &str| of[name].as_u64().unwrap_or(0) as usize;
+    let at = |place: usize| {
+        let own = &json["places"][place];
+        let of = if own.get("made").is_none() && places == 1 {
+            &json["observed"]
+        } else {
+            own
+        };
+        (count(of, "made"), count(of, "shots"))
+    };
+    (0..places).map(at).collect()
 }
 
 /// The places of `fit.json`, with lengths in the unit of their names.

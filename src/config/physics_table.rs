@@ -43,6 +43,14 @@ pub fn has_physics_table(text: &str) -> bool {
         .is_ok_and(|table| table.contains_key("physics"))
 }
 
+/// Whether a text has a physics and no shooter.
+#[cfg(feature = "app")]
+#[must_use]
+pub fn is_physics_alone(text: &str) -> bool {
+    text.parse::<toml::Table>()
+        .is_ok_and(|table| table.contains_key("physics") && !table.contains_key("shooter"))
+}
+
 /// Reads the table. The constants are not checked here.
 pub(super) fn read_physics(
     root: &mut TableReader<'_, '_>,

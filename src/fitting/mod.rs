@@ -50,7 +50,10 @@ pub use measured_release::{
 };
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
 pub use prior::{PopulationPrior, Spread};
-pub use session_comparison::{POWER, SessionComparison, compare_probabilities, compare_sessions};
+pub use session_comparison::{
+    POWER, ProbabilityChange, SessionComparison, compare_probabilities, compare_sessions,
+    probability_change,
+};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};
 pub use tracker_noise::{Tracker, TrackerNoise};

@@ -1,8 +1,10 @@
 //! Two sessions of one shooter compared.
 
-use super::draw_probabilities::DrawProbabilities;
+use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
+use super::measured_release::Values;
 use super::posterior::{Draw, Posterior};
+use crate::shooter::Profile;
 
 /// What changed in one quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +73,61 @@ pub fn compare_probabilities(
 ) -> SessionComparison {
     let [before, after] = probabilities;
     compare(&before.of_draws, &after.of_draws, shots)
+}
+
+/// What the change of P between two sessions comes from: first the scatter changes, then the aim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbabilityChange {
+    /// P with the new scatter at the old aim, less P before.
+    pub by_scatter: Interval,
+    /// P after, less P with the new scatter at the old aim.
+    pub by_aim: Interval,
+}
+
+/// Splits the change of P at a place. `profile` is that of the place, `probabilities` have P of the
+/// draws before and after; about `shots` shots are simulated.
+#[must_use]
+pub fn probability_change(
+    profile: &Profile,
+    [before, after]: [&Posterior; 2],
+    place: usize,
+    probabilities: [&DrawProbabilities; 2],
+    shots: usize,
+) -> ProbabilityChange {
+    let count = before.draws.len().min(after.draws.len());
+    // Not the draw at the same place: it has the same random numbers.
+    let partner = |k: usize| (k + count / 2) % count;
+    let mixed: Vec<Draw> = (0..count)
+        .map(|k| {
+            let scatter = &after.draws[partner(k)];
+            let mut draw = Draw::new(
+                before.draws[k].means.clone(),
+                scatter.sds,
+                scatter.correlation,
+                scatter.speed_coefficients,
+            );
+            draw.tail_weight = scatter.tail_weight;
+            draw
+        })
+        .collect();
+    let means: Vec<Values> = mixed.iter().map(|draw| draw.means[place]).collect();
+    let seed = profile.search().seed;
+    let p_of_mixed = WeightedShots::simulate(profile, (&mixed, place), &means, shots, seed)
+        .probabilities(
+            &mixed,
+            |draw| draw.means[place],
+            |draw| draw.factor_at(place),
+        )
+        .of_draws;
+    let [p_before, p_after] = probabilities.map(|p| &p.of_draws);
+    ProbabilityChange {
+        by_scatter: Interval::of((0..count).map(|k| p_of_mixed[k] - p_before[k]).collect()),
+        by_aim: Interval::of(
+            (0..count)
+                .map(|k| p_after[partner(k)] - p_of_mixed[k])
+                .collect(),
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -27,8 +27,8 @@ const MOST_NAMED_SESSIONS: usize = 8;
 /// Points of an ellipse.
 const ELLIPSE_POINTS: usize = 96;
 
-/// All plots of a fit; of several places, the releases and the make zone of each. `sessions` has the session of each shot, with empty texts
-/// where there is none.
+/// All plots of a fit; of several places, the releases and the make zone of each. `sessions` has
+/// the session of each shot, with empty texts where there is none.
 #[must_use]
 pub fn all(
     fit: &ShooterFit,
@@ -62,11 +62,15 @@ fn named(fit: &ShooterFit, name: &str, what: &str, svg: Svg) -> Plot {
     }
 }
 
-/// The name of a plot and what it shows, at a place.
-fn of_place(fit: &ShooterFit, place: usize, names: [&str; 2], units: UnitSystem) -> [String; 2] {
-    let [name, what] = names;
+/// The name of a plot, and of several places the place in words.
+fn of_place(
+    fit: &ShooterFit,
+    place: usize,
+    name: &str,
+    units: UnitSystem,
+) -> (String, Option<String>) {
     if fit.places.len() == 1 {
-        return [name.to_owned(), what.to_owned()];
+        return (name.to_owned(), None);
     }
     let from = fit.places[place].location.in_words(units);
     // The first place has the name that the only one would have.
@@ -74,7 +78,19 @@ fn of_place(fit: &ShooterFit, place: usize, names: [&str; 2], units: UnitSystem)
         0 => name.to_owned(),
         _ => format!("{name}_place_{}", place + 1),
     };
-    [name, format!("{what}, place {}: {from}", place + 1)]
+    (name, Some(format!("place {}: {from}", place + 1)))
+}
+
+/// Writes what a plot shows, and below it the place, if there are several; gives both.
+fn title(svg: &mut Svg, what: &str, place: Option<&String>) -> String {
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, what);
+    match place {
+        None => what.to_owned(),
+        Some(place) => {
+            svg.text((20.0, 46.0), 12.0, Anchor::Start, place);
+            format!("{what}, {place}")
+        }
+    }
 }
 
 /// The marker of a shot.
@@ -155,9 +171,9 @@ fn release_scatter(
     let (long, metre) = units.length();
     let angle = fit.places[place].location.angle_rad;
     let shots = shots_at(shots, place);
-    let [name, title] = of_place(fit, place, ["releases", "Measured releases"], units);
+    let (name, from) = of_place(fit, place, "releases", units);
     let mut svg = Svg::new(980.0, 470.0);
-    svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
+    let title = title(&mut svg, "Measured releases", from.as_ref());
     let display = |k: usize, value: f64| match k {
         0 => value / metre,
         2 => (value - angle) / DEGREE_RAD,
@@ -242,10 +258,10 @@ fn make_zone(
     let needed = 1.05 * landings.iter().map(farthest).fold(0.0, f64::max);
     let half = needed.clamp(LEAST_HALF_WIDTH_M / inch, MOST_HALF_WIDTH_M / inch);
     let outside = landings.iter().filter(|l| farthest(l) > half).count();
-    let names = ["make_zone", "Where shots fall, and the make zone"];
-    let [name, title] = of_place(fit, place_index, names, units);
+    let (name, from) = of_place(fit, place_index, "make_zone", units);
     let mut svg = Svg::new(640.0, 680.0);
-    svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
+    let what = "Where shots fall, and the make zone";
+    let title = title(&mut svg, what, from.as_ref());
     let axes = Axes {
         corner: (80.0, 70.0),
         size: (500.0, 500.0),

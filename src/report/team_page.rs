@@ -52,6 +52,12 @@ impl PageTable {
     }
 }
 
+/// A text with its line breaks.
+fn lines(text: &str) -> String {
+    let lines: Vec<String> = text.trim_end().lines().map(escaped).collect();
+    lines.join("<br>\n")
+}
+
 impl TeamPage {
     /// The page as one HTML file. The posters stay files of their own.
     #[must_use]
@@ -75,10 +81,10 @@ impl TeamPage {
              <p class=\"answer\">{}</p>\n{}{maps}<p>Posters to print: {}</p>\n\
              <footer><p>{}</p></footer>\n</html>\n",
             include_str!("../../assets/report/page.css"),
-            escaped(self.answer.trim_end()),
+            lines(&self.answer),
             self.tables.iter().map(PageTable::html).collect::<String>(),
             posters.join(", "),
-            escaped(self.footer.trim_end())
+            lines(&self.footer)
         )
     }
 }

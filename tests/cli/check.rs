@@ -383,6 +383,10 @@ fn contract_a_table_or_a_folder_in_place_of_a_profile_is_told_apart() {
     check(&table).exits(2).says("`bankshot fit ");
     write_file(&folder, "profile.toml", FREE_THROW);
     check(folder.path()).exits(2).says("profile.toml");
+    let physics = write_file(&folder, "foam.toml", "[physics]\npreset = \"ncaa\"\n");
+    check(&physics)
+        .exits(2)
+        .says("this is a physics, not a profile: give a profile, and the physics as --physics ");
 }
 
 #[test]

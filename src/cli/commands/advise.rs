@@ -45,7 +45,7 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             let units = options.measured.units_or(fit.units);
             answer(
                 options,
-                (&fit.profiles, &fit.posterior, fit.observed),
+                (&fit.profiles, &fit.posterior, &fit.observed),
                 units,
                 quiet,
             )?;
@@ -62,13 +62,16 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
         let fit = file
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
-        let observed = (fit.makes.made, fit.makes.labelled);
+        let observed: Vec<(usize, usize)> = (0..fit.places.len())
+            .map(|place| fit.makes.at_place(place))
+            .map(|makes| (makes.made, makes.labelled))
+            .collect();
         separate(options, number)?;
         print_warnings(&file.name_of(shots), &fit.warnings);
         let units = options.measured.unit_system();
         answer(
             options,
-            (&fit.profiles, &fit.posterior, observed),
+            (&fit.profiles, &fit.posterior, &observed),
             units,
             quiet,
         )?;
@@ -91,17 +94,17 @@ fn print_warnings<W: std::fmt::Display>(name: &str, warnings: &[W]) {
     }
 }
 
-/// Advice for each place; `profiles` are those of the places.
+/// Advice for each place; `profiles` and `observed` (made, and all with a result) are those of the
+/// places.
 fn answer(
     options: &AdviseOptions,
-    (profiles, posterior, observed): (&[Profile], &Posterior, (usize, usize)),
+    (profiles, posterior, observed): (&[Profile], &Posterior, &[(usize, usize)]),
     units: UnitSystem,
     quiet: bool,
 ) -> Result<(), Failure> {
     let bars = ProgressBars::new(quiet);
-    // The makes were counted over all places.
-    let observed = (profiles.len() == 1).then_some(observed);
-    for (place, profile) in profiles.iter().enumerate() {
+    for (place, (profile, observed)) in profiles.iter().zip(observed).enumerate() {
+        let observed = Some(*observed);
         let advice = advise(profile, posterior, place, &bars)?;
         let (name, location) = (&profile.shooter().name, profile.location());
         if options.json {
@@ -115,7 +118,8 @@ fn answer(
                 "{}from {:.2} {unit}, at {:.1} deg on the court, released {:.2} {unit} up\n",
                 if place > 0 { "\n" } else { "" },
                 location.distance_m / size,
-                location.angle_rad / DEGREE_RAD,
+                // No negative zero.
+                libm::round(10.0 * location.angle_rad / DEGREE_RAD) / 10.0 + 0.0,
                 profile.shooter().release_height_m / size
             ))?;
         }

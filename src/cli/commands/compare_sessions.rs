@@ -7,8 +7,9 @@ use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
-    DrawProbabilities, MeasuredRelease, Posterior, SessionComparison, ShooterFit, SpinSource,
-    VALUE_NAMES, compare_probabilities, compare_sessions,
+    DrawProbabilities, MeasuredRelease, Posterior, ProbabilityChange, SessionComparison,
+    ShooterFit, SpinSource, VALUE_NAMES, compare_probabilities, compare_sessions,
+    probability_change,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
@@ -64,7 +65,7 @@ struct Session {
     places: usize,
     place: usize,
     posterior: Posterior,
-    /// Made at this place, and all with a result; of a folder with several places none.
+    /// Made at this place, and all with a result.
     makes: (usize, usize),
     /// P of the usual shot at this place.
     probabilities: DrawProbabilities,
@@ -181,8 +182,9 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             }
         }
         let changes = changes(sessions, options);
+        let causes = causes(sessions);
         if options.json {
-            jsons.push(json(sessions, &changes));
+            jsons.push(json(sessions, &changes, &causes));
             continue;
         }
         if several_shooters {
@@ -194,7 +196,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             shots: session.posterior.shots,
             makes: session.makes,
         });
-        print_prose(&session_changes_text(summaries, &changes))?;
+        print_prose(&session_changes_text(summaries, &changes, &causes))?;
     }
     if options.json {
         let all = if several_shooters {
@@ -220,11 +222,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
             place,
             probabilities: fit.usual_probabilities(place),
             posterior: fit.posterior,
-            makes: if fit.profiles.len() == 1 {
-                fit.observed
-            } else {
-                (0, 0)
-            },
+            makes: fit.observed[place],
             profile: fit.profiles[place].clone(),
             shooter: fit.shooter,
             warnings: fit.warnings,
@@ -272,6 +270,8 @@ fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Shots that the causes of the change of P are computed with.
+const SHOTS: usize = 65_536;
 /// Places nearer than this are the same, m.
 const SAME_PLACE_M: f64 = 0.15;
 
@@ -402,7 +402,22 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
     changes
 }
 
-fn json([before, after]: &[Session; 2], changes: &[SessionChange]) -> Value {
+/// What the change of P comes from.
+fn causes([before, after]: &[Session; 2]) -> ProbabilityChange {
+    probability_change(
+        &before.profile,
+        [&before.posterior, &after.posterior],
+        before.place,
+        [&before.probabilities, &after.probabilities],
+        SHOTS,
+    )
+}
+
+fn json(
+    [before, after]: &[Session; 2],
+    changes: &[SessionChange],
+    causes: &ProbabilityChange,
+) -> Value {
     let session = |session: &Session| {
         let (made, labelled) = session.makes;
         json!({
@@ -432,5 +447,7 @@ fn json([before, after]: &[Session; 2], changes: &[SessionChange]) -> Value {
         "before": session(before),
         "after": session(after),
         "changes": listed.collect::<Value>(),
+        "change_of_P_by_scatter": object(interval_json(&causes.by_scatter.scaled(100.0))),
+        "change_of_P_by_aim": object(interval_json(&causes.by_aim.scaled(100.0))),
     })
 }

@@ -65,7 +65,7 @@ impl Template {
             Self::Player => format!("bankshot best {file}"),
             Self::Sweep => format!("bankshot plan {file}"),
             Self::Robot => {
-                format!("bankshot table {file} --distances '6 ft to 20 ft by 2 ft'")
+                format!("bankshot table {file} --kind best --distances '6 ft to 20 ft by 2 ft'")
             }
             Self::Physics => format!("bankshot check player.toml --physics {file} --verbose"),
         }

@@ -103,6 +103,8 @@ impl ChangeWords {
     fn release(&self, title: &str, values: &Values) -> String {
         let units = value_units(self.units);
         let aim = (values[2] - self.court_angle_rad) / units[2].1;
+        // No negative zero.
+        let aim = libm::round(10.0 * aim) / 10.0 + 0.0;
         format!(
             "{title:<12} speed {:.2} {}, pitch {:.1} deg, aim {:+.1} deg, backspin {:.2} rev/s\n",
             values[0] / units[0].1,
@@ -176,6 +178,17 @@ fn scatter_in_words(cause: Cause) -> &'static str {
 /// What makes were observed: made and shots.
 pub type Observed = Option<(usize, usize)>;
 
+/// Advice of a model that disagrees with the count of makes by more standard errors is not to be
+/// followed; about 1 of 400 tests by luck.
+const MOST_DISAGREEMENT: f64 = 3.0;
+
+/// By how many of its standard errors the share of makes differs from P of the usual shot.
+fn disagreement(p: &Interval, made: usize, shots: usize) -> f64 {
+    let count = wilson_interval(made, shots);
+    let error = libm::hypot(0.25 * (count.high - count.low), p.sd);
+    libm::fabs(count.share - p.mean) / error
+}
+
 /// The answer for people: a few sentences, then the figures.
 #[must_use]
 pub fn advice_text(
@@ -187,23 +200,25 @@ pub fn advice_text(
 ) -> String {
     let name = if name.is_empty() { "You" } else { name };
     let p = &advice.usual_probability;
-    let seen =
-        observed
-            .filter(|(_, shots)| *shots > 0)
-            .map_or_else(String::new, |(made, shots)| {
-                let count = wilson_interval(made, shots);
-                let error = libm::hypot(0.25 * (count.high - count.low), p.sd);
-                let but = if libm::fabs(count.share - p.mean) < 2.0 * error {
-                    String::new()
-                } else {
-                    format!(
-                        ", {:.0} %: the count and the model disagree",
-                        100.0 * count.share
-                    )
-                };
-                format!("; {made} of {shots} went in{but}")
-            });
-    let mut text = format!(
+    let counted = observed.filter(|(_, shots)| *shots > 0);
+    let disagreement = counted.map_or(0.0, |(made, shots)| disagreement(p, made, shots));
+    let seen = counted.map_or_else(String::new, |(made, shots)| {
+        let but = if disagreement < 2.0 {
+            String::new()
+        } else {
+            format!(
+                ", {:.0} %: the count and the model disagree",
+                100.0 * made as f64 / shots as f64
+            )
+        };
+        format!("; {made} of {shots} went in{but}")
+    });
+    let mut text = if disagreement < MOST_DISAGREEMENT {
+        String::new()
+    } else {
+        "Do not act on this yet: the makes and the measured shots do not belong together. Look at the place, the height of the release, what depth is counted from, left and right, the physics, and how a make was recorded.\n".to_owned()
+    };
+    text += &format!(
         "{name}: now {:.0} % of such shots go in (95 %: {:.0} to {:.0} %{seen}).\n",
         100.0 * p.mean,
         100.0 * p.low,

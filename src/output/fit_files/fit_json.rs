@@ -81,8 +81,12 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             record.push(named("source", parameter.source.into()));
             object(record)
         });
-    let places = fit.places.iter().zip(&fit.probabilities).map(|(place, p)| {
+    let places = fit.places.iter().zip(&fit.probabilities).enumerate();
+    let places = places.map(|(index, (place, p))| {
+        let makes = fit.makes.at_place(index);
         object(vec![
+            named("shots", makes.labelled.into()),
+            named("made", makes.made.into()),
             named(
                 &format!("distance_{long}"),
                 number(place.location.distance_m / metre),

@@ -1,6 +1,6 @@
 //! What changed between two sessions of a shooter, as text.
 
-use crate::fitting::SessionComparison;
+use crate::fitting::{Interval, ProbabilityChange, SessionComparison};
 use crate::math::normal_distribution::quantile;
 
 /// What changed in one quantity.
@@ -69,11 +69,20 @@ pub struct SessionSummary<'a> {
     pub makes: (usize, usize),
 }
 
+/// A change of P: `+3 points (95 %: -1 to +7)`.
+fn points(change: &Interval) -> String {
+    // Rounded first, and 0 added: no negative zero.
+    let [mean, low, high] =
+        [change.mean, change.low, change.high].map(|p| libm::round(100.0 * p) + 0.0);
+    format!("{mean:+.0} points (95 %: {low:+.0} to {high:+.0})")
+}
+
 /// The verdict in words, then the table. The sessions are before and after.
 #[must_use]
 pub fn session_changes_text(
     sessions: [SessionSummary<'_>; 2],
     changes: &[SessionChange],
+    causes: &ProbabilityChange,
 ) -> String {
     let counted = sessions.each_ref().map(|session| match session.makes {
         (_, 0) => None,
@@ -90,6 +99,11 @@ pub fn session_changes_text(
         format!("{} ({} shots{makes})", session.name, session.shots)
     });
     let mut text = verdict(changes);
+    text += &format!(
+        "Of the change of the chance, the scatter makes {} and then the aim (speed, angle, direction) {}.\n",
+        points(&causes.by_scatter),
+        points(&causes.by_aim)
+    );
     if let [Some(before), Some(after)] = counted {
         text += &format!(
             "The chance is that of the releases as measured; the makes themselves went from {before:.0} to {after:.0} %.\n"

@@ -1,23 +1,19 @@
-//! The files and the answer of the fit of one shooter.
+//! The fit of one shooter and its answer.
 
+use super::failure::failure;
+use super::files::write;
+use super::options::FitOptions;
 use super::remarks::{print_merged_heights, print_sessions, print_unused};
+use super::shooters_table::{TABLE_FILE, renew_table};
 use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, estimate, with_free};
-use super::{FitOptions, failure, several_shooters};
 use crate::cli::failure::Failure;
 use crate::cli::measured_shots_flags::MeasuredFile;
-use crate::cli::plot_files;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
-use crate::output::atomic_file;
-use crate::output::fit_files::draws_table::draws_parquet;
 use crate::output::fit_files::fit_json::fit_json;
 use crate::output::fit_files::fit_text::fit_text;
-use crate::output::fit_files::fitted_profile_toml::fitted_profile_toml;
-use crate::output::fit_files::shots_table::shots_csv;
-use crate::plots::measured_shots;
-use crate::report::fit_page::fit_page;
 use crate::shooter::implausible_values;
 use serde_json::Value;
 use std::path::Path;
@@ -31,7 +27,7 @@ pub(super) fn fit(
     quiet: bool,
 ) -> Result<(), Failure> {
     run_folder::refuse_other_results(folder, RunKind::Fit)?;
-    if folder.join(several_shooters::TABLE_FILE).exists() {
+    if folder.join(TABLE_FILE).exists() {
         return Err(Failure::usage(format!(
             "{0}: holds the fits of several shooters; name a folder in it: --out {1}",
             folder.display(),
@@ -53,7 +49,7 @@ pub(super) fn fit(
         .map(|name| estimate(name, file, shots, &fit))
         .collect::<Result<Vec<_>, _>>()?;
     write(folder, file, (shots, &fit, &free), options)?;
-    several_shooters::renew_table(file, (shots, &fit), folder, options)?;
+    renew_table(file, (shots, &fit), folder, options)?;
     answer(file, (shots, &fit, &free), options, folder, quiet)
 }
 
@@ -67,72 +63,6 @@ fn refuse_other_shooter(folder: &Path, name: &str) -> Result<(), Failure> {
             folder.display()
         ))),
         _ => Ok(()),
-    }
-}
-
-/// Writes the files of a fit.
-pub(super) fn write(
-    folder: &Path,
-    file: &MeasuredFile,
-    (shots, fit, free): (&ShooterShots, &ShooterFit, &[UnmeasuredParameter]),
-    options: &FitOptions,
-) -> Result<(), Failure> {
-    run_folder::prepare(folder, RunKind::Fit)?;
-    let units = options.measured.unit_system();
-    let source = file.source(shots);
-    let rows = shots.shots.iter().map(|shot| shot.row);
-    let sessions = rows
-        .zip(shots.sessions.iter().map(String::as_str))
-        .collect();
-    let mut contents: Vec<(String, Vec<u8>)> = vec![
-        (
-            "fit.json".to_owned(),
-            format!("{:#}\n", with_free(fit_json(fit, &source, units), free)).into_bytes(),
-        ),
-        (
-            "draws.parquet".to_owned(),
-            draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?,
-        ),
-        (
-            "shots.csv".to_owned(),
-            shots_csv(fit, &sessions, &shots.rejected, units),
-        ),
-    ];
-    for place in 0..fit.places.len() {
-        let name = match place {
-            0 => "profile.toml".to_owned(),
-            _ => format!("profile_place_{}.toml", place + 1),
-        };
-        let toml = fitted_profile_toml(fit, place, &source, &file.physics_toml, units);
-        contents.push((name, toml.into_bytes()));
-    }
-    remove_further_places(folder, fit.places.len());
-    for (name, bytes) in contents {
-        let path = folder.join(name);
-        atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
-    }
-    let plots = measured_shots::all(fit, &shots.shots, &shots.sessions, units);
-    plot_files::write(&folder.join("plots"), &plots)?;
-    let page = fit_page(fit, &source, plots, units);
-    let html = page.html()?;
-    let path = folder.join("report.html");
-    atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
-}
-
-/// Removes the profiles and plots of places that an earlier fit had beyond these.
-fn remove_further_places(folder: &Path, places: usize) {
-    for number in places + 1.. {
-        let profile = folder.join(format!("profile_place_{number}.toml"));
-        if !profile.exists() {
-            return;
-        }
-        let plots = ["releases", "make_zone"].into_iter().flat_map(|plot| {
-            ["svg", "png"].map(|end| format!("plots/{plot}_place_{number}.{end}"))
-        });
-        for path in plots.map(|plot| folder.join(plot)).chain([profile]) {
-            // What cannot be removed is old, but harms nothing.
-            let _ = std::fs::remove_file(path);
-        }
     }
 }
 

@@ -1,12 +1,26 @@
 //! What the sweeps of a team say: who is best from where, who should bank from where; as text, CSV
 //! and a page.
 
-use super::{LONGEST_NAME, in_hundred, table_of};
 use crate::analysis::sensitivity::Difference;
 use crate::plots::svg::{Plot, shortened};
 use crate::report::team_page::{PageTable, TeamPage};
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 use crate::units::{DEGREE_RAD, UnitSystem};
+use comfy_table::{Table, presets};
+
+/// Longest name of a player in the tables, in characters.
+pub(super) const LONGEST_NAME: usize = 24;
+/// A chance in 100.
+pub(super) fn in_hundred(p: f64) -> String {
+    format!("{:.1}", 100.0 * p)
+}
+
+pub(super) fn table_of(header: Vec<String>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(header);
+    table
+}
 
 /// Places to bank from that are printed for each player.
 const MOST_BANK_PLACES: usize = 5;
@@ -244,7 +258,7 @@ pub(super) fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     }
     let (of_level, of_profiles) = remarks(&best);
     let mut text = format!(
-        "makes in 100 shots, the surest player first\n{}\n{of_level}",
+        "makes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n{of_level}",
         table.trim_fmt()
     );
     if players.len() <= MOST_COLUMNS && best.len() <= MOST_ROWS {
@@ -264,12 +278,15 @@ pub(super) fn team_page(
     players: &[PlayerSweep],
     maps: Option<Plot>,
     posters: Vec<(String, String)>,
+    warnings: &str,
     units: UnitSystem,
 ) -> TeamPage {
     let best = best_players(players);
     let (of_level, of_profiles) = remarks(&best);
     let mut tables = vec![PageTable {
-        caption: "Makes in 100 shots, the surest player first".to_owned(),
+        caption:
+            "Makes in 100 of each one's best shot (not of the usual one), the best player first"
+                .to_owned(),
         columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
         rows: player_rows(players, &best),
     }];
@@ -285,6 +302,6 @@ pub(super) fn team_page(
         tables,
         maps,
         posters,
-        footer: format!("{of_level}{of_profiles}"),
+        footer: format!("{warnings}{of_level}{of_profiles}"),
     }
 }

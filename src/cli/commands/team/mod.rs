@@ -6,7 +6,9 @@ use super::plan_sweep_time_and_memory::forecast_s;
 use super::sweep::{compute, run_options};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
 use crate::best_shot::{ShotKind, find_kinds};
-use crate::cli::config_files::{load_profile, read_sweep_without_shooter, read_text};
+use crate::cli::config_files::{
+    load_profile, read_sweep_without_shooter, read_text, warnings_of_fit,
+};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::plot_files;
@@ -27,11 +29,12 @@ use crate::sweep::result_row::ResultRow;
 use crate::sweep::sweep_toml::{is_sweep, parse_sweep};
 use crate::units::DEGREE_RAD;
 use clap::Args;
-use comfy_table::{Table, presets};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use court_results::{PlayerSweep, best_players, team_csv, team_page, team_text};
+use court_results::{
+    LONGEST_NAME, PlayerSweep, best_players, in_hundred, table_of, team_csv, team_page, team_text,
+};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -49,7 +52,8 @@ Examples:
   bankshot team ann.toml bo.toml cy.toml \\
     --sweep configs/half_court_3ft.toml --out team")]
 pub(crate) struct TeamOptions {
-    /// The players' profiles, the folders of their fits, or the folder of a fit of several shooters.
+    /// The players' profiles, the folders of their fits, or the folder of a fit of several
+    /// shooters.
     #[arg(required = true, num_args = 1..)]
     pub(crate) players: Vec<PathBuf>,
     /// A sweep: its places and its search. Each player takes the place of its shooter.
@@ -68,18 +72,6 @@ pub(crate) fn run(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
         None => from_their_places(options, quiet),
         Some(sweep) => over_the_court(options, sweep, quiet),
     }
-}
-
-/// A chance in 100.
-fn in_hundred(p: f64) -> String {
-    format!("{:.1}", 100.0 * p)
-}
-
-fn table_of(header: Vec<String>) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(header);
-    table
 }
 
 /// The files of the profiles: in place of the folder of a fit its profile, and those of all
@@ -198,7 +190,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         }
     }
     text += &format!(
-        "\nmakes in 100 shots, the surest player first\n{}\n",
+        "\nmakes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n",
         table.trim_fmt()
     );
     if any_either {
@@ -207,15 +199,17 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     print_prose(&text)
 }
 
-/// Longest name of a player in the tables, in characters.
-const LONGEST_NAME: usize = 24;
 fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8, Failure> {
     let texts = read_sweep_without_shooter(sweep)?;
     // Every profile is read before anything is computed.
     let mut sweeps = Vec::new();
     let mut folders: Vec<PathBuf> = Vec::new();
     let players = load_players(&options.players, quiet)?;
+    let mut warnings = String::new();
     for (path, player) in players {
+        for words in warnings_of_fit(&path) {
+            warnings += &format!("{}: the fit warned: {words}.\n", player.shooter().name);
+        }
         let mut texts = texts.clone();
         texts.shooter = Some(read_text(&path)?);
         let config = parse_sweep(&texts, &sweep.display().to_string())?;
@@ -275,7 +269,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         let file = format!("{}/poster.html", run_folder::safe_name(&player.name));
         (player.name.clone(), file)
     });
-    let page = team_page(&players, maps, posters.collect(), units);
+    let page = team_page(&players, maps, posters.collect(), &warnings, units);
     let page_file = options.out.join("team.html");
     atomic_file::write(&page_file, page.html().as_bytes())
         .map_err(|error| Failure::io(page_file.display(), &error))?;

@@ -1,0 +1,84 @@
+//! The files of a fit.
+
+use super::options::FitOptions;
+use super::unmeasured_parameters::{UnmeasuredParameter, with_free};
+use crate::cli::failure::Failure;
+use crate::cli::measured_shots_flags::MeasuredFile;
+use crate::cli::plot_files;
+use crate::cli::run_folder::{self, RunKind};
+use crate::fitting::ShooterFit;
+use crate::measured_shots::shooter_shots::ShooterShots;
+use crate::output::atomic_file;
+use crate::output::fit_files::draws_table::draws_parquet;
+use crate::output::fit_files::fit_json::fit_json;
+use crate::output::fit_files::fitted_profile_toml::fitted_profile_toml;
+use crate::output::fit_files::shots_table::shots_csv;
+use crate::plots::measured_shots;
+use crate::report::fit_page::fit_page;
+use std::path::Path;
+
+/// Writes the files of a fit.
+pub(super) fn write(
+    folder: &Path,
+    file: &MeasuredFile,
+    (shots, fit, free): (&ShooterShots, &ShooterFit, &[UnmeasuredParameter]),
+    options: &FitOptions,
+) -> Result<(), Failure> {
+    run_folder::prepare(folder, RunKind::Fit)?;
+    let units = options.measured.unit_system();
+    let source = file.source(shots);
+    let rows = shots.shots.iter().map(|shot| shot.row);
+    let sessions = rows
+        .zip(shots.sessions.iter().map(String::as_str))
+        .collect();
+    let mut contents: Vec<(String, Vec<u8>)> = vec![
+        (
+            "fit.json".to_owned(),
+            format!("{:#}\n", with_free(fit_json(fit, &source, units), free)).into_bytes(),
+        ),
+        (
+            "draws.parquet".to_owned(),
+            draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?,
+        ),
+        (
+            "shots.csv".to_owned(),
+            shots_csv(fit, &sessions, &shots.rejected, units),
+        ),
+    ];
+    for place in 0..fit.places.len() {
+        let name = match place {
+            0 => "profile.toml".to_owned(),
+            _ => format!("profile_place_{}.toml", place + 1),
+        };
+        let toml = fitted_profile_toml(fit, place, &source, &file.physics_toml, units);
+        contents.push((name, toml.into_bytes()));
+    }
+    remove_further_places(folder, fit.places.len());
+    for (name, bytes) in contents {
+        let path = folder.join(name);
+        atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+    }
+    let plots = measured_shots::all(fit, &shots.shots, &shots.sessions, units);
+    plot_files::write(&folder.join("plots"), &plots)?;
+    let page = fit_page(fit, &source, plots, units);
+    let html = page.html()?;
+    let path = folder.join("report.html");
+    atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
+}
+
+/// Removes the profiles and plots of places that an earlier fit had beyond these.
+fn remove_further_places(folder: &Path, places: usize) {
+    for number in places + 1.. {
+        let profile = folder.join(format!("profile_place_{number}.toml"));
+        if !profile.exists() {
+            return;
+        }
+        let plots = ["releases", "make_zone"].into_iter().flat_map(|plot| {
+            ["svg", "png"].map(|end| format!("plots/{plot}_place_{number}.{end}"))
+        });
+        for path in plots.map(|plot| folder.join(plot)).chain([profile]) {
+            // What cannot be removed is old, but harms nothing.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
