@@ -2,11 +2,12 @@
 //!
 //! For each kind, a coarse table of everything the shooter can intend gives a few starts, far
 //! apart. From each start a pattern search climbs on P itself, integrated with the same Sobol
-//! points everywhere (common random numbers). About the highest optimum a finer table, a window,
-//! gives P of all nominal shots to about 0.001. While its best shot lies at the window's edge, the
-//! window moves on. A parabola along each axis finds the optimum between the points of the table. P
-//! of the winner is computed again with independent scrambles, so it is not the largest of many
-//! noisy values.
+//! points everywhere (common random numbers). The table does not resolve the P of a very accurate
+//! shooter, so the other starts are tried with few points. About the highest optimum a finer table,
+//! a window, gives P of all nominal shots to about 0.001. While its best shot lies at the window's
+//! edge, the window moves on. A parabola along each axis finds the optimum between the points of
+//! the table. P of the winner is computed again with independent scrambles, so it is not the
+//! largest of many noisy values.
 
 use super::pattern_search::Climb;
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
@@ -20,10 +21,20 @@ use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Starts of the climb for each kind.
+/// Starts of the climb for each kind, and for each side spin that is tried.
 const STARTS: usize = 3;
 /// Distance in pitch between starts, in nominal pitch angles of the table.
 const START_GAP: usize = 3;
+/// Sobol points of a trial of another start.
+const TRIAL_SAMPLES: u32 = 256;
+/// A trial that reaches P of the optimum but for this is worth a climb: about twice the error of
+/// its few points.
+const TRIAL_MARGIN: f64 = 0.02;
+/// The optimum of another start must be better by so many standard errors of independent points: by
+/// less, two are level, and the first one stays.
+const LEAST_GAIN: f64 = 2.0;
+/// A trial that ends nearer than this to the optimum, in pitch, has found the same one.
+const SAME_OPTIMUM_RAD: f64 = 0.05;
 /// The optima of the climbs are compared with this many times the Sobol points of the climbs.
 const COMPARISON_FACTOR: u32 = 8;
 /// Greatest number of windows in a row.
@@ -222,7 +233,10 @@ pub(super) fn climb_from_shots(
         progress: &Silent,
     };
     let of_kind = |shot: &&Nominal| ShotKind::of(profile, shot) == kind;
-    let starts: Vec<Nominal> = shots.iter().filter(of_kind).copied().collect();
+    let starts = Starts {
+        first: shots.iter().filter(of_kind).copied().collect(),
+        others: Vec::new(),
+    };
     Ok(search.optimum(kind, &starts))
 }
 
@@ -249,6 +263,15 @@ struct Window {
     curves: Vec<ProbabilityCurve>,
 }
 
+/// Where the climbs of a kind start.
+#[derive(Default)]
+struct Starts {
+    /// The best of the coarse table, far apart.
+    first: Vec<Nominal>,
+    /// The next ones, which are tried with few points.
+    others: Vec<Nominal>,
+}
+
 struct BestShotSearch<'a> {
     profile: &'a Profile,
     plan: &'a TablePlan,
@@ -258,8 +281,8 @@ struct BestShotSearch<'a> {
 
 impl BestShotSearch<'_> {
     /// The starts of the climbs of each kind, from the coarse table.
-    fn starts(&self) -> Result<[Vec<Nominal>; 2], PlanError> {
-        let mut starts: [Vec<Nominal>; 2] = [Vec::new(), Vec::new()];
+    fn starts(&self) -> Result<[Starts; 2], PlanError> {
+        let mut starts = [Starts::default(), Starts::default()];
         for side_spin_rad_s in start_side_spins(self.profile, self.plan) {
             let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
             let table = self.table(&plan);
@@ -269,8 +292,11 @@ impl BestShotSearch<'_> {
                 self.maxima_by_pitch(&table)
             };
             for (starts, maxima) in starts.iter_mut().zip(maxima) {
-                let separated = separated(&maxima);
-                starts.extend(separated.into_iter().map(|(_, nominal)| nominal));
+                let mut separated = separated(&maxima);
+                let others = separated.split_off(STARTS.min(separated.len()));
+                let nominal = |(_, nominal): Candidate| nominal;
+                starts.first.extend(separated.into_iter().map(nominal));
+                starts.others.extend(others.into_iter().map(nominal));
             }
         }
         Ok(starts)
@@ -286,7 +312,7 @@ impl BestShotSearch<'_> {
     }
 
     /// The optimum that climbs from `starts` reach, and its P; `None` if no shot of it is made.
-    fn optimum(&self, kind: ShotKind, starts: &[Nominal]) -> Option<(Nominal, Estimate)> {
+    fn optimum(&self, kind: ShotKind, starts: &Starts) -> Option<(Nominal, Estimate)> {
         let sampler = Sampler::new(self.profile);
         let scramble = self.climb_scramble(&sampler);
         let nominal = self.climb_from(kind, starts, &sampler, &scramble)?;
@@ -375,11 +401,7 @@ impl BestShotSearch<'_> {
         NominalTable::simulate(self.profile, plan, self.progress).probabilities(self.profile)
     }
 
-    fn best(
-        &self,
-        kind: ShotKind,
-        starts: &[Nominal],
-    ) -> Result<Result<BestShot, NoShot>, PlanError> {
+    fn best(&self, kind: ShotKind, starts: &Starts) -> Result<Result<BestShot, NoShot>, PlanError> {
         let sampler = Sampler::new(self.profile);
         let search = self.profile.search();
         let scramble = self.climb_scramble(&sampler);
@@ -488,14 +510,47 @@ impl BestShotSearch<'_> {
             })
     }
 
-    /// Climbs from every start; returns the highest optimum, if any shot of it is made.
+    /// Climbs from the first starts, and from those of the others that a trial finds promising;
+    /// returns the highest optimum, if any shot of it is made.
     fn climb_from(
+        &self,
+        kind: ShotKind,
+        starts: &Starts,
+        sampler: &Sampler<'_>,
+        scramble: &Scramble,
+    ) -> Option<Nominal> {
+        let best = self.highest_optimum(kind, &starts.first, sampler, scramble)?;
+        let compared = f64::from(COMPARISON_FACTOR * self.profile.search().climb_samples);
+        let worth_a_climb = best.0 as f64 / compared - TRIAL_MARGIN;
+        let is_promising = |optimum: &Nominal| {
+            let made = sampler.count(optimum, scramble, (0, TRIAL_SAMPLES)).made();
+            (optimum.pitch_rad - best.1.pitch_rad).abs() > SAME_OPTIMUM_RAD
+                && made as f64 / f64::from(TRIAL_SAMPLES) > worth_a_climb
+        };
+        let promising: Vec<Nominal> = starts
+            .others
+            .par_iter()
+            .map(|&start| self.climb(kind, start, sampler, scramble, TRIAL_SAMPLES))
+            .filter(is_promising)
+            .collect();
+        let other = self.highest_optimum(kind, &promising, sampler, scramble);
+        let share = best.0 as f64 / compared;
+        let error = (2.0 * compared * share * (1.0 - share)).sqrt();
+        Some(match other {
+            Some(other) if other.0 as f64 > best.0 as f64 + LEAST_GAIN * error => other.1,
+            _ => best.1,
+        })
+    }
+
+    /// Climbs from every start; returns the highest optimum, if any shot of it is made, with the
+    /// number that are.
+    fn highest_optimum(
         &self,
         kind: ShotKind,
         starts: &[Nominal],
         sampler: &Sampler<'_>,
         scramble: &Scramble,
-    ) -> Option<Nominal> {
+    ) -> Option<(u64, Nominal)> {
         let points = self.profile.search().climb_samples;
         let compared = (0, COMPARISON_FACTOR * points);
         self.progress.begin("climbing", starts.len() as u64);
@@ -514,7 +569,6 @@ impl BestShotSearch<'_> {
             .into_iter()
             .reduce(|best, next| if next.0 > best.0 { next } else { best })
             .filter(|(made, _)| *made > 0)
-            .map(|(_, optimum)| optimum)
     }
 
     fn climb(
@@ -639,9 +693,8 @@ impl BestShotSearch<'_> {
     }
 }
 
-/// The best of the maxima, and up to two more that are at least [`START_GAP`] pitch angles (or
-/// speeds) away
-/// from those before.
+/// The maxima, the best first, without those that are nearer than [`START_GAP`] pitch angles (or
+/// speeds) to one before.
 fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
     let mut order: Vec<(usize, Candidate)> = maxima
         .iter()
@@ -651,7 +704,7 @@ fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
     order.sort_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)));
     let mut chosen: Vec<(usize, Candidate)> = Vec::new();
     for (i, candidate) in order {
-        if chosen.len() < STARTS && chosen.iter().all(|(j, _)| i.abs_diff(*j) >= START_GAP) {
+        if chosen.iter().all(|(j, _)| i.abs_diff(*j) >= START_GAP) {
             chosen.push((i, candidate));
         }
     }

@@ -265,3 +265,37 @@ fn contract_a_shot_that_misses_without_errors_is_no_best_shot() {
         "{answer:?}"
     );
 }
+
+/// An accurate launcher near the hoop, whose best shot lies between the shots of the coarse table.
+/// The search found a bank shot of 70 deg and P 0.984; that of 62 deg has 0.992 (`probability`).
+#[test]
+fn regress_an_accurate_launcher_gets_the_higher_of_two_optima() {
+    let folder = TempDir::new().unwrap();
+    let launcher = r#"
+[shooter]
+name = "launcher"
+release_height = "1.35 m"
+max_backspin = "1.5 rev/s"
+[shooter.errors]
+speed = "1.2 %"
+pitch = "0.4 deg"
+polar = "0.5 deg"
+backspin = "10 %"
+[location]
+distance = "2 m"
+angle = "0 deg"
+[nominal]
+backspin = "1.5 rev/s"
+[search]
+choose = ["speed", "pitch", "polar"]
+[physics]
+preset = "ncaa"
+"#;
+    let profile = write_file(&folder, "launcher.toml", launcher);
+    let runs = folder.path().join("runs");
+    let json = Answer::of(best(&profile, &runs).args(["--json", "--quiet"]))
+        .exits(0)
+        .json();
+    let p = json["bank"]["probability"].as_f64().unwrap();
+    assert!(p > 0.99, "{p}");
+}
