@@ -158,9 +158,10 @@ fn load(
 
 /// What the fit that wrote a profile warned of: its `fit.json` lies beside it.
 pub(crate) fn warnings_of_fit(profile: &Path) -> Vec<String> {
-    let is_of_fit = profile
-        .file_name()
-        .is_some_and(|name| name.to_string_lossy().starts_with("profile"));
+    let is_of_fit = profile.file_name().is_some_and(|name| {
+        let name = name.to_string_lossy();
+        name == "profile.toml" || name.starts_with("profile_place_")
+    });
     let fit = profile.with_file_name("fit.json");
     if !is_of_fit || !fit.is_file() {
         return Vec::new();

@@ -52,10 +52,10 @@ impl PageTable {
     }
 }
 
-/// A text with its line breaks.
+/// A text with its line breaks. (The style of an answer breaks at the ends of lines too.)
 fn lines(text: &str) -> String {
     let lines: Vec<String> = text.trim_end().lines().map(escaped).collect();
-    lines.join("<br>\n")
+    lines.join("<br>")
 }
 
 impl TeamPage {
@@ -77,7 +77,8 @@ impl TeamPage {
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>The team</title>\n\
-             <style>\n{}figure.wide {{ width: 100%; }}\n</style>\n<h1>The team</h1>\n\
+             <style>\n{}figure.wide {{ width: 100%; }}\n\
+             @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
              <p class=\"answer\">{}</p>\n{}{maps}<p>Posters to print: {}</p>\n\
              <footer><p>{}</p></footer>\n</html>\n",
             include_str!("../../assets/report/page.css"),

@@ -92,10 +92,9 @@ fn answer(
         print_merged_heights(shots, units);
         print_sessions(std::slice::from_ref(shots));
         if fit.places.len() > 1 {
-            print_remark(&format!(
-                "profile.toml is that of place 1, profile_place_N.toml that of place N (2 to {})",
-                fit.places.len()
-            ));
+            print_remark(
+                "profile.toml is that of place 1; each other place has its own, profile_place_2.toml and so on",
+            );
         }
         print_unused(file);
         print_remark(&format!(
