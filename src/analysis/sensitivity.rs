@@ -136,6 +136,9 @@ pub struct SensitivityTopics {
     pub backspin: bool,
     /// Height of the release.
     pub height: bool,
+    /// P along each variable of a best shot, where it takes samples of its own: where the errors
+    /// are not those of Eq. 25, which a table has.
+    pub curves: bool,
 }
 
 impl SensitivityTopics {
@@ -145,6 +148,7 @@ impl SensitivityTopics {
         errors: true,
         backspin: true,
         height: true,
+        curves: true,
     };
     /// Nothing.
     pub const NONE: Self = Self {
@@ -152,6 +156,7 @@ impl SensitivityTopics {
         errors: false,
         backspin: false,
         height: false,
+        curves: false,
     };
 
     fn needs_probability(self) -> bool {

@@ -1,15 +1,18 @@
 //! The best direct and the best bank shot from one location (Eq. 26).
 
+mod found_shots;
 mod pattern_search;
 mod physics_comparison;
 mod search;
 mod shot_table;
+mod table_maxima;
 
 pub use crate::shooter::ShotKind;
+pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
 pub use physics_comparison::{
     PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, compare_physics, physics_variants,
 };
-pub use search::{BestShot, BestShotError, BestShots, Limit, NoShot, find, find_kinds};
+pub use search::{find, find_kinds};
 pub use shot_table::{
     InterpolationCheck, MOST_HALVINGS, MOST_NODES, ShotTable, ShotTableError, ShotTableRequest,
     TableKind, TableShot,

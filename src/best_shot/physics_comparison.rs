@@ -1,6 +1,7 @@
 //! How much of an answer rests on the physics: best shots under other physics.
 
-use super::search::{BestShot, BestShotError, NoShot, find_kinds};
+use super::found_shots::{BestShot, BestShotError, NoShot};
+use super::search::find_kinds;
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, SolidId};

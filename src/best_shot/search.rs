@@ -9,22 +9,20 @@
 //! the table. P of the winner is computed again with independent scrambles, so it is not the
 //! largest of many noisy values.
 
+use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
 use super::pattern_search::Climb;
+use super::table_maxima::{Candidate, maxima_by_pitch, maxima_by_speed, separated};
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
-use crate::analysis::sensitivity::{self, Sensitivity, SensitivityTopics};
-use crate::dynamics::Outcome;
+use crate::analysis::sensitivity::{self, SensitivityTopics};
 use crate::math::sobol::{Scramble, ScrambleKey};
 use crate::probability::{Estimate, NominalProbabilities, NominalTable, Progress, Sampler, Silent};
 use crate::search_space::{PlanError, TablePlan};
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 use rayon::prelude::*;
-use serde::Serialize;
 
 /// Starts of the climb for each kind, and for each side spin that is tried.
 const STARTS: usize = 3;
-/// Distance in pitch between starts, in nominal pitch angles of the table.
-const START_GAP: usize = 3;
 /// Sobol points of a trial of another start.
 const TRIAL_SAMPLES: u32 = 256;
 /// A trial that reaches P of the optimum but for this is worth a climb: about twice the error of
@@ -41,115 +39,6 @@ const COMPARISON_FACTOR: u32 = 8;
 const MAX_WINDOWS: u32 = 4;
 /// Fraction of a window's half width over which the parabola about its best shot is taken.
 const PARABOLA_REACH: f64 = 0.3;
-
-/// A limit of the search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Limit {
-    /// The smallest pitch angle.
-    PitchMin,
-    /// The largest pitch angle.
-    PitchMax,
-    /// No backspin.
-    NoBackspin,
-    /// The largest backspin.
-    MaxBackspin,
-    /// The largest side spin.
-    MaxSideSpin,
-    /// The largest speed.
-    SpeedMax,
-}
-
-impl Limit {
-    /// The name in tables and files, such as `max_backspin`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PitchMin => "pitch_min",
-            Self::PitchMax => "pitch_max",
-            Self::NoBackspin => "no_backspin",
-            Self::MaxBackspin => "max_backspin",
-            Self::MaxSideSpin => "max_side_spin",
-            Self::SpeedMax => "speed_max",
-        }
-    }
-}
-
-/// The best shot of one kind.
-#[derive(Clone, Debug)]
-pub struct BestShot {
-    /// The nominal shot.
-    pub nominal: Nominal,
-    /// Its probability.
-    pub estimate: Estimate,
-    /// The largest P of this kind in the table of the window.
-    pub table_probability: f64,
-    /// The plan of the window's table.
-    pub window: TablePlan,
-    /// The outcome of the error-free shot.
-    pub outcome: Outcome,
-    /// P along each variable of the shot.
-    pub curves: Vec<ProbabilityCurve>,
-    /// How P depends on errors, spin and height.
-    pub sensitivity: Sensitivity,
-    /// Where the undisturbed path passes the plane of the hoop: past the centre along its own
-    /// direction, m (positive is long).
-    pub aim_past_centre_m: Option<f64>,
-    /// Upper bound of the probability that errors lead outside the table's pitch angles and
-    /// backspins.
-    pub mass_outside: f64,
-    /// Limits of the search that the shot lies at.
-    pub at_limits: Vec<Limit>,
-}
-
-/// The best shots from a location.
-#[derive(Clone, Debug)]
-pub struct BestShots {
-    /// The plan of the search's table.
-    pub plan: TablePlan,
-    /// The best direct shot, or why there is none.
-    pub direct: Result<BestShot, NoShot>,
-    /// The best bank shot, or why there is none.
-    pub bank: Result<BestShot, NoShot>,
-}
-
-impl BestShots {
-    /// The best shot of each kind.
-    pub fn by_kind(&self) -> [(ShotKind, &Result<BestShot, NoShot>); 2] {
-        [
-            (ShotKind::Direct, &self.direct),
-            (ShotKind::Bank, &self.bank),
-        ]
-    }
-}
-
-/// Why there is no best shot of a kind.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoShot {
-    /// No shot within the limits can go in.
-    #[error("no {} shot within the limits can go in from this place", .0.name())]
-    Impossible(ShotKind),
-    /// No shot near the most probable one goes in without errors.
-    #[error("no clean {} shot: the most probable ones from this place, P {}, miss when they have no errors", .kind.name(), probability_text(*.probability_per_million))]
-    NotClean {
-        /// The kind.
-        kind: ShotKind,
-        /// P of the most probable shot, in millionths.
-        probability_per_million: u32,
-    },
-}
-
-fn probability_text(per_million: u32) -> String {
-    format!("{:.4}", f64::from(per_million) / 1e6)
-}
-
-/// Why the search could not start.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BestShotError {
-    /// There is no plan.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-}
 
 /// Finds the best direct and the best bank shot of a profile, on the current rayon pool.
 ///
@@ -252,9 +141,6 @@ fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
     }
 }
 
-/// A nominal shot of a table with its P.
-type Candidate = (f64, Nominal);
-
 /// The window about the optimum of a kind.
 struct Window {
     plan: TablePlan,
@@ -287,9 +173,9 @@ impl BestShotSearch<'_> {
             let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
             let table = self.table(&plan);
             let maxima = if table.pitch_rad.len() == 1 {
-                self.maxima_by_speed(&table)
+                maxima_by_speed(self.profile, &table)
             } else {
-                self.maxima_by_pitch(&table)
+                maxima_by_pitch(self.profile, &table)
             };
             for (starts, maxima) in starts.iter_mut().zip(maxima) {
                 let mut separated = separated(&maxima);
@@ -322,81 +208,6 @@ impl BestShotSearch<'_> {
         Some((nominal, estimate))
     }
 
-    /// For each kind: the best nominal shot at each nominal pitch angle.
-    fn maxima_by_pitch(&self, table: &NominalProbabilities) -> [Vec<Option<Candidate>>; 2] {
-        let rows: Vec<[Option<Candidate>; 2]> = (0..table.pitch_rad.len())
-            .into_par_iter()
-            .map(|pitch| self.maxima_at_pitch(table, pitch))
-            .collect();
-        ShotKind::ALL.map(|kind| rows.iter().map(|row| row[kind.index()]).collect())
-    }
-
-    /// For each kind, where the pitch angle is fixed: the best nominal shot at each speed that has
-    /// a higher P than those at the speeds beside it. One pitch angle can have several such
-    /// speeds, for example over and off the front of the ring.
-    fn maxima_by_speed(&self, table: &NominalProbabilities) -> [Vec<Option<Candidate>>; 2] {
-        let best_at = |speed: usize| {
-            let mut best: [Option<Candidate>; 2] = [None, None];
-            for polar in 0..table.polar_rad.len() {
-                for spin in 0..table.backspin_rad_s.len() {
-                    let (p, nominal) = table.at([0, polar, spin, speed]);
-                    if !(p > 0.0) {
-                        continue;
-                    }
-                    let slot = &mut best[ShotKind::of(self.profile, &nominal).index()];
-                    if slot.is_none_or(|(most, _)| p > most) {
-                        *slot = Some((p, nominal));
-                    }
-                }
-            }
-            best
-        };
-        let rows: Vec<[Option<Candidate>; 2]> = (0..table.speed_m_s.len()).map(best_at).collect();
-        let best = ShotKind::ALL.map(|kind| {
-            let of_kind = rows.iter().map(|row| row[kind.index()]);
-            of_kind.collect::<Vec<_>>()
-        });
-        best.map(|by_speed| {
-            let p = |i: Option<usize>| {
-                i.and_then(|i| by_speed.get(i).copied().flatten())
-                    .map_or(0.0, |(p, _)| p)
-            };
-            let is_top =
-                |i: usize| p(Some(i)) >= p(i.checked_sub(1)) && p(Some(i)) > p(Some(i + 1));
-            let tops = by_speed.iter().enumerate();
-            tops.map(|(i, candidate)| candidate.filter(|_| is_top(i)))
-                .collect()
-        })
-    }
-
-    fn maxima_at_pitch(
-        &self,
-        table: &NominalProbabilities,
-        pitch: usize,
-    ) -> [Option<Candidate>; 2] {
-        let mut maxima: [Option<Candidate>; 2] = [None, None];
-        for polar in 0..table.polar_rad.len() {
-            for speed in 0..table.speed_m_s.len() {
-                // The kind does not depend on spin: it is decided in flight.
-                let best = (0..table.backspin_rad_s.len())
-                    .map(|spin| table.at([pitch, polar, spin, speed]))
-                    .fold((0.0, None), |best: (f64, Option<Nominal>), (p, nominal)| {
-                        if p > best.0 { (p, Some(nominal)) } else { best }
-                    });
-                let (p, Some(nominal)) = best else { continue };
-                let beats = |maximum: &Option<Candidate>| maximum.is_none_or(|(most, _)| p > most);
-                if !maxima.iter().any(beats) {
-                    continue;
-                }
-                let maximum = &mut maxima[ShotKind::of(self.profile, &nominal).index()];
-                if beats(maximum) {
-                    *maximum = Some((p, nominal));
-                }
-            }
-        }
-        maxima
-    }
-
     fn table(&self, plan: &TablePlan) -> NominalProbabilities {
         NominalTable::simulate(self.profile, plan, self.progress).probabilities(self.profile)
     }
@@ -417,8 +228,11 @@ impl BestShotSearch<'_> {
             window.nominal = self.climb(kind, window.nominal, &sampler, &scramble, points);
             window.plan = self.plan.window(self.profile, &window.nominal)?;
             let (plan, nominal) = (&window.plan, &window.nominal);
-            window.curves =
-                probability_curves::from_samples(self.profile, &sampler, &scramble, plan, nominal);
+            window.curves = if self.topics.curves {
+                probability_curves::from_samples(self.profile, &sampler, &scramble, plan, nominal)
+            } else {
+                Vec::new()
+            };
         }
         if !self.is_made(&window.nominal) {
             // The most probable shot goes in only with errors: take the best one that needs none.
@@ -598,7 +412,7 @@ impl BestShotSearch<'_> {
         };
         for _ in 0..MAX_WINDOWS {
             let table = self.table(&window.plan);
-            let maxima = self.maxima_by_pitch(&table);
+            let maxima = maxima_by_pitch(self.profile, &table);
             let Some(&(p, maximum)) = separated(&maxima[kind.index()]).first() else {
                 break;
             };
@@ -691,22 +505,4 @@ impl BestShotSearch<'_> {
         .filter_map(|(limit, is_reached)| is_reached.then_some(limit))
         .collect()
     }
-}
-
-/// The maxima, the best first, without those that are nearer than [`START_GAP`] pitch angles (or
-/// speeds) to one before.
-fn separated(maxima: &[Option<Candidate>]) -> Vec<Candidate> {
-    let mut order: Vec<(usize, Candidate)> = maxima
-        .iter()
-        .enumerate()
-        .filter_map(|(i, maximum)| maximum.map(|maximum| (i, maximum)))
-        .collect();
-    order.sort_by(|a, b| b.1.0.total_cmp(&a.1.0).then(a.0.cmp(&b.0)));
-    let mut chosen: Vec<(usize, Candidate)> = Vec::new();
-    for (i, candidate) in order {
-        if chosen.iter().all(|(j, _)| i.abs_diff(*j) >= START_GAP) {
-            chosen.push((i, candidate));
-        }
-    }
-    chosen.into_iter().map(|(_, candidate)| candidate).collect()
 }

@@ -1,6 +1,7 @@
 //! Reads configuration files.
 
 use super::failure::{Failure, io_in_words, refuse_missing};
+use super::nominal_shot_flags::PlaceOptions;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::config::{
@@ -139,7 +140,7 @@ fn load(
     let Some(name) = &physics.physics else {
         return Ok((own, text));
     };
-    text = without_physics_table(&text);
+    text = without_table(&text, "[physics]");
     if has_physics_table(&text) {
         return Err(Failure::usage(format!(
             "--physics {name}: write the physics of {origin} as a table [physics], which this option replaces"
@@ -154,6 +155,27 @@ fn load(
         print_remark(&warning);
     }
     Ok((profile, text))
+}
+
+/// A profile moved to the place that the flags give, and its text with that place.
+pub(crate) fn moved(
+    (profile, text): (Profile, String),
+    place: &PlaceOptions,
+) -> Result<(Profile, String), Failure> {
+    let Some(table) = place.table(&profile.location()) else {
+        return Ok((profile, text));
+    };
+    let text = without_table(&text, "[location]");
+    if text
+        .parse::<toml::Table>()
+        .is_ok_and(|all| all.contains_key("location"))
+    {
+        return Err(Failure::usage(
+            "--distance, --angle: write the location of the profile as a table [location], which these options replace",
+        ));
+    }
+    let text = format!("{}\n\n# --distance, --angle\n{table}", text.trim_end());
+    Ok((place.moved(profile)?, text))
 }
 
 /// What the fit that wrote a profile warned of: its `fit.json` lies beside it.
@@ -176,7 +198,8 @@ pub(crate) fn warnings_of_fit(profile: &Path) -> Vec<String> {
 
 /// What another physics changes.
 fn other_physics_warning(own: &Profile, profile: &Profile, name: &str) -> Option<String> {
-    let (before, after) = (own.physics().values(), profile.physics().values());
+    let units = own.output().units;
+    let [before, after] = [own, profile].map(|profile| profile.physics().values(units));
     let changes: Vec<_> = before
         .iter()
         .zip(&after)
@@ -193,14 +216,15 @@ fn other_physics_warning(own: &Profile, profile: &Profile, name: &str) -> Option
     })
 }
 
-/// A text without its `[physics]` table: from the line of its header to the next header.
-fn without_physics_table(text: &str) -> String {
+/// A text without the table of a header such as `[physics]`: from the line of that to the next
+/// header.
+fn without_table(text: &str, header: &str) -> String {
     let mut kept = String::new();
     let mut inside = false;
     for line in text.split_inclusive('\n') {
         let start = line.trim_start();
         if start.starts_with('[') {
-            inside = start.starts_with("[physics]");
+            inside = start.starts_with(header);
         }
         if !inside {
             kept.push_str(line);

@@ -20,6 +20,8 @@ use std::path::{Path, PathBuf};
 pub(crate) struct FitFolder {
     /// The fitted profile at each place.
     pub(crate) profiles: Vec<Profile>,
+    /// The name of each place; empty where the file of the shots does not say.
+    pub(crate) place_names: Vec<String>,
     pub(crate) posterior: Posterior,
     /// At each place: made and all shots with a result.
     pub(crate) observed: Vec<(usize, usize)>,
@@ -182,8 +184,11 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
         .iter()
         .map(|place| fitted_profile(name, written.physics(), &typical, place))
         .collect::<Result<_, _>>()?;
+    let name_of = |place: usize| json["places"][place]["name"].as_str().unwrap_or_default();
+    let names = 0..places.len();
     Ok(FitFolder {
         profiles,
+        place_names: names.map(|place| name_of(place).to_owned()).collect(),
         posterior,
         observed: observed(&json, places.len()),
         tracker: json["source"]["tracker"]
@@ -273,6 +278,27 @@ pub(crate) fn probability_over_draws(
     Ok(sample.probabilities(&here, |_| values, |draw| draw.factor_at(0)))
 }
 
+/// The fit that a profile was written by: that of its folder. `None` if there is none.
+pub(crate) fn of_profile(file: &Path) -> Result<Option<FitFolder>, Failure> {
+    let is_first_place = file.file_name().is_some_and(|name| name == "profile.toml");
+    let folder = file.parent().filter(|_| is_first_place);
+    match folder.filter(|folder| folder.join("draws.parquet").is_file()) {
+        Some(folder) => read(folder).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// The share of a fit's draws in which a bank shot from the profile's location is better than a
+/// direct one.
+pub(crate) fn bank_is_better(
+    fit: &FitFolder,
+    profile: &Profile,
+    [direct, bank]: [&Nominal; 2],
+) -> Result<f64, Failure> {
+    let p = |shot| probability_over_draws(&fit.posterior.draws, profile, shot, SHOTS);
+    Ok(p(bank)?.minus(&p(direct)?).share_positive())
+}
+
 /// Reads the folder of `--draws`, with a warning where its fit is that of another shooter.
 pub(crate) fn read_draws_of<'a>(
     folder: Option<&'a Path>,
@@ -302,7 +328,7 @@ pub(crate) fn text_over_draws(
     let draws = &fit.posterior.draws;
     let p = probability_over_draws(draws, profile, nominal, SHOTS)?;
     Ok(format!(
-        "over {} draws of the scatter in {}: {}\n",
+        "over {} draws of the scatter in {}, the aim being exact (any other interval of P is numerical): {}\n",
         draws.len(),
         folder.display(),
         probability_text(&p)

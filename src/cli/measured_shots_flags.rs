@@ -8,7 +8,7 @@ use crate::fitting::{
     FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tails, Tracker,
     TrackerNoise, fit_shooter, tails_of,
 };
-use crate::measured_shots::columns::Columns;
+use crate::measured_shots::columns::{Columns, Label};
 use crate::measured_shots::court_frame::CourtFrame;
 use crate::measured_shots::read::read;
 use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
@@ -39,6 +39,10 @@ pub(crate) struct MeasuredShotsOptions {
     /// Only the shots of this shooter, of a file with several.
     #[arg(long, value_name = "NAME")]
     pub(crate) shooter: Option<String>,
+    /// Only the shots of this session, of a file with a column session; may be repeated.
+    /// `compare-sessions` takes two, and compares them.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) session: Vec<String>,
     /// Coordinates of trajectories: hoop (x along the court from the hoop's centre) or court_94x50
     /// (from a corner).
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
@@ -113,6 +117,34 @@ fn quantity(
     .transpose()
 }
 
+/// Keeps the rows of some sessions; of all, if none is named.
+fn keep_sessions(table: &mut Table, columns: &Columns, wanted: &[String]) -> Result<(), String> {
+    if wanted.is_empty() {
+        return Ok(());
+    }
+    let index = columns.label(Label::Session).ok_or(
+        "has no column session for --session; name it with --map 'session=COLUMN'".to_owned(),
+    )?;
+    let session = |cells: &[String]| cells.get(index).map_or("", |cell| cell.trim()).to_owned();
+    let mut known: Vec<String> = Vec::new();
+    for (_, cells) in &table.rows {
+        let name = session(cells);
+        if !known.contains(&name) {
+            known.push(name);
+        }
+    }
+    if let Some(missing) = wanted.iter().find(|name| !known.contains(name)) {
+        return Err(format!(
+            "has no session {missing}; it has {}",
+            known.join(", ")
+        ));
+    }
+    table
+        .rows
+        .retain(|(_, cells)| wanted.contains(&session(cells)));
+    Ok(())
+}
+
 /// The names of shooters, for a message.
 fn names_of(shooters: &[ShooterShots]) -> String {
     /// More names than this are not listed.
@@ -162,6 +194,7 @@ impl MeasuredShotsOptions {
             ("--tracker", self.tracker.is_some()),
             ("--map", !self.map.is_empty()),
             ("--shooter", self.shooter.is_some()),
+            ("--session", !self.session.is_empty()),
             ("--hoop", self.hoop.is_some()),
             ("--distance", self.distance.is_some()),
             ("--angle", self.angle.is_some()),
@@ -173,13 +206,29 @@ impl MeasuredShotsOptions {
         .find_map(|(option, is_given)| is_given.then_some(option))
     }
 
-    /// Reads a file.
+    /// Reads the shots of a file that the options ask for.
     pub(crate) fn read(&self, path: &Path) -> Result<MeasuredFile, Failure> {
+        self.read_sessions(path, &self.session)
+    }
+
+    /// The same of other sessions; of all, if none is named.
+    pub(crate) fn read_sessions(
+        &self,
+        path: &Path,
+        sessions: &[String],
+    ) -> Result<MeasuredFile, Failure> {
         refuse_missing(path)?;
         let refuse = |message: String| Failure::usage(format!("{}: {message}", path.display()));
-        let table = Table::read(path).map_err(refuse)?;
+        if path.extension().is_some_and(|end| end == "toml") {
+            return Err(refuse(
+                "this is a profile or a sweep, not a table of shots; give a CSV or Parquet file"
+                    .to_owned(),
+            ));
+        }
+        let mut table = Table::read(path).map_err(refuse)?;
         let columns =
             Columns::new(&table.header, &self.map).map_err(|errors| refuse(errors.join("\n")))?;
+        keep_sessions(&mut table, &columns, sessions).map_err(refuse)?;
         let source = Source::of(&columns).map_err(refuse)?;
         let physics_name = self
             .physics
@@ -382,6 +431,7 @@ impl MeasuredFile {
             is_shooter_named: !shots.name.is_empty(),
             rejected: &shots.rejected,
             differences: &shots.differences,
+            place_names: &shots.place_names,
         }
     }
 
@@ -415,6 +465,7 @@ impl MeasuredFile {
             name: &name,
             places: &shots.places,
             shots: &shots.shots,
+            sessions: &shots.sessions,
             speed_unit: shots.speed_unit,
             chi_squares: &shots.chi_squares,
         };

@@ -82,6 +82,22 @@ impl PlaceOptions {
         })?;
         Ok(profile.moved_to(place)?)
     }
+
+    /// The `[location]` table of the place, if a flag gives one; `own` is that of the profile. What
+    /// a flag gives stands as it was written, so that it is read as the same number.
+    pub(crate) fn table(&self, own: &Location) -> Option<String> {
+        if self.distance.is_none() && self.angle.is_none() {
+            return None;
+        }
+        let value = |flag: &Option<String>, own: String| {
+            toml::Value::String(flag.clone().unwrap_or(own)).to_string()
+        };
+        Some(format!(
+            "[location]\ndistance = {}\nangle = {}\n",
+            value(&self.distance, format!("{} m", own.distance_m)),
+            value(&self.angle, format!("{} rad", own.angle_rad))
+        ))
+    }
 }
 
 impl NominalOptions {

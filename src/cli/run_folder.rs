@@ -107,8 +107,11 @@ pub(crate) fn of_profile(profile: &Profile) -> Result<PathBuf, Failure> {
         let folder = numbered(parent, &profile.shooter().name, profile.hash());
         let refuse = |error: std::io::Error| Failure::io(folder.display(), &error);
         std::fs::create_dir_all(&folder).map_err(refuse)?;
-        if configuration_hash(&folder).is_some() {
-            return Ok(folder);
+        match configuration_hash(&folder) {
+            Some(hash) if hash == profile.hash() => return Ok(folder),
+            // Another configuration has taken the number in the meantime.
+            Some(_) => continue,
+            None => {}
         }
         let claim = json_object::object(json_object::provenance(profile.hash()));
         let mut file = tempfile::NamedTempFile::new_in(&folder).map_err(refuse)?;

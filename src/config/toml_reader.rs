@@ -204,9 +204,13 @@ impl<'t, 'i> TableReader<'t, 'i> {
             Some(number) => {
                 let units = dimension.unit_names();
                 let example = dimension.units().first().map_or("", |(name, _)| name);
-                format!(
-                    "has no unit; write it as text with one of {units}, such as \"{number} {example}\""
-                )
+                // Of a length in metres feet are no example, and a number is not guessed to be one.
+                let example = match dimension {
+                    Dimension::Length => "\"7 ft\" or \"2.1 m\"".to_owned(),
+                    Dimension::Speed => "\"24 ft/s\" or \"7.3 m/s\"".to_owned(),
+                    _ => format!("\"{number} {example}\""),
+                };
+                format!("has no unit; write it as text with one of {units}, such as {example}")
             }
             None => "must be a number, or a text with a number and a unit".to_owned(),
         };

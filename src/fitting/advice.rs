@@ -151,7 +151,7 @@ pub fn advise(
             let difference = bank.minus(direct);
             Some(KindComparison {
                 probabilities: [direct.interval(), bank.interval()],
-                bank_is_better: share_positive(&difference),
+                bank_is_better: difference.share_positive(),
                 difference: difference.interval(),
             })
         }
@@ -197,7 +197,7 @@ pub fn advise(
         best_probability: by_kind[kind as usize]
             .as_ref()
             .map(DrawProbabilities::interval),
-        gain_is_positive: gain.as_ref().map_or(0.0, share_positive),
+        gain_is_positive: gain.as_ref().map_or(0.0, DrawProbabilities::share_positive),
         gain: gain.as_ref().map(DrawProbabilities::interval),
         best: best.cloned(),
         steps,
@@ -205,11 +205,6 @@ pub fn advise(
         landings,
         kinds,
     })
-}
-
-fn share_positive(differences: &DrawProbabilities) -> f64 {
-    let positive = differences.of_draws.iter().filter(|d| **d > 0.0).count();
-    positive as f64 / differences.of_draws.len() as f64
 }
 
 /// A profile whose search does not change the backspin.

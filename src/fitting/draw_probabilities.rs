@@ -101,6 +101,13 @@ impl DrawProbabilities {
         (variance_of_mean(&self.replicate_means) + variance_of_mean(&self.of_draws)).sqrt()
     }
 
+    /// The share of the draws in which this, a difference, is positive.
+    #[must_use]
+    pub fn share_positive(&self) -> f64 {
+        let positive = self.of_draws.iter().filter(|p| **p > 0.0).count();
+        positive as f64 / self.of_draws.len() as f64
+    }
+
     /// Draw by draw, this less `other`.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {

@@ -3,6 +3,7 @@
 
 use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
 use super::posterior::{Draw, SpinSource, Tails};
+use super::session_trends::trends;
 use crate::math::normal_distribution::cdf;
 use crate::model::Physics;
 use nalgebra::{SMatrix, SVector};
@@ -24,6 +25,15 @@ pub enum TestError {
         /// Shots that are needed.
         needed: usize,
     },
+    /// No row could be used.
+    #[error("has no usable shots; the reasons are above")]
+    NoShots,
+    /// The trajectories cannot be flights measured with the tracker's noise: the ratio of the seen
+    /// to the expected root mean square of their residuals.
+    #[error(
+        "the trajectories scatter {0:.1} times as much about the fitted flights as the tracker should: they are not flights that this tracker measured. Look at the units, the frame rate and the hoop (--frame), and give the tracker's noise with --tracker FILE"
+    )]
+    OtherTracker(f64),
     /// A value is the same in every shot.
     #[error(
         "{0}: every shot at one place has the same value; a shooter scatters. Is it a nominal value, or rounded?"
@@ -75,8 +85,10 @@ pub enum FitWarning {
     NotNormal(f64, f64),
     /// The tails are heavier than normal ones, and were fitted: one over the degrees of freedom.
     HeavyTails(f64),
-    /// The aim drifts: value, p-value.
+    /// The aim drifts within the sessions: value, p-value.
     Drift(&'static str, f64),
+    /// The means of the sessions differ: value, p-value.
+    SessionsDiffer(&'static str, f64),
     /// The number of makes is not what these shots give: seen, expected, its standard deviation.
     OtherMakes(usize, f64, f64),
     /// The chances are too sure: see [`ExpectedMakes::calibration_z`](super::ExpectedMakes).
@@ -118,25 +130,43 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::TooSure(z) => write!(
                 out,
-                "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in; {LOOK_AT}"
+                "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in. First suspect the tracker's noise (--tracker FILE with a greater one); then {LOOK_AT}"
             ),
             Self::Drift(name, p) => write!(
                 out,
-                "{name} drifts from the first shot to the last (p = {p:.4})"
+                "{name} drifts from the first shot to the last ({})",
+                p_value(*p)
+            ),
+            Self::SessionsDiffer(name, p) => write!(
+                out,
+                "{name} differs between the sessions ({}): the scatter here holds that too, and is wider than that of one session (fit one alone with --session NAME)",
+                p_value(*p)
             ),
             Self::SerialCorrelation(name, p) => write!(
                 out,
-                "{name}: a shot is like the one before it (p = {p:.4}); intervals are then too narrow"
+                "{name}: a shot is like the one before it ({}); intervals are then too narrow",
+                p_value(*p)
             ),
         }
     }
 }
 
+/// `p = 0.0031`, or `p < 0.0001`.
+fn p_value(p: f64) -> String {
+    if p < 1e-4 {
+        "p < 0.0001".to_owned()
+    } else {
+        format!("p = {p:.4}")
+    }
+}
+
 /// What makes chances wrong.
-const LOOK_AT: &str = "look at the place (a free throw is 13.75 ft from the hoop's centre) and the height of the release, the columns (units, left and right, what depth is counted from, made), the physics (air, and this ring may be softer or harder) and the tracker's noise";
+const LOOK_AT: &str = "look at the place (a free throw is 13.75 ft or 4.19 m from the hoop's centre) and the height of the release, the columns (units, left and right, what depth is counted from, made), the physics (air, and this ring may be softer or harder) and the tracker's noise (--tracker)";
 
 /// Shots for each unknown.
 const LEAST_SHOTS: usize = 10;
+/// Flights whose residuals are so many times those of the tracker were not measured by it.
+const MOST_RESIDUALS: f64 = 4.0;
 /// A test warns below this p-value: one session in two hundred without reason.
 const WARNING_LEVEL: f64 = 0.005;
 
@@ -172,6 +202,9 @@ pub fn check_releases(
     let values = if spin == SpinSource::Measured { 4 } else { 3 };
     let unknowns = values * places.len() + values + values * (values - 1) / 2;
     let needed = unknowns.max(LEAST_SHOTS);
+    if shots.is_empty() {
+        return Err(TestError::NoShots);
+    }
     if shots.len() < needed {
         return Err(TestError::TooFewShots {
             shots: shots.len(),
@@ -352,62 +385,10 @@ pub fn tails_of(shots: &[MeasuredRelease], places: usize) -> Tails {
     }
 }
 
-/// How one value runs over a session.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SessionTrend {
-    /// The value.
-    pub name: &'static str,
-    /// Change from the first to the last shot, SI units.
-    pub drift: f64,
-    /// p-value of the drift (normal approximation of the correlation with the order).
-    pub drift_p: f64,
-    /// Correlation of a shot with the one before it.
-    pub serial_correlation: f64,
-    /// p-value of it.
-    pub serial_p: f64,
-}
-
-/// The trends of some values in the order of the shots.
-#[must_use]
-pub fn trends(shots: &[MeasuredRelease], means: &[Values], values: usize) -> Vec<SessionTrend> {
-    let count = shots.len() as f64;
-    (0..values)
-        .map(|i| {
-            let deviations: Vec<f64> = shots
-                .iter()
-                .map(|shot| shot.values[i] - means[shot.place][i])
-                .collect();
-            let mean = deviations.iter().sum::<f64>() / count;
-            let middle = 0.5 * (count - 1.0);
-            let (mut product, mut squares, mut order) = (0.0, 0.0, 0.0);
-            for (k, deviation) in deviations.iter().enumerate() {
-                let (t, x) = (k as f64 - middle, deviation - mean);
-                product += t * x;
-                squares += x * x;
-                order += t * t;
-            }
-            let correlation = product / (squares * order).sqrt().max(f64::MIN_POSITIVE);
-            let lagged: f64 = deviations
-                .windows(2)
-                .map(|pair| (pair[0] - mean) * (pair[1] - mean))
-                .sum();
-            let serial = lagged / squares.max(f64::MIN_POSITIVE);
-            let p_of = |correlation: f64| 2.0 * (1.0 - cdf(correlation.abs() * count.sqrt()));
-            SessionTrend {
-                name: VALUE_NAMES[i],
-                drift: product / order.max(f64::MIN_POSITIVE) * (count - 1.0),
-                drift_p: p_of(correlation),
-                serial_correlation: serial,
-                serial_p: p_of(serial),
-            }
-        })
-        .collect()
-}
-
-/// What should be said of a fit.
+/// What should be said of a fit; `sessions` has the name of each shot's session, or nothing.
 #[must_use]
 pub fn warnings(
-    shots: &[MeasuredRelease],
+    (shots, sessions): (&[MeasuredRelease], &[String]),
     typical: &Draw,
     prior_weights: &Values,
     values: usize,
@@ -433,7 +414,10 @@ pub fn warnings(
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
         warnings.push(FitWarning::NotNormal(shape.skewness_p, shape.kurtosis_p));
     }
-    for trend in trends(shots, &typical.means, values) {
+    for trend in trends(shots, sessions, &typical.means, values) {
+        if let Some(p) = trend.sessions_p.filter(|p| *p < WARNING_LEVEL) {
+            warnings.push(FitWarning::SessionsDiffer(trend.name, p));
+        }
         if trend.drift_p < WARNING_LEVEL {
             warnings.push(FitWarning::Drift(trend.name, trend.drift_p));
         }
@@ -444,14 +428,50 @@ pub fn warnings(
     warnings
 }
 
-/// A warning where tracked flights fit worse, or better, than the tracker's noise says: the sums of
-/// the squared residuals and of their expectations.
-#[must_use]
-pub fn noise_warning(chi_squares: &[(f64, f64)]) -> Option<FitWarning> {
-    let seen: f64 = chi_squares.iter().map(|(seen, _)| seen).sum();
-    let expected: f64 = chi_squares.iter().map(|(_, expected)| expected).sum();
-    let ratio = seen / expected.max(1.0);
-    // Five standard deviations of a chi-square, and a fifth, since outliers are weighed down.
-    let tolerance = 0.2 + 5.0 * (2.0 / expected.max(1.0)).sqrt();
-    ((ratio - 1.0).abs() > tolerance).then_some(FitWarning::OtherNoise(ratio))
+/// The residuals of tracked flights about the fitted ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlightResiduals {
+    /// The sum of the squares, each over the variance of the tracker's noise.
+    pub chi_square: f64,
+    /// Its expectation if the noise is what the tracker's is said to be.
+    pub expected: f64,
+}
+
+impl FlightResiduals {
+    /// Of the sums of each flight; `None` without any.
+    #[must_use]
+    pub fn of(chi_squares: &[(f64, f64)]) -> Option<Self> {
+        (!chi_squares.is_empty()).then(|| Self {
+            chi_square: chi_squares.iter().map(|(seen, _)| seen).sum(),
+            expected: chi_squares.iter().map(|(_, expected)| expected).sum(),
+        })
+    }
+
+    /// The root mean square, over what the tracker's noise gives.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        (self.chi_square / self.expected.max(1.0)).sqrt()
+    }
+
+    /// Refuses flights that scatter far more than the tracker can.
+    ///
+    /// # Errors
+    /// They scatter [`MOST_RESIDUALS`] times as much.
+    pub fn check(&self) -> Result<(), TestError> {
+        if self.ratio() > MOST_RESIDUALS {
+            Err(TestError::OtherTracker(self.ratio()))
+        } else {
+            Ok(())
+        }
+    }
+
+    /// A warning where flights fit worse, or better, than the tracker's noise says.
+    #[must_use]
+    pub fn warning(&self) -> Option<FitWarning> {
+        let expected = self.expected.max(1.0);
+        let ratio = self.chi_square / expected;
+        // Five standard deviations of a chi-square, and a fifth, since outliers are weighed down.
+        let tolerance = 0.2 + 5.0 * (2.0 / expected).sqrt();
+        ((ratio - 1.0).abs() > tolerance).then_some(FitWarning::OtherNoise(ratio))
+    }
 }

@@ -24,6 +24,7 @@ mod measured_release;
 mod posterior;
 mod prior;
 mod session_comparison;
+mod session_trends;
 mod shooter_fit;
 mod student_posterior;
 mod test_design;
@@ -38,8 +39,8 @@ pub use expected_makes::{
     ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,
 };
 pub use fit_checks::{
-    FitWarning, ReleaseDifference, SessionTrend, ShapeTest, TestError, check_releases,
-    check_speed_unit, far_shots, noise_warning, shape_test, tails_of, trends, warnings,
+    FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, check_releases,
+    check_speed_unit, far_shots, shape_test, tails_of, warnings,
 };
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};
@@ -51,9 +52,10 @@ pub use measured_release::{
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
 pub use prior::{PopulationPrior, Spread};
 pub use session_comparison::{
-    POWER, ProbabilityChange, SessionComparison, compare_probabilities, compare_sessions,
-    probability_change,
+    POWER, ProbabilityChange, SessionComparison, TWO_SIDED_95, compare_probabilities,
+    compare_sessions, probability_change,
 };
+pub use session_trends::{SessionTrend, trends};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};
 pub use tracker_noise::{Tracker, TrackerNoise};

@@ -17,15 +17,33 @@ pub struct SessionComparison {
     pub change: Interval,
     /// The probability that it has grown.
     pub grew: f64,
-    /// Shots in each session that would decide about a change of this size (95 % level, 80 %
-    /// power). `None` if the present ones do, and if the change is smaller than its standard
-    /// deviation: its size then says nothing of the true one.
-    pub shots_to_decide: Option<f64>,
+    /// The harmonic mean of the shots of the two sessions.
+    pub shots: f64,
 }
 
-/// The sum of the normal quantiles of 97.5 % and 80 %: a change of so many of its standard errors
-/// is seen at the 95 % level with a power of 80 %.
-pub const POWER: f64 = 1.96 + 0.8416;
+impl SessionComparison {
+    /// Whether the 95 % interval of the change leaves out zero.
+    #[must_use]
+    pub fn is_decided(&self) -> bool {
+        self.change.low > 0.0 || self.change.high < 0.0
+    }
+
+    /// Shots in each session that would decide about a change of this size with 80 % power, where a
+    /// change of `quantile` standard errors decides. `None` if the change is smaller than its
+    /// standard deviation: its size then says nothing of the true one.
+    #[must_use]
+    pub fn shots_to_decide(&self, quantile: f64) -> Option<f64> {
+        let needed = (quantile + QUANTILE_OF_POWER) * self.change.sd / self.change.mean.abs();
+        (self.change.mean.abs() > self.change.sd).then_some(self.shots * needed * needed)
+    }
+}
+
+/// The normal quantile of 97.5 %.
+pub const TWO_SIDED_95: f64 = 1.96;
+/// The normal quantile of 80 %.
+const QUANTILE_OF_POWER: f64 = 0.8416;
+/// A change of so many of its standard errors is seen at the 95 % level with a power of 80 %.
+pub const POWER: f64 = TWO_SIDED_95 + QUANTILE_OF_POWER;
 
 /// How often each draw is paired with one of the other fit.
 const PAIRINGS: usize = 16;
@@ -42,16 +60,12 @@ fn compare(before: &[f64], after: &[f64], shots: [usize; 2]) -> SessionCompariso
         .collect();
     let grew = changes.iter().filter(|change| **change > 0.0).count() as f64 / changes.len() as f64;
     let change = Interval::of(changes);
-    let harmonic = 2.0 / (1.0 / shots[0] as f64 + 1.0 / shots[1] as f64);
-    let needed = POWER * change.sd / change.mean.abs();
-    let has_size = change.mean.abs() > change.sd;
-    let is_decided = change.low > 0.0 || change.high < 0.0;
     SessionComparison {
         before: Interval::of(before.to_vec()),
         after: Interval::of(after.to_vec()),
         change,
         grew,
-        shots_to_decide: (!is_decided && has_size).then_some(harmonic * needed * needed),
+        shots: 2.0 / (1.0 / shots[0] as f64 + 1.0 / shots[1] as f64),
     }
 }
 

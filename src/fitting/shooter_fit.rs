@@ -3,7 +3,7 @@
 use super::advice::{USUAL_SHOTS, usual_probabilities};
 use super::draw_probabilities::DrawProbabilities;
 use super::expected_makes::{ExpectedMakes, expected_makes};
-use super::fit_checks::{FitWarning, TestError, check_releases, noise_warning, warnings};
+use super::fit_checks::{FitWarning, FlightResiduals, TestError, check_releases, warnings};
 use super::fitted_profile::fitted_profile;
 use super::measured_release::{MeasuredRelease, Place};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
@@ -32,6 +32,8 @@ pub struct ShooterFit {
     pub probabilities: Vec<DrawProbabilities>,
     /// Predicted against observed.
     pub makes: ExpectedMakes,
+    /// How well tracked flights fit; `None` without any.
+    pub residuals: Option<FlightResiduals>,
     /// What should be said.
     pub warnings: Vec<FitWarning>,
 }
@@ -59,6 +61,8 @@ pub struct ShooterTest<'a> {
     pub places: &'a [Place],
     /// The shots.
     pub shots: &'a [MeasuredRelease],
+    /// The session of each shot; empty if the file does not say.
+    pub sessions: &'a [String],
     /// Unit of the speeds in the file, and its size in m/s.
     pub speed_unit: (&'static str, f64),
     /// Squared residuals of tracked flights, and what is expected of them.
@@ -81,6 +85,10 @@ pub fn fit_shooter(
         options.spin,
         test.speed_unit,
     )?;
+    let residuals = FlightResiduals::of(test.chi_squares);
+    if let Some(residuals) = residuals {
+        residuals.check()?;
+    }
     let posterior = fit(test.shots, test.places.len(), options)?;
     let typical = posterior.typical();
     let profiles = test
@@ -94,8 +102,13 @@ pub fn fit_shooter(
     let is_measured = options.spin == SpinSource::Measured;
     let makes = expected_makes(&profiles, test.shots, &typical, is_measured);
     let values = if is_measured { 4 } else { 3 };
-    let mut warnings = warnings(test.shots, &typical, &posterior.prior_weights, values);
-    warnings.extend(noise_warning(test.chi_squares));
+    let mut warnings = warnings(
+        (test.shots, test.sessions),
+        &typical,
+        &posterior.prior_weights,
+        values,
+    );
+    warnings.extend(residuals.and_then(|residuals| residuals.warning()));
     // Half a shot for the simulated chances themselves.
     let sd = libm::hypot(makes.expected_sd, 0.5);
     if (makes.made as f64 - makes.expected).abs() > FAR_MAKES * sd && makes.labelled > 0 {
@@ -115,6 +128,7 @@ pub fn fit_shooter(
         profiles,
         probabilities,
         makes,
+        residuals,
         warnings,
     })
 }

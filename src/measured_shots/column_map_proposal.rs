@@ -5,7 +5,7 @@ use crate::fitting::CENTRE_DEPTH_M;
 
 /// Parts of the names that others give to a quantity or a label, in small letters without spaces.
 /// What is named first is found first.
-const OTHER_NAMES: [(&str, &[&str]); 16] = [
+const OTHER_NAMES: [(&str, &[&str]); 17] = [
     (
         "release_height",
         &[
@@ -14,11 +14,14 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
             "heightofrelease",
             "relheight",
             "releasez",
+            "releasein",
+            "releasecm",
+            "releaseft",
         ],
     ),
     ("entry_angle", &["entry", "incoming"]),
     ("depth", &["depth", "longshort", "shortlong"]),
-    ("speed", &["speed", "velocity", "velo", "v0"]),
+    ("speed", &["speed", "velocity", "velo", "v0", "mph", "kmh"]),
     (
         "pitch",
         &[
@@ -31,11 +34,24 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
         ],
     ),
     ("polar", &["polar", "azimuth"]),
-    ("aim", &["aim", "direction", "lateral", "horizontalangle"]),
+    (
+        "aim",
+        &[
+            "aim",
+            "direction",
+            "lateral",
+            "horizontalangle",
+            "rightofhoop",
+            "leftofhoop",
+        ],
+    ),
     ("backspin", &["backspin", "spinrate", "spin"]),
     ("left_right", &["leftright", "leftorright", "offline"]),
-    ("court_angle", &["courtangle"]),
-    ("distance", &["distance", "dist"]),
+    ("court_angle", &["courtangle", "floorangle"]),
+    (
+        "distance",
+        &["distance", "dist", "fromhoop", "frombasket", "fromrim"],
+    ),
     (
         "made",
         &["made", "make", "result", "outcome", "goal", "basket", "hit"],
@@ -44,7 +60,11 @@ const OTHER_NAMES: [(&str, &[&str]); 16] = [
         "shooter",
         &["shooter", "player", "athlete", "subject", "participant"],
     ),
-    ("session", &["session", "date", "day", "visit"]),
+    (
+        "session",
+        &["session", "date", "day", "visit", "phase", "condition"],
+    ),
+    ("place", &["spot", "zone"]),
     ("shot", &["shotid", "shotnumber", "shotno", "trial"]),
     ("time", &["time"]),
 ];
@@ -348,6 +368,38 @@ mod tests {
             assert!(text.contains(map), "{text}");
             let map = map.trim_start_matches("--map '").trim_end_matches('\'');
             assert!(Columns::new(&header, &[map.to_owned()]).is_ok(), "{map}");
+        }
+    }
+
+    #[test]
+    fn contract_maps_of_the_log_of_an_app() {
+        let header = [
+            "Day",
+            "Player",
+            "Spot",
+            "Feet from hoop",
+            "Floor angle",
+            "Release in",
+            "Ball MPH",
+            "Launch angle",
+            "Right of hoop deg",
+            "Result",
+        ];
+        let header = header.map(str::to_owned);
+        let text = map_proposal(&Columns::new(&header, &[]).unwrap());
+        for map in [
+            "session=Day",
+            "shooter=Player",
+            "place=Spot",
+            "distance=Feet from hoop:",
+            "court_angle=Floor angle:deg",
+            "release_height=Release in:in",
+            "speed=Ball MPH:mph",
+            "pitch=Launch angle:deg",
+            "aim=-Right of hoop deg:deg",
+            "made=Result",
+        ] {
+            assert!(text.contains(&format!("--map '{map}")), "{map}: {text}");
         }
     }
 

@@ -136,14 +136,17 @@ pub enum Label {
     Shooter,
     /// When.
     Session,
+    /// The name of the place.
+    Place,
     /// Which shot a tracked point belongs to.
     Shot,
 }
 
-const LABELS: [(&str, Label); 4] = [
+const LABELS: [(&str, Label); 5] = [
     ("made", Label::Made),
     ("shooter", Label::Shooter),
     ("session", Label::Session),
+    ("place", Label::Place),
     ("shot", Label::Shot),
 ];
 

@@ -165,6 +165,7 @@ fn shooter(
         name,
         source: reader.source,
         places: Vec::new(),
+        place_names: Vec::new(),
         merged_heights_m: None,
         shots: Vec::new(),
         sessions: Vec::new(),
@@ -182,10 +183,31 @@ fn shooter(
             .map_err(|error| error.to_string())?;
     }
     reject_shots(reader.simulator, &mut shooter);
+    shooter.place_names = place_names(reader, rows, &shooter);
     if reader.source == Source::Landings {
         shooter.differences = release_differences(reader, rows, &shooter.shots);
     }
     Ok(shooter)
+}
+
+/// The names that the file gives to the places.
+fn place_names(
+    reader: &RowReader<'_>,
+    rows: &[(u64, &[String])],
+    shooter: &ShooterShots,
+) -> Vec<String> {
+    let cells: BTreeMap<u64, &[String]> = rows.iter().copied().collect();
+    let names_of = |place: usize| {
+        let mut names: Vec<&str> = Vec::new();
+        for shot in shooter.shots.iter().filter(|shot| shot.place == place) {
+            let name = reader.label(cells[&shot.row], Label::Place);
+            if let Some(name) = name.filter(|name| !name.is_empty() && !names.contains(name)) {
+                names.push(name);
+            }
+        }
+        names.join(" or ")
+    };
+    (0..shooter.places.len()).map(names_of).collect()
 }
 
 /// Compares the releases that the file holds beside landings with those that the landings give.

@@ -33,6 +33,8 @@ pub struct ShooterShots {
     pub source: Source,
     /// Where they shot from.
     pub places: Vec<Place>,
+    /// The name of each place; empty where the file does not say.
+    pub place_names: Vec<String>,
     /// The least and the greatest height of the releases of one place, m, where they differ: the
     /// place has their mean.
     pub merged_heights_m: Option<[f64; 2]>,

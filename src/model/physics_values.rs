@@ -3,7 +3,7 @@
 
 use super::physics::{BoardEdge, ContactLaw, Physics};
 use super::restitution::restitution_of_damping;
-use crate::units::{FOOT_M, INCH_M};
+use crate::units::{FOOT_M, INCH_M, UnitSystem};
 use std::f64::consts::PI;
 
 /// One value of a physics.
@@ -24,8 +24,7 @@ const DROP_TEST: &str = "rule book: drop test of the ball";
 const SHOTS: &str = "measured: 27 three-point shots (0.41 +- 0.035; a smooth sphere has 0.47)";
 const NO_LIFT: &str = "measured: none in 27 three-point shots (0.00 +- 0.05)";
 const SHELL: &str = "assumed: a thin shell";
-const HOOP_LOSS: &str =
-    "assumed; rule books let the ring absorb 35 to 50 % of the energy; try 0.45 to 0.70";
+const HOOP_LOSS: &str = "assumed: beside the ball's own loss, rule books let the ring absorb 35 to 50 % of the energy; try 0.45 to 0.70";
 const FRICTION: &str =
     "assumed: leather on painted steel or glass; new composite balls have up to 0.8";
 const STIFFNESS: &str = "assumed: the paper's";
@@ -34,10 +33,14 @@ const ROOM: &str = "assumed: a gym near sea level; give altitude and temperature
 const STANDARD: &str = "standard gravity";
 
 impl Physics {
-    /// All values in the order of the README, in the units of rule books.
+    /// All values in the order of the README.
     #[must_use]
-    pub fn values(&self) -> Vec<PhysicsValue> {
-        let inches = |metres: f64| format!("{:.3} in", metres / INCH_M);
+    pub fn values(&self, units: UnitSystem) -> Vec<PhysicsValue> {
+        // Metric rule books have centimetres.
+        let length = |metres: f64| match units {
+            UnitSystem::Imperial => format!("{:.3} in", metres / INCH_M),
+            UnitSystem::Metric => format!("{:.3} cm", 100.0 * metres),
+        };
         let restitution = |contact: &ContactLaw| {
             let c = restitution_of_damping(
                 contact.damping_kg_s,
@@ -48,7 +51,7 @@ impl Physics {
         };
         let edge = match self.board_edge {
             BoardEdge::None => "none: ends at its face".to_owned(),
-            BoardEdge::Rounded { radius_m } => inches(radius_m),
+            BoardEdge::Rounded { radius_m } => length(radius_m),
         };
         let (board, hoop) = (&self.board_contact, &self.hoop_contact);
         let stiffness = |n_m: f64| format!("{n_m:.0} N/m");
@@ -57,8 +60,8 @@ impl Physics {
                 "ball_radius",
                 format!(
                     "{} ({} around)",
-                    inches(self.ball_radius_m),
-                    inches(2.0 * PI * self.ball_radius_m)
+                    length(self.ball_radius_m),
+                    length(2.0 * PI * self.ball_radius_m)
                 ),
                 BALL_RULES,
             ),
@@ -68,24 +71,27 @@ impl Physics {
                 BALL_RULES,
             ),
             ("inertia_ratio", format!("{:.4}", self.inertia_ratio), SHELL),
-            ("ring_radius", inches(self.ring_radius_m), HOOP_RULES),
+            ("ring_radius", length(self.ring_radius_m), HOOP_RULES),
             (
                 "ring_tube_diameter",
-                inches(self.ring_tube_diameter_m),
+                length(self.ring_tube_diameter_m),
                 HOOP_RULES,
             ),
-            ("bracket_width", inches(self.bracket_width_m), SHAPE),
+            ("bracket_width", length(self.bracket_width_m), SHAPE),
             (
                 "hoop_height",
-                format!("{:.3} ft", self.hoop_height_m / FOOT_M),
+                match units {
+                    UnitSystem::Imperial => format!("{:.3} ft", self.hoop_height_m / FOOT_M),
+                    UnitSystem::Metric => format!("{:.3} m", self.hoop_height_m),
+                },
                 HOOP_RULES,
             ),
-            ("board_distance", inches(self.board_distance_m), HOOP_RULES),
-            ("board_width", inches(self.board_width_m), HOOP_RULES),
-            ("board_height", inches(self.board_height_m), HOOP_RULES),
+            ("board_distance", length(self.board_distance_m), HOOP_RULES),
+            ("board_width", length(self.board_width_m), HOOP_RULES),
+            ("board_height", length(self.board_height_m), HOOP_RULES),
             (
                 "board_centre_height",
-                inches(self.board_centre_height_m),
+                length(self.board_centre_height_m),
                 HOOP_RULES,
             ),
             ("board_edge_radius", edge, SHAPE),

@@ -17,24 +17,15 @@ const ZERO_DEG: f64 = 0.005;
 #[must_use]
 pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
     let (long, metre) = units.length();
-    let location = profile.location();
     let name = &profile.shooter().name;
     let place = format!(
-        "{}{:.2} {long} from the hoop{}",
+        "{}{}",
         if name.is_empty() {
             String::new()
         } else {
             format!("{name}, ")
         },
-        location.distance_m / metre,
-        if location.angle_rad.abs() < ZERO_DEG * DEGREE_RAD {
-            String::new()
-        } else {
-            format!(
-                ", at {:.0} deg on the court",
-                location.angle_rad / DEGREE_RAD
-            )
-        }
+        profile.location().in_words(units)
     );
     let mut found: Vec<(ShotKind, &BestShot)> = best
         .by_kind()

@@ -192,7 +192,7 @@ impl ReleaseDispersion {
             };
             checks.refuse(
                 &key(blamed),
-                "c10 + c11 v + c12 v^2 must be from 0 to 10 m/s for every speed up to 40 m/s (c11 alone: 0 to 25 %)",
+                "the error of the speed, c10 + c11 v + c12 v^2, must be from 0 to 10 m/s for every speed v up to 40 m/s; a share of the speed (c11, or speed in %) from 0 to 25 %",
             );
         }
         if checks.is_valid(&key("c40"))

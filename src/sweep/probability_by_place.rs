@@ -132,10 +132,9 @@ impl PlaceProbabilities {
     /// The place: its name in quotes, or where it is.
     #[must_use]
     pub fn in_words(&self, units: UnitSystem) -> String {
-        self.name.as_ref().map_or_else(
-            || self.place.location().in_words(units),
-            |name| format!("\"{name}\""),
-        )
+        self.name
+            .clone()
+            .unwrap_or_else(|| self.place.location().in_words(units))
     }
 
     /// The same for a list of places: with the mirror image of the place, where that is in the list

@@ -86,6 +86,25 @@ fn contract_metres_and_feet_give_the_same_answer() {
     assert_eq!(answers[0], answers[1]);
 }
 
+/// A place that the flags give is that of a profile with the same place, and the folder holds it.
+#[test]
+fn contract_best_from_another_place_is_that_of_a_profile_there() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "p.toml", small_profile());
+    let moved = small_profile().replace("\"13.75 ft\"", "\"8'6\\\"\"");
+    assert_ne!(moved, small_profile());
+    let there = write_file(&folder, "there.toml", moved);
+    let run = |profile: &Path, name: &str, options: &[&str]| {
+        let mut command = best(profile, &folder.path().join(name));
+        Answer::of(command.args(["--json", "--quiet"]).args(options)).exits(0)
+    };
+    let by_flag = run(&profile, "flag", &["--distance", "8'6\""]);
+    let by_file = run(&there, "file", &[]);
+    assert_eq!(by_flag.stdout, by_file.stdout);
+    let again = run(&folder.path().join("flag/profile.toml"), "again", &[]);
+    assert_eq!(again.stdout, by_file.stdout);
+}
+
 #[test]
 fn contract_best_says_why_a_location_has_no_shot_and_writes_nothing() {
     let folder = TempDir::new().unwrap();

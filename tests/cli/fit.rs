@@ -344,7 +344,7 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     }
     let table = fs::read_to_string(out.join("shooters.csv")).unwrap();
     assert!(table.starts_with(
-        "shooter,shots,made,distance_ft,court_angle_deg,release_height_ft,probability,low,high,"
+        "shooter,shots,made,place,distance_ft,court_angle_deg,release_height_ft,probability,low,high,"
     ));
     assert_eq!(table.lines().count(), 3);
     // One of them, by name.
@@ -376,9 +376,15 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
             && text.contains("May have changed: the release angle fell by 0.81 deg.")
             && text
                 .lines()
-                .any(|line| line.starts_with("pitch_mean") && line.ends_with("maybe")),
+                .any(|line| line.starts_with("pitch_mean") && shots_to_decide(line) > 30),
         "{text}"
     );
+}
+
+/// The last number of a line of the table of changes: not decided, but possible.
+fn shots_to_decide(line: &str) -> u32 {
+    let last = line.split_whitespace().last().unwrap_or_default();
+    last.parse().unwrap_or(0)
 }
 
 /// Several shooters or sessions in one file: pairs of sessions, the folder of all, its units.
@@ -415,6 +421,31 @@ fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
         .says("has no session March; it has May, June, July");
     let pair = compare(&season, &["July", "May"]).exits(0);
     assert!(pair.stdout().contains("before  July (20 shots"), "{pair:?}");
+    // One session alone is what a file of it alone is.
+    let kept = |row: &&str| row.ends_with("session") || row.ends_with(",June");
+    let june: String = fs::read_to_string(&season)
+        .unwrap()
+        .lines()
+        .filter(kept)
+        .map(|row| format!("{row}\n"))
+        .collect();
+    let june = write_file(&folder, "june.csv", june);
+    let parameters = |path: &Path, flags: &[&str]| {
+        let flags = [&["--json"], flags].concat();
+        let out = folder.path().join(format!("sessions-{}", flags.len()));
+        fit(path.to_str().unwrap(), &out, &flags).exits(0).json()["parameters"].clone()
+    };
+    assert_eq!(
+        parameters(&june, &[]),
+        parameters(&season, &["--session", "June"])
+    );
+    let refused = |path: &Path, session: &str| {
+        let out = folder.path().join("refused");
+        fit(path.to_str().unwrap(), &out, &["--session", session]).exits(2)
+    };
+    refused(&season, "March").says("has no session March; it has May, June, July");
+    refused(Path::new("docs/data/lab.csv"), "May").says("has no column session");
+    refused(Path::new("configs/free_throw.toml"), "May").says("not a table of shots");
     let team = write("team.csv", "shooter,session", &|i| {
         format!("{},{}", ["Ann", "Bob"][i % 2], ["May", "June"][i / 30])
     });
@@ -616,7 +647,7 @@ fn contract_places_of_a_shooter_are_told_apart() {
     let folder = TempDir::new().unwrap();
     let text = fs::read_to_string("docs/data/lab.csv").unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
-    let mut all = format!("{header},shooter\n");
+    let mut all = format!("{header},shooter,place\n");
     let mut sessions = format!("{header},session\n");
     for (i, row) in rows.lines().enumerate() {
         let session = i / 30;
@@ -624,7 +655,8 @@ fn contract_places_of_a_shooter_are_told_apart() {
         let cells: Vec<&str> = row.split(',').collect();
         let height = if is_high { "8.5" } else { "7" };
         let row = format!("{},{height},{}", cells[..5].join(","), cells[6]);
-        all += &format!("{row},{}\n", ["Ann", "Bob"][i / 2 % 2]);
+        let place = if is_high { "high post" } else { "low post" };
+        all += &format!("{row},{},{place}\n", ["Ann", "Bob"][i / 2 % 2]);
         sessions += &format!("{row},{}\n", session + 1);
     }
     let path = write_file(&folder, "places.csv", &all);
@@ -651,9 +683,22 @@ fn contract_places_of_a_shooter_are_told_apart() {
         .map(|row| row[1].parse::<usize>().unwrap())
         .sum();
     assert_eq!(shots, 60);
-    assert_eq!(rows[0][5], "7.000");
-    assert_eq!(rows[1][5], "8.500");
-    assert_ne!(rows[0][6], rows[1][6]);
+    assert_eq!((rows[0][3], rows[1][3]), ("low post", "high post"));
+    let mut advise = bankshot();
+    advise.arg("advise").arg(out.join("ann"));
+    let brief = Answer::of(advise.args(["--brief", "--quiet"])).exits(0);
+    let brief = brief.stdout();
+    assert!(
+        brief.starts_with("low post: 13.75 ft from ") && brief.contains("\nhigh post: 13.75 ft "),
+        "{brief}"
+    );
+    assert!(
+        brief.contains("What to train") && !brief.contains("P of the usual shot"),
+        "{brief}"
+    );
+    assert_eq!(rows[0][6], "7.000");
+    assert_eq!(rows[1][6], "8.500");
+    assert_ne!(rows[0][7], rows[1][7]);
     let shots = fs::read_to_string(out.join("ann").join("shots.csv")).unwrap();
     assert!(shots.starts_with("row,session,place,"));
     // Each place has its profile and its plots.
@@ -682,6 +727,10 @@ fn contract_places_of_a_shooter_are_told_apart() {
     let mut command = bankshot();
     let team = Answer::of(command.arg("team").arg(&out).arg("--quiet")).exits(0);
     assert!(team.stdout().contains("Ann") && team.stdout().contains("Bob"));
+    // How sure the better kind is, of the draws.
+    let is_told =
+        |line: &str| line.contains("Ann") && line.contains("direct (") && line.contains("%)");
+    assert!(team.stdout().lines().any(is_told), "{team:?}");
     // The place that both sessions have is compared: P of the second session is that of a fit of it
     // alone.
     let sessions = write_file(&folder, "sessions.csv", &sessions);

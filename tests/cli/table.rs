@@ -297,7 +297,7 @@ fn contract_a_table_of_the_better_kind() {
 fn contract_wrong_ranges_are_refused() {
     let folder = TempDir::new().unwrap();
     for (distances, message) in [
-        ("10 ft to 14 ft", "has no step; write '6 ft, 8 ft' or"),
+        ("10 ft to 14 ft", "has no step; write '2 m, 3 m' or"),
         ("14 ft to 10 ft by 1 ft", "must ascend, with a step above 0"),
         ("10 ft to 14 ft by 0 ft", "must ascend, with a step above 0"),
         ("10 ft to 14 ft by 1e-9 ft", "has more than 2000 values"),

@@ -1,7 +1,8 @@
 //! What interpolation between the nodes of a table of best shots costs.
 
 use crate::analysis::aim_past_hoop::centre_speed_m_s;
-use crate::best_shot::search::{BestShotError, climb_from_shots};
+use crate::best_shot::found_shots::BestShotError;
+use crate::best_shot::search::climb_from_shots;
 use crate::probability::{MAX_SHOTS, Sampler, Silent};
 use crate::shooter::{Location, Nominal, NominalVariable, Profile, ProfileError, ShotKind};
 

@@ -3,7 +3,8 @@
 use super::interpolation_check::CheckError;
 use super::lookup::TableShot;
 use crate::analysis::sensitivity::{self, SensitivityTopics};
-use crate::best_shot::search::{BestShotError, find_beside_other_kind};
+use crate::best_shot::found_shots::BestShotError;
+use crate::best_shot::search::find_beside_other_kind;
 use crate::dynamics::{Event, EventKind, Outcome};
 use crate::model::SolidId;
 use crate::probability::{Estimate, Silent};

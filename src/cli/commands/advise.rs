@@ -9,7 +9,7 @@ use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{Posterior, advise};
 use crate::output::fit_files::advice_text::{advice_json, advice_text};
 use crate::shooter::Profile;
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::UnitSystem;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -20,6 +20,7 @@ shooter or of several.
 
 Examples:
   bankshot advise docs/data/gym_sensor.csv
+  bankshot advise results/season-fit --brief
   bankshot advise results/gym-sensor-fit --json")]
 pub(crate) struct AdviseOptions {
     /// Measured shots, or the folder of a fit.
@@ -29,6 +30,9 @@ pub(crate) struct AdviseOptions {
     /// Print one JSON object for each shooter and place instead of text.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Print the first sentences alone, of each shooter and place.
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) brief: bool,
 }
 
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
@@ -43,12 +47,14 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             separate(options, number)?;
             print_warnings(&fit.profiles[0].shooter().name, &fit.warnings);
             let units = options.measured.units_or(fit.units);
-            answer(
-                options,
-                (&fit.profiles, &fit.posterior, &fit.observed),
-                units,
-                quiet,
-            )?;
+            let places: Vec<ShooterPlace<'_>> = (0..fit.profiles.len())
+                .map(|place| ShooterPlace {
+                    name: &fit.place_names[place],
+                    profile: &fit.profiles[place],
+                    observed: fit.observed[place],
+                })
+                .collect();
+            answer(options, &places, &fit.posterior, units, quiet)?;
         }
         return Ok(code::DONE);
     }
@@ -62,19 +68,20 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
         let fit = file
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
-        let observed: Vec<(usize, usize)> = (0..fit.places.len())
-            .map(|place| fit.makes.at_place(place))
-            .map(|makes| (makes.made, makes.labelled))
+        let places: Vec<ShooterPlace<'_>> = (0..fit.places.len())
+            .map(|place| {
+                let makes = fit.makes.at_place(place);
+                ShooterPlace {
+                    name: &shots.place_names[place],
+                    profile: &fit.profiles[place],
+                    observed: (makes.made, makes.labelled),
+                }
+            })
             .collect();
         separate(options, number)?;
         print_warnings(&file.name_of(shots), &fit.warnings);
         let units = options.measured.unit_system();
-        answer(
-            options,
-            (&fit.profiles, &fit.posterior, &observed),
-            units,
-            quiet,
-        )?;
+        answer(options, &places, &fit.posterior, units, quiet)?;
     }
     Ok(worst)
 }
@@ -94,37 +101,54 @@ fn print_warnings<W: std::fmt::Display>(name: &str, warnings: &[W]) {
     }
 }
 
-/// Advice for each place; `profiles` and `observed` (made, and all with a result) are those of the
-/// places.
+/// A place of a shooter's test.
+struct ShooterPlace<'a> {
+    /// Its name; empty where the file does not say.
+    name: &'a str,
+    profile: &'a Profile,
+    /// Made, and all with a result.
+    observed: (usize, usize),
+}
+
+/// Advice for each place.
 fn answer(
     options: &AdviseOptions,
-    (profiles, posterior, observed): (&[Profile], &Posterior, &[(usize, usize)]),
+    places: &[ShooterPlace<'_>],
+    posterior: &Posterior,
     units: UnitSystem,
     quiet: bool,
 ) -> Result<(), Failure> {
     let bars = ProgressBars::new(quiet);
-    for (place, (profile, observed)) in profiles.iter().zip(observed).enumerate() {
-        let observed = Some(*observed);
-        let advice = advise(profile, posterior, place, &bars)?;
+    for (number, place) in places.iter().enumerate() {
+        let (profile, observed) = (place.profile, Some(place.observed));
+        let advice = advise(profile, posterior, number, &bars)?;
         let (name, location) = (&profile.shooter().name, profile.location());
         if options.json {
-            let json = advice_json(name, &location, &advice, observed, units);
+            let mut json = advice_json(name, &location, &advice, observed, units);
+            if let Some(record) = json.as_object_mut() {
+                record.insert("place".to_owned(), place.name.into());
+            }
             print_answer(&format!("{json:#}\n"))?;
             continue;
         }
-        if profiles.len() > 1 {
+        if places.len() > 1 {
             let (unit, size) = units.length();
             print_answer(&format!(
-                "{}from {:.2} {unit}, at {:.1} deg on the court, released {:.2} {unit} up\n",
-                if place > 0 { "\n" } else { "" },
-                location.distance_m / size,
-                // No negative zero.
-                libm::round(10.0 * location.angle_rad / DEGREE_RAD) / 10.0 + 0.0,
+                "{}{}{}, released {:.2} {unit} up\n",
+                if number > 0 { "\n" } else { "" },
+                match place.name {
+                    "" => String::new(),
+                    name => format!("{name}: "),
+                },
+                location.in_words(units),
                 profile.shooter().release_height_m / size
             ))?;
         }
         let angle = location.angle_rad;
-        print_prose(&advice_text(name, &advice, observed, angle, units))?;
+        let text = advice_text(name, &advice, observed, angle, units);
+        // The sentences end with an empty line.
+        let first = text.split_once("\n\n").filter(|_| options.brief);
+        print_prose(&first.map_or(text.clone(), |(first, _)| format!("{first}\n")))?;
     }
     Ok(())
 }

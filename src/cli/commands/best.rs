@@ -1,9 +1,10 @@
 //! `bankshot best`: load, plan, search, write.
 
 use crate::best_shot;
-use crate::cli::config_files::load_profile_with_text;
+use crate::cli::config_files::{load_profile_with_text, moved};
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
+use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
@@ -22,6 +23,7 @@ Examples:
   bankshot best configs/free_throw.toml
   bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
   bankshot best configs/bank_wing.toml --units metric --out wing
+  bankshot best configs/free_throw.toml --distance '12 ft' --angle '45 deg'
 
 Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
 best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
@@ -30,6 +32,8 @@ pub(crate) struct BestOptions {
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
+    #[command(flatten)]
+    pub(crate) place: PlaceOptions,
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -50,7 +54,8 @@ pub(crate) struct BestOptions {
 }
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
-    let (mut profile, text) = load_profile_with_text(&options.profile, &options.physics, quiet)?;
+    let loaded = load_profile_with_text(&options.profile, &options.physics, quiet)?;
+    let (mut profile, text) = moved(loaded, &options.place)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }

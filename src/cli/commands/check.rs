@@ -3,13 +3,13 @@
 use crate::cli::config_files::{load_profile, load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
-use crate::cli::value_parsers::PhysicsArg;
+use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::config::parse_profile;
 use crate::model::{PRESETS, Physics, PhysicsValue};
 use crate::search_space::TablePlan;
 use crate::shooter::implausible_values;
 use crate::sweep::sweep_toml::is_sweep;
-use crate::units::DEGREE_RAD;
+use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -24,6 +24,9 @@ pub(crate) struct CheckOptions {
     /// List every value of the physics, and whether it is measured, from a rule book or assumed.
     #[arg(long)]
     pub(crate) verbose: bool,
+    /// Units of the answer [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
     /// Print one JSON object: whether the file is valid, and each error with its line.
     #[arg(long)]
     pub(crate) json: bool,
@@ -41,7 +44,9 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
     }
     let (profile, text) = load_profile_with_text(&options.profile, &options.physics, quiet)?;
     TablePlan::for_search(&profile)?;
-    let (long, metre) = profile.output().units.length();
+    let own = profile.output().units;
+    let units = options.units.map_or(own, UnitSystem::from);
+    let (long, metre) = units.length();
     let location = profile.location();
     let mut answer = format!(
         "{path}: valid ({}, {:.2} {long} from the hoop at {:.1} deg)\n",
@@ -53,6 +58,7 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         answer.push_str(&physics_text(
             profile.physics(),
             preset_named_in(&text).as_deref(),
+            units,
         ));
     }
     print_prose(&answer)
@@ -136,12 +142,12 @@ const SOURCE_COLUMN: usize = 52;
 
 /// Every value of the physics, and whether it is measured, from a rule book or assumed.
 /// It is compared with the preset that the profile names, else with the nearest one.
-fn physics_text(physics: &Physics, named: Option<&str>) -> String {
-    let values = physics.values();
+fn physics_text(physics: &Physics, named: Option<&str>, units: UnitSystem) -> String {
+    let values = physics.values(units);
     let presets = PRESETS
         .iter()
         .filter(|preset| named.is_none_or(|name| name == preset.name))
-        .map(|preset| (preset, preset.physics().values()));
+        .map(|preset| (preset, preset.physics().values(units)));
     // The preset that it is, or differs from least.
     let differing = |other: &[PhysicsValue]| {
         let pairs = values.iter().zip(other);

@@ -15,7 +15,7 @@ use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::fit_files::parameters::value_units;
 use crate::output::fit_files::session_changes_text::{
-    SessionChange, SessionSummary, session_changes_text,
+    Decision, SessionChange, SessionSummary, session_changes_text,
 };
 use crate::output::json_object::{number, object};
 use crate::probability::Progress;
@@ -44,9 +44,6 @@ pub(crate) struct CompareSessionsOptions {
     pub(crate) after: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
-    /// Of a file with more than two sessions, one of the two to compare; give it twice.
-    #[arg(long, value_name = "NAME", conflicts_with = "after")]
-    pub(crate) session: Vec<String>,
     /// Of sessions from several places, the number of the place to compare [default: 1, the first
     /// that both have].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -64,6 +61,8 @@ struct Session {
     /// The number of places, and the index of the one that is compared.
     places: usize,
     place: usize,
+    /// Its name; empty where the file does not say.
+    place_name: String,
     posterior: Posterior,
     /// Made at this place, and all with a result.
     makes: (usize, usize),
@@ -88,9 +87,10 @@ impl Session {
         }
     }
 
+    /// `place_names` are those of the places of the fit.
     fn of(
         name: String,
-        shots: &ShooterShots,
+        (shots, place_names): (&ShooterShots, &[String]),
         mut fit: ShooterFit,
         number: Option<u32>,
     ) -> Result<Self, Failure> {
@@ -101,6 +101,7 @@ impl Session {
             is_of_column: false,
             places: fit.places.len(),
             place,
+            place_name: place_names[place].clone(),
             posterior: fit.posterior,
             makes: (makes.made, makes.labelled),
             probabilities: fit.probabilities.swap_remove(place),
@@ -117,6 +118,11 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
     }
+    if options.after.is_some() && !options.measured.session.is_empty() {
+        return Err(Failure::usage(
+            "--session: names the two sessions of one file; leave the second file out",
+        ));
+    }
     let bars = ProgressBars::new(quiet);
     let (mut code, mut several_shooters) = (code::DONE, false);
     let compared: Vec<[Session; 2]> = match &options.after {
@@ -128,7 +134,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             )));
         }
         None => {
-            let file = options.measured.read(&options.before)?;
+            let file = options.measured.read_sessions(&options.before, &[])?;
             let several = file.shooters.len() > 1;
             let mut compared = Vec::new();
             bars.begin("fitting sessions", 2 * file.shooters.len() as u64);
@@ -156,18 +162,20 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
     };
     let mut jsons = Vec::new();
     let mut all = compared.iter().flatten();
-    if let Some(session) = all.find(|session| session.places > 1) {
+    if !options.json
+        && let Some(session) = all.find(|session| session.places > 1)
+    {
         let units = options.measured.units_or(session.units.unwrap_or_default());
-        if !options.json {
-            let (long, metre) = units.length();
-            print_prose(&format!(
-                "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}, released {:.2} {long} up; the scatter is that of all.\n\n",
-                session.places,
-                session.place + 1,
-                session.profile.location().in_words(units),
-                session.profile.shooter().release_height_m / metre
-            ))?;
-        }
+        print_prose(&format!(
+            "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}{}; the scatter is that of all.\n\n",
+            session.places,
+            session.place + 1,
+            match session.place_name.as_str() {
+                "" => String::new(),
+                name => format!("{name}, "),
+            },
+            session.profile.location().in_words(units)
+        ))?;
     }
     for (number, sessions) in compared.iter().enumerate() {
         check_conditions(sessions)?;
@@ -220,6 +228,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
             is_of_column: false,
             places: fit.profiles.len(),
             place,
+            place_name: fit.place_names[place].clone(),
             probabilities: fit.usual_probabilities(place),
             posterior: fit.posterior,
             makes: fit.observed[place],
@@ -235,7 +244,7 @@ fn read(path: &Path, options: &CompareSessionsOptions) -> Result<Session, Failur
     let fit = file
         .fit(shots, &file.physics)
         .map_err(|error| failure(&name, &error))?;
-    Session::of(name, shots, fit, options.place)
+    Session::of(name, (shots, &shots.place_names), fit, options.place)
 }
 
 /// Fits of one physics can be compared, and P of one place.
@@ -282,7 +291,7 @@ fn fit_by_session(
     options: &CompareSessionsOptions,
     bars: &ProgressBars,
 ) -> Result<[Session; 2], Failure> {
-    let wanted = &options.session[..];
+    let wanted = &options.measured.session[..];
     let place = file.file.display().to_string();
     report_rejected(file, shots, file.shooters.len() == 1);
     let mut names: Vec<&String> = Vec::new();
@@ -329,7 +338,12 @@ fn fit_by_session(
         bars.advance(1);
         Ok(Session {
             is_of_column: true,
-            ..Session::of(session.clone(), shots, fit, options.place)?
+            ..Session::of(
+                session.clone(),
+                (shots, &kept.place_names),
+                fit,
+                options.place,
+            )?
         })
     };
     Ok([fit(first, second)?, fit(second, first)?])
@@ -357,7 +371,12 @@ fn only_session(shots: &ShooterShots, session: &str, other: &str) -> ShooterShot
     });
     ShooterShots {
         shots: kept.collect(),
+        sessions: Vec::new(),
         places: places.iter().map(|place| shots.places[*place]).collect(),
+        place_names: places
+            .iter()
+            .map(|place| shots.place_names[*place].clone())
+            .collect(),
         tracks: Vec::new(),
         chi_squares: Vec::new(),
         ..shots.clone()
@@ -429,6 +448,7 @@ fn json(
     };
     let listed = changes.iter().map(|change| {
         let comparison = &change.comparison;
+        let decision = change.decision(changes.len() - 1);
         let interval = |interval: &crate::fitting::Interval| {
             object(interval_json(&interval.scaled(1.0 / change.size)))
         };
@@ -439,7 +459,11 @@ fn json(
             "after": interval(&comparison.after),
             "change": interval(&comparison.change),
             "probability_of_growth": number(comparison.grew),
-            "shots_to_decide": comparison.shots_to_decide.map(f64::ceil),
+            "is_decided": decision == Decision::Made,
+            "shots_to_decide": match decision {
+                Decision::Needs(shots) => Some(shots.ceil()),
+                Decision::Made | Decision::Unknown => None,
+            },
         })
     });
     json!({

@@ -9,16 +9,16 @@ use crate::cli::measured_shots_flags::tracker_noise;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
-use crate::cli::value_parsers::{self, PhysicsArg};
+use crate::cli::value_parsers::{self, PhysicsArg, UnitsArg};
 use crate::fitting::{
-    Covariance, DesignRow, FitError, Landing, POWER, Place, Tracker, TrackerNoise, design,
-    landing_of, nominal_of, release_of_landing, values_of,
+    Covariance, DesignRow, FitError, Landing, POWER, Place, TWO_SIDED_95, Tracker, TrackerNoise,
+    design, landing_of, nominal_of, release_of_landing, values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
 use crate::shooter::{Nominal, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -49,9 +49,13 @@ pub(crate) struct DesignOptions {
     /// Of a fit with several places, the number of the place [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
-    /// Also ask how many shots make P known to this many points (one standard deviation).
+    /// Also ask how many shots make P known to this many points: as one standard deviation, and as
+    /// a 95 % interval of so many points to each side.
     #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
     pub(crate) target: Option<f64>,
+    /// Units of the answer [default: those of the profile or the fit].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
     /// Print one JSON object.
     #[arg(long)]
     pub(crate) json: bool,
@@ -98,7 +102,7 @@ fn tracker_named(name: &str) -> Result<TrackerOfTest, Failure> {
 
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let named = options.tracker.as_deref().map(tracker_named).transpose()?;
-    let (profile, nominal, own_tracker) = if options.profile.is_dir() {
+    let (profile, nominal, own_tracker, own_units) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let place = fit.place_numbered(options.place)?;
         let usual = nominal_of(&fit.posterior.typical().means[place]);
@@ -110,7 +114,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 fit.profiles[place].location().in_words(fit.units)
             ));
         }
-        (fit.profiles[place].clone(), usual, fit.tracker)
+        (fit.profiles[place].clone(), usual, fit.tracker, fit.units)
     } else if options.place.is_some() {
         return Err(Failure::usage(
             "--place: only the folder of a fit has places",
@@ -122,8 +126,10 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         } else {
             best_nominal(&profile, quiet)?
         };
-        (profile, nominal, "lab".to_owned())
+        let units = profile.output().units;
+        (profile, nominal, "lab".to_owned(), units)
     };
+    let units = options.units.map_or(own_units, UnitSystem::from);
     let tracker = match named {
         Some(tracker) => tracker,
         None => tracker_named(&own_tracker)?,
@@ -219,11 +225,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         };
     }
     let sd = |i: usize, size: f64| noise[(i, i)].max(0.0).sqrt() / size;
+    let (long, metre) = units.length();
     text += &format!(
-        "\nAt this shot the tracker errs by {:.2} ft/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
-        sd(0, FOOT_M),
+        "\nAt this shot the tracker errs by {:.decimals$} {long}/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
+        sd(0, metre),
         sd(1, DEGREE_RAD),
-        sd(2, DEGREE_RAD)
+        sd(2, DEGREE_RAD),
+        decimals = if units == UnitSystem::Metric { 3 } else { 2 }
     );
     print_prose(&text)
 }
@@ -253,8 +261,6 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
     Ok(best.nominal)
 }
 
-/// Standard deviations on each side of a normal 95 % interval.
-const TWO_SIDED_95: f64 = 1.96;
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
 

@@ -67,7 +67,7 @@ impl Template {
             Self::Robot => {
                 format!("bankshot table {file} --kind best --distances '6 ft to 20 ft by 2 ft'")
             }
-            Self::Physics => format!("bankshot check player.toml --physics {file} --verbose"),
+            Self::Physics => format!("bankshot check PROFILE.toml --physics {file} --verbose"),
         }
     }
 }

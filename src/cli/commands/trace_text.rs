@@ -55,7 +55,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
     }
     let _ = writeln!(
         text,
-        "\n   time s  event                      x, y, z {long}               speed {long}/s"
+        "\nx, y, z from the hoop's centre: out onto the court, to the right as one faces the hoop, above the ring\n   time s  event                      x, y, z {long}               speed {long}/s"
     );
     for event in &trace.events {
         let [x, y, z] = event.state.position_m.into();

@@ -10,7 +10,7 @@ use crate::fitting::{
 };
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 use serde_json::Value;
 
 /// Points of P with their interval: `2.1 points (95 %: 0.4 to 3.9)`.
@@ -20,6 +20,9 @@ fn points(interval: &Interval) -> String {
         [interval.mean, interval.low, interval.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
     format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
 }
+
+/// Nobody can throw harder or softer by less than this on purpose, m/s.
+const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 
 /// Words for the change of one value.
 struct ChangeWords {
@@ -38,7 +41,8 @@ impl ChangeWords {
             _ => 2,
         };
         let amount = format!("{difference:.decimals$} {unit}");
-        if amount.chars().all(|c| !('1'..='9').contains(&c)) {
+        let is_nothing = cause == Cause::SPEED && (to - from).abs() < SAME_SPEED_M_S;
+        if is_nothing || amount.chars().all(|c| !('1'..='9').contains(&c)) {
             return format!(
                 "keep {}",
                 ["the speed", "the angle", "the aim", "the backspin"][cause.0]
@@ -138,6 +142,40 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
         );
     }
     text + "\n"
+}
+
+/// The other kind of shot, in a sentence, where it is surely better and by a shot in 100.
+fn other_kind_in_words(advice: &Advice) -> String {
+    const SURE: f64 = 0.9;
+    const WORTH_IT: f64 = 0.01;
+    let Some(kinds) = &advice.kinds else {
+        return String::new();
+    };
+    let [direct, bank] = kinds.probabilities;
+    let (words, sure, gain, [own, other]) = match advice.kind {
+        ShotKind::Direct => (
+            "Or bank it: the best bank shot",
+            kinds.bank_is_better,
+            kinds.difference.mean,
+            [direct, bank],
+        ),
+        ShotKind::Bank => (
+            "Or shoot it direct: the best direct shot",
+            1.0 - kinds.bank_is_better,
+            -kinds.difference.mean,
+            [bank, direct],
+        ),
+    };
+    if sure < SURE || gain < WORTH_IT {
+        return String::new();
+    }
+    format!(
+        "{words} makes {:.0} %, the best {} one {:.0} % (it is better in {:.0} % of the draws).\n",
+        100.0 * other.mean,
+        advice.kind.name(),
+        100.0 * own.mean,
+        100.0 * sure
+    )
 }
 
 /// What to train, in a sentence: the scatter that costs most, and what costs about as much.
@@ -257,6 +295,7 @@ pub fn advice_text(
         (Some(_), None) => text += "Keep your release: no other one is worth a change.\n",
         (None, None) => text += "No clean shot of this kind was found from here.\n",
     }
+    text += &other_kind_in_words(advice);
     text += &training_in_words(&advice.training);
     text += &format!(
         "\nP of the usual shot  {} (95 %: {:.1} to {:.1} %, numerics ± {:.2})\n",

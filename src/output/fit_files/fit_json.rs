@@ -29,6 +29,8 @@ pub struct FitSource<'a> {
     pub rejected: &'a [(u64, String)],
     /// Releases that were measured beside the landings.
     pub differences: &'a [ReleaseDifference],
+    /// The name of each place; empty where the file does not say.
+    pub place_names: &'a [String],
 }
 
 fn named(name: &str, value: Value) -> (String, Value) {
@@ -85,6 +87,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     let places = places.map(|(index, (place, p))| {
         let makes = fit.makes.at_place(index);
         object(vec![
+            named("name", source.place_names[index].clone().into()),
             named("shots", makes.labelled.into()),
             named("made", makes.made.into()),
             named(
@@ -171,6 +174,16 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         named("observed", observed),
         named("prediction", prediction),
         named("places", places.collect()),
+        named(
+            "residuals",
+            fit.residuals.as_ref().map_or(Value::Null, |residuals| {
+                object(vec![
+                    named("ratio", number(residuals.ratio())),
+                    named("chi_square", number(residuals.chi_square)),
+                    named("expected", number(residuals.expected)),
+                ])
+            }),
+        ),
         named("shots", posterior.shots.into()),
         named("rejected", rejected.collect()),
         named("measured_less_from_landings", differences.collect()),

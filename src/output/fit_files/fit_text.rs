@@ -3,7 +3,7 @@
 use super::fit_json::FitSource;
 use super::parameters::{parameters, value_units};
 use crate::fitting::{CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES};
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::UnitSystem;
 
 /// A probability as a percentage.
 #[must_use]
@@ -46,17 +46,28 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         );
     }
     for (index, (place, p)) in fit.places.iter().zip(&fit.probabilities).enumerate() {
-        let number = if fit.places.len() > 1 {
-            format!("place {}, ", index + 1)
-        } else {
-            String::new()
+        let name = &source.place_names[index];
+        let number = match (fit.places.len(), name.as_str()) {
+            (1, "") => String::new(),
+            (1, name) => format!("{name}, "),
+            (_, "") => format!("place {}, ", index + 1),
+            (_, name) => format!("place {}, {name}, ", index + 1),
         };
         text += &format!(
-            "{number}{:.2} {long} from the hoop at {:.1} deg, released at {:.2} {long}: the usual shot has {}\n",
-            place.location.distance_m / metre,
-            place.location.angle_rad / DEGREE_RAD,
+            "{number}{}, released at {:.2} {long}: the usual shot has {}\n",
+            place.location.in_words(units),
             place.release_height_m / metre,
             probability_text(p)
+        );
+    }
+    if let Some(residuals) = &fit.residuals {
+        text += &format!(
+            "flights {} of {} used; their points lie {:.2} times as far from the fitted flights as the tracker's noise puts them (chi-square {:.0}, expected {:.0})\n",
+            posterior.shots,
+            posterior.shots + source.rejected.len(),
+            residuals.ratio(),
+            residuals.chi_square,
+            residuals.expected
         );
     }
     let makes = &fit.makes;

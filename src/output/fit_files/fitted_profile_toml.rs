@@ -54,9 +54,13 @@ pub fn fitted_profile_toml(
     line("# An error is the root mean square over all draws; its interval and its source are beside it.".to_owned());
     if has_several_places {
         line(format!(
-            "# The location, the usual shot and `speed` are those of place {} of {}.",
+            "# The location, the usual shot and `speed` are those of place {} of {}{}.",
             place_index + 1,
-            fit.places.len()
+            fit.places.len(),
+            match source.place_names[place_index].as_str() {
+                "" => String::new(),
+                name => format!(", {}", quoted(name)),
+            }
         ));
     }
     for warning in &fit.warnings {

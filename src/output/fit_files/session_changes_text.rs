@@ -1,6 +1,6 @@
 //! What changed between two sessions of a shooter, as text.
 
-use crate::fitting::{Interval, ProbabilityChange, SessionComparison};
+use crate::fitting::{Interval, ProbabilityChange, SessionComparison, TWO_SIDED_95};
 use crate::math::normal_distribution::quantile;
 
 /// What changed in one quantity.
@@ -36,16 +36,32 @@ impl SessionChange {
         }
     }
 
-    /// Whether the change is beyond chance although `tested` values were looked at (Bonferroni).
+    /// Whether the change is beyond chance although `tested` values were looked at.
     fn is_certain_among(&self, tested: usize) -> bool {
         let change = &self.comparison.change;
-        let quantile = quantile(1.0 - 0.025 / tested as f64);
-        change.mean.abs() > quantile * change.sd
+        change.mean.abs() > quantile_among(tested) * change.sd
     }
 
     fn is_decided(&self) -> bool {
-        let change = &self.comparison.change;
-        change.low > 0.0 || change.high < 0.0
+        self.comparison.is_decided()
+    }
+
+    /// Whether the change is decided, and else about how many shots in each session would decide
+    /// one of this size: at the 95 % level for P, and with room for the `tested` values that were
+    /// looked at for the others.
+    #[must_use]
+    pub fn decision(&self, tested: usize) -> Decision {
+        let is_p = self.name == "P";
+        let quantile = if is_p {
+            TWO_SIDED_95
+        } else {
+            quantile_among(tested)
+        };
+        match self.comparison.shots_to_decide(quantile) {
+            _ if self.is_decided() && (is_p || self.is_certain_among(tested)) => Decision::Made,
+            Some(shots) => Decision::Needs(shots),
+            None => Decision::Unknown,
+        }
     }
 
     /// Decimals that show two digits of the change's uncertainty, at most three.
@@ -59,6 +75,23 @@ impl SessionChange {
     }
 }
 
+/// Whether a change is beyond chance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Decision {
+    /// It is.
+    Made,
+    /// It is not; about so many shots in each session would decide one of this size.
+    Needs(f64),
+    /// It is less than its own uncertainty, so its size says nothing.
+    Unknown,
+}
+
+/// A change of so many standard errors is beyond chance although `tested` values were looked at
+/// (Bonferroni).
+fn quantile_among(tested: usize) -> f64 {
+    quantile(1.0 - 0.025 / tested as f64)
+}
+
 /// A session.
 pub struct SessionSummary<'a> {
     /// Its name.
@@ -69,12 +102,12 @@ pub struct SessionSummary<'a> {
     pub makes: (usize, usize),
 }
 
-/// A change of P: `+3 points (95 %: -1 to +7)`.
+/// A change of P: `+3.1 points (95 %: -1.2 to +7.4)`.
 fn points(change: &Interval) -> String {
     // Rounded first, and 0 added: no negative zero.
     let [mean, low, high] =
-        [change.mean, change.low, change.high].map(|p| libm::round(100.0 * p) + 0.0);
-    format!("{mean:+.0} points (95 %: {low:+.0} to {high:+.0})")
+        [change.mean, change.low, change.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
+    format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
 }
 
 /// The verdict in words, then the table. The sessions are before and after.
@@ -100,7 +133,7 @@ pub fn session_changes_text(
     });
     let mut text = verdict(changes);
     text += &format!(
-        "Of the change of the chance, the scatter makes {} and then the aim (speed, angle, direction) {}.\n",
+        "Of the change of the chance, first the scatter makes {} and then the aim (the means of speed, angle and direction) {}.\n",
         points(&causes.by_scatter),
         points(&causes.by_aim)
     );
@@ -118,7 +151,7 @@ pub fn session_changes_text(
     }
     text += "\n\
         direction  the chance that it changed this way at all; 50 % says nothing\n\
-        decide     about how many shots a session would decide a change of this size. yes: decided now. maybe: its own 95 % interval leaves out zero, but among several values one can do so by chance. -: less than its own uncertainty, so its size says nothing\n";
+        decide     about how many shots a session would decide a change of this size; for the values below P with room for chance, as several are looked at. yes: decided now. -: less than its own uncertainty, so its size says nothing\n";
     text
 }
 
@@ -210,17 +243,15 @@ fn quantity_in_words(name: &str) -> &str {
 fn line(change: &SessionChange, tested: usize) -> String {
     let (direction, probability) = change.direction();
     let comparison = &change.comparison;
-    let decide = match comparison.shots_to_decide {
-        _ if change.name == "P" && change.is_decided() => "yes".to_owned(),
-        _ if change.is_certain_among(tested) && change.is_decided() => "yes".to_owned(),
-        _ if change.is_decided() => "maybe".to_owned(),
-        Some(needed) => two_digits(needed),
-        None => "-".to_owned(),
+    let decide = match change.decision(tested) {
+        Decision::Made => "yes".to_owned(),
+        Decision::Needs(shots) => two_digits(shots),
+        Decision::Unknown => "-".to_owned(),
     };
     let decimals = change.decimals();
     let by = comparison.change.scaled(1.0 / change.size);
     let line = format!(
-        "{:<13} {:>7.decimals$} {:>7.decimals$} {:>+7.decimals$} {:>7.decimals$} to {:>6.decimals$} {:<5} {direction:<5} {:>2.0} % {decide:>7}",
+        "{:<13} {:>7.decimals$} {:>7.decimals$} {:>+7.decimals$} {:>7.decimals$} to {:>6.decimals$} {:<5} {direction:<5} {:>3} % {decide:>6}",
         change.name,
         comparison.before.mean / change.size,
         comparison.after.mean / change.size,
@@ -228,9 +259,18 @@ fn line(change: &SessionChange, tested: usize) -> String {
         by.low,
         by.high,
         change.unit,
-        (100.0 * probability).min(99.0),
+        at_most_two_digits(100.0 * probability),
     );
     format!("{}\n", line.trim_end())
+}
+
+/// A percentage, `>99` where it would be rounded to 100.
+fn at_most_two_digits(percent: f64) -> String {
+    if percent >= 99.5 {
+        ">99".to_owned()
+    } else {
+        format!("{percent:.0}")
+    }
 }
 
 /// A number of shots with two digits: it is as noisy as the change that it rests on.

@@ -21,7 +21,7 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     unmeasured_parameters::check_names(&options.free)?;
     let file = options.measured.read(&options.shots)?;
     let out = options.out.clone().unwrap_or_else(|| {
-        let folder = default_folder(&options.shots);
+        let folder = default_folder(&options.shots, &options.measured.session);
         // Where a fit of all shooters puts this one.
         match &options.measured.shooter {
             Some(name) => folder.join(run_folder::safe_name(name)),
@@ -48,9 +48,13 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     Ok(worst.max(code))
 }
 
-fn default_folder(shots: &Path) -> PathBuf {
-    let stem = shots
+/// `results/NAME-fit`, or `results/NAME-SESSION-fit` of some sessions alone.
+fn default_folder(shots: &Path, sessions: &[String]) -> PathBuf {
+    let mut stem = shots
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    for session in sessions {
+        stem += &format!("-{session}");
+    }
     Path::new("results").join(format!("{}-fit", run_folder::safe_name(&stem)))
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[command(after_help = "\
 The file holds releases (speed, pitch, polar or aim), landings (entry_angle, depth, left_right) or trajectories (shot, \
 time, x, y, z); each column has its unit in its name, as in speed_ft_s, depth_in, time_s. It can have made, shooter, \
-session, and the place (distance, court_angle, release_height). Angles of release are positive to the shooter's left: \
+session, place (a name), and where that is (distance, court_angle, release_height). Angles of release are positive to the shooter's left: \
 aim from the line to the hoop's centre, polar from the court's long axis. left_right is positive to the right. Units: \
 ft_s m_s mph km_h, deg rad, rev_s rpm rad_s, ft in m cm mm, s ms.
 

@@ -28,8 +28,14 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
         ));
     }
     if shots.rejected.len() > most_named {
+        // Without any shot nothing is written.
+        let all = if shots.shots.is_empty() {
+            ""
+        } else {
+            "; `fit` lists all in its shots.csv"
+        };
         print_remark(&format!(
-            "... and {} more; `fit` lists all in its shots.csv",
+            "... and {} more{all}",
             shots.rejected.len() - most_named
         ));
     }
@@ -50,9 +56,32 @@ pub(super) fn print_sessions(shooters: &[ShooterShots]) {
     }
     if names.len() > 1 {
         print_remark(&format!(
-            "{} sessions are fitted as one; `bankshot compare-sessions` compares two of them",
+            "{} sessions are fitted as one; --session NAME fits one alone, `bankshot compare-sessions` compares two",
             names.len()
         ));
+    }
+}
+
+/// Says where the name of a place contradicts the sign of its court angle.
+pub(super) fn print_sides(shooters: &[ShooterShots]) {
+    let mut told: Vec<&str> = Vec::new();
+    for shots in shooters {
+        for (place, name) in shots.places.iter().zip(&shots.place_names) {
+            let side = if place.location.angle_rad > 0.0 {
+                ["right", "left"]
+            } else {
+                ["left", "right"]
+            };
+            let words = name.to_lowercase();
+            let is_other = words.contains(side[1]) && !words.contains(side[0]);
+            if is_other && place.location.angle_rad != 0.0 && !told.contains(&name.as_str()) {
+                told.push(name);
+                print_remark(&format!(
+                    "warning: the place {name} is taken to be on the {}: court angles are positive to the right as one faces the hoop. If they grow to the left in this file: --map 'court_angle=-COLUMN:deg'",
+                    side[0]
+                ));
+            }
+        }
     }
 }
 

@@ -2,13 +2,13 @@
 
 use super::files::write;
 use super::options::FitOptions;
-use super::remarks::{print_sessions, print_unused};
+use super::remarks::{print_sessions, print_sides, print_unused};
 use super::shooters_table::{Record, TABLE_FILE, records, table_header, write_table};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::Place;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
@@ -104,10 +104,20 @@ pub(super) fn fit(
         [] => String::new(),
     };
     print_answer(&format!("{assumptions}{}\n", table.trim_fmt()))?;
+    if file
+        .shooters
+        .iter()
+        .any(|shots| shots.shots.iter().any(|shot| shot.made.is_some()))
+    {
+        print_prose(
+            "made and expected: of these balls, as they were measured. P: of the fitted distribution, so of all balls like them.\n",
+        )?;
+    }
     for warning in rows.iter().flat_map(|row| &row.warnings) {
         print_remark(warning);
     }
     if !quiet {
+        print_sides(&file.shooters);
         print_sessions(&file.shooters);
         print_unused(file);
         print_remark(&format!(
@@ -128,11 +138,17 @@ struct ShooterRow {
     warnings: Vec<String>,
 }
 
-/// A place in a cell of the table, such as `13.75 ft, 0 deg, from 7.00 ft up`.
-fn place_in_short(place: &Place, units: UnitSystem) -> String {
+/// A place in a cell of the table, such as `13.75 ft, 0 deg, from 7.00 ft up`, with its name above
+/// it.
+fn place_in_short(name: &str, place: &Place, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     format!(
-        "{:.2} {long}, {:.0} deg,\n{:.2} {long} up",
+        "{}{:.2} {long}, {:.0} deg,\n{:.2} {long} up",
+        if name.is_empty() {
+            String::new()
+        } else {
+            format!("{}\n", shortened(name, 20))
+        },
         place.location.distance_m / metre,
         place.location.angle_rad / DEGREE_RAD,
         place.release_height_m / metre
@@ -161,7 +177,7 @@ fn fit_one(
             let mut record = Record::default();
             record[0].clone_from(&name);
             record[1] = shots.shots.len().to_string();
-            record[10] = error.to_string();
+            record[11] = error.to_string();
             return Ok(ShooterRow {
                 records: vec![record],
                 result: Err(format!("{name}: {error}")),
@@ -191,7 +207,11 @@ fn fit_one(
             } else {
                 String::new()
             },
-            from: place_in_short(place, options.measured.unit_system()),
+            from: place_in_short(
+                &shots.place_names[index],
+                place,
+                options.measured.unit_system(),
+            ),
             cells: [
                 makes.shots.len().to_string(),
                 made,
@@ -208,7 +228,12 @@ fn fit_one(
         });
     }
     Ok(ShooterRow {
-        records: records(&name, &fit, folder, options.measured.unit_system()),
+        records: records(
+            (&name, &shots.place_names),
+            &fit,
+            folder,
+            options.measured.unit_system(),
+        ),
         result: Ok(places),
         warnings: fit
             .warnings

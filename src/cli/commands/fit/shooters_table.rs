@@ -14,7 +14,7 @@ use std::path::Path;
 pub(super) const TABLE_FILE: &str = "shooters.csv";
 
 /// A row of [`TABLE_FILE`].
-pub(super) type Record = [String; 11];
+pub(super) type Record = [String; 12];
 
 pub(super) fn table_header(units: UnitSystem) -> Record {
     let (long, _) = units.length();
@@ -22,6 +22,7 @@ pub(super) fn table_header(units: UnitSystem) -> Record {
         "shooter".to_owned(),
         "shots".to_owned(),
         "made".to_owned(),
+        "place".to_owned(),
         format!("distance_{long}"),
         "court_angle_deg".to_owned(),
         format!("release_height_{long}"),
@@ -35,7 +36,7 @@ pub(super) fn table_header(units: UnitSystem) -> Record {
 
 /// The rows of a fit, one for each place.
 pub(super) fn records(
-    name: &str,
+    (name, place_names): (&str, &[String]),
     fit: &ShooterFit,
     folder: &Path,
     units: UnitSystem,
@@ -51,6 +52,7 @@ pub(super) fn records(
                 name.to_owned(),
                 makes.shots.len().to_string(),
                 made.unwrap_or_default(),
+                place_names[index].clone(),
                 format!("{:.3}", place.location.distance_m / metre),
                 format!("{:.2}", place.location.angle_rad / DEGREE_RAD),
                 format!("{:.3}", place.release_height_m / metre),
@@ -101,7 +103,7 @@ pub(super) fn renew_table(
     };
     let units = options.measured.unit_system();
     let mut renewed: Vec<Record> = rows[..first].to_vec();
-    renewed.extend(records(&name, fit, folder, units));
+    renewed.extend(records((&name, &shots.place_names), fit, folder, units));
     renewed.extend(rows[first..].iter().filter(|row| !is_own(row)).cloned());
     write_table(&path, &header, &renewed)
 }

@@ -21,7 +21,7 @@ use crate::plots::svg::shortened;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
 use crate::report::poster_page::poster_page;
-use crate::shooter::{Profile, ReleaseVariable};
+use crate::shooter::{Profile, ReleaseVariable, implausible_values};
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
@@ -102,7 +102,14 @@ fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<(PathBuf, Profile)
                 path = path.display()
             )));
         }
-        let player = load_profile(&path, &PhysicsArg::default(), quiet)?;
+        let player = load_profile(&path, &PhysicsArg::default(), true)?;
+        if !quiet {
+            let of_fit = warnings_of_fit(&path).into_iter();
+            let of_fit = of_fit.map(|words| format!("its fit warned: {words}"));
+            for words in implausible_values(&player).into_iter().chain(of_fit) {
+                print_remark(&format!("{}: warning: {words}", player.shooter().name));
+            }
+        }
         let name = &player.shooter().name;
         let folder = run_folder::safe_name(name);
         if players
@@ -119,16 +126,51 @@ fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<(PathBuf, Profile)
     Ok(players)
 }
 
+/// What a player is told about bank and direct.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    Prefer(Preference),
+    /// The measured shots leave both open.
+    Unsure,
+}
+
+impl Verdict {
+    const ALL: [Self; 4] = [
+        Self::Prefer(Preference::Bank),
+        Self::Prefer(Preference::Direct),
+        Self::Prefer(Preference::Either),
+        Self::Unsure,
+    ];
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Prefer(Preference::Bank) => "Bank it",
+            Self::Prefer(Preference::Direct) => "Shoot it direct",
+            Self::Prefer(Preference::Either) => "Either is as good",
+            Self::Unsure => "Not sure yet, the measured shots leave both open",
+        }
+    }
+}
+
+/// The kind of shot that is better in this share of the draws of a fit is surely so.
+const SURE: f64 = 0.9;
+
 fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
     let profiles = load_players(&options.players, quiet)?;
+    let has_further_places =
+        |(path, _): &(PathBuf, Profile)| path.with_file_name("profile_place_2.toml").is_file();
+    if !quiet && profiles.iter().any(has_further_places) {
+        print_remark(
+            "of fits with several places: each player shoots from the first one; --sweep COURT.toml covers others (a region \"places\" takes a list of them)",
+        );
+    }
     let header = ["player", "place", "direct", "bank", "shoot it"];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     let bars = ProgressBars::new(quiet);
-    let mut any_either = false;
+    let (mut any_either, mut any_draws) = (false, false);
     let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
-    let mut names_by_preference: [(Preference, Vec<String>); 3] =
-        [Preference::Bank, Preference::Direct, Preference::Either].map(|kind| (kind, Vec::new()));
-    for (_, profile) in &profiles {
+    let mut verdicts: Vec<(Verdict, String)> = Vec::new();
+    for (path, profile) in &profiles {
         let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
         let p: Vec<Option<Difference>> = shots
             .iter()
@@ -151,15 +193,35 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         };
         let preference = Preference::of(p[0], p[1]);
         any_either |= preference == Some(Preference::Either);
-        let advice = preference.map_or("no clean shot", Preference::name);
+        let mut advice = preference
+            .map_or("no clean shot", Preference::name)
+            .to_owned();
+        let mut is_sure = true;
+        if let [Ok(direct), Ok(bank)] = &shots[..]
+            && preference != Some(Preference::Either)
+            && let Some(fit) = fit_folder::of_profile(path)?
+        {
+            let nominals = [&direct.nominal, &bank.nominal];
+            let bank_is_better = fit_folder::bank_is_better(&fit, profile, nominals)?;
+            let share = match preference {
+                Some(Preference::Bank) => bank_is_better,
+                _ => 1.0 - bank_is_better,
+            };
+            advice += &format!(" ({:.0} %)", 100.0 * share);
+            is_sure = share >= SURE;
+            any_draws = true;
+        }
         let (long, metre) = profile.output().units.length();
         let location = profile.location();
         let name = shortened(&profile.shooter().name, LONGEST_NAME);
-        for (kind, names) in &mut names_by_preference {
-            if preference == Some(*kind) {
-                names.push(name.clone());
-            }
-        }
+        verdicts.extend(preference.map(|preference| {
+            let verdict = if is_sure {
+                Verdict::Prefer(preference)
+            } else {
+                Verdict::Unsure
+            };
+            (verdict, name.clone())
+        }));
         let best = p.iter().flatten().map(|p| p.value).fold(0.0, f64::max);
         let row = vec![
             name,
@@ -170,7 +232,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
             ),
             text(p[0]),
             text(p[1]),
-            advice.to_owned(),
+            advice,
         ];
         rows.push((best, row));
     }
@@ -179,14 +241,11 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         table.add_row(row);
     }
     let mut text = String::new();
-    for (kind, names) in names_by_preference {
-        let words = match kind {
-            Preference::Bank => "Bank it",
-            Preference::Direct => "Shoot it direct",
-            Preference::Either => "Either is as good",
-        };
+    for verdict in Verdict::ALL {
+        let told = verdicts.iter().filter(|(of, _)| *of == verdict);
+        let names: Vec<&str> = told.map(|(_, name)| name.as_str()).collect();
         if !names.is_empty() {
-            text += &format!("{words}: {}.\n", names.join(", "));
+            text += &format!("{}: {}.\n", verdict.in_words(), names.join(", "));
         }
     }
     text += &format!(
@@ -195,6 +254,9 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     );
     if any_either {
         text += "either: the two differ by less than 1 in 100, or by less than twice the error of their difference\n";
+    }
+    if any_draws {
+        text += "in brackets: in how many of 100 draws of the fit this kind is the better one; from 90 on it is sure\n";
     }
     print_prose(&text)
 }

@@ -1,0 +1,118 @@
+//! The best shots that a search finds, or why there are none.
+
+use crate::analysis::probability_curves::ProbabilityCurve;
+use crate::analysis::sensitivity::Sensitivity;
+use crate::dynamics::Outcome;
+use crate::probability::Estimate;
+use crate::search_space::{PlanError, TablePlan};
+use crate::shooter::{Nominal, ShotKind};
+use serde::Serialize;
+
+/// A limit of the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// The smallest pitch angle.
+    PitchMin,
+    /// The largest pitch angle.
+    PitchMax,
+    /// No backspin.
+    NoBackspin,
+    /// The largest backspin.
+    MaxBackspin,
+    /// The largest side spin.
+    MaxSideSpin,
+    /// The largest speed.
+    SpeedMax,
+}
+
+impl Limit {
+    /// The name in tables and files, such as `max_backspin`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PitchMin => "pitch_min",
+            Self::PitchMax => "pitch_max",
+            Self::NoBackspin => "no_backspin",
+            Self::MaxBackspin => "max_backspin",
+            Self::MaxSideSpin => "max_side_spin",
+            Self::SpeedMax => "speed_max",
+        }
+    }
+}
+
+/// The best shot of one kind.
+#[derive(Clone, Debug)]
+pub struct BestShot {
+    /// The nominal shot.
+    pub nominal: Nominal,
+    /// Its probability.
+    pub estimate: Estimate,
+    /// The largest P of this kind in the table of the window.
+    pub table_probability: f64,
+    /// The plan of the window's table.
+    pub window: TablePlan,
+    /// The outcome of the error-free shot.
+    pub outcome: Outcome,
+    /// P along each variable of the shot.
+    pub curves: Vec<ProbabilityCurve>,
+    /// How P depends on errors, spin and height.
+    pub sensitivity: Sensitivity,
+    /// Where the undisturbed path passes the plane of the hoop: past the centre along its own
+    /// direction, m (positive is long).
+    pub aim_past_centre_m: Option<f64>,
+    /// Upper bound of the probability that errors lead outside the table's pitch angles and
+    /// backspins.
+    pub mass_outside: f64,
+    /// Limits of the search that the shot lies at.
+    pub at_limits: Vec<Limit>,
+}
+
+/// The best shots from a location.
+#[derive(Clone, Debug)]
+pub struct BestShots {
+    /// The plan of the search's table.
+    pub plan: TablePlan,
+    /// The best direct shot, or why there is none.
+    pub direct: Result<BestShot, NoShot>,
+    /// The best bank shot, or why there is none.
+    pub bank: Result<BestShot, NoShot>,
+}
+
+impl BestShots {
+    /// The best shot of each kind.
+    pub fn by_kind(&self) -> [(ShotKind, &Result<BestShot, NoShot>); 2] {
+        [
+            (ShotKind::Direct, &self.direct),
+            (ShotKind::Bank, &self.bank),
+        ]
+    }
+}
+
+/// Why there is no best shot of a kind.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoShot {
+    /// No shot within the limits can go in.
+    #[error("no {} shot within the limits can go in from this place", .0.name())]
+    Impossible(ShotKind),
+    /// No shot near the most probable one goes in without errors.
+    #[error("no clean {} shot: the most probable ones from this place, P {}, miss when they have no errors", .kind.name(), probability_text(*.probability_per_million))]
+    NotClean {
+        /// The kind.
+        kind: ShotKind,
+        /// P of the most probable shot, in millionths.
+        probability_per_million: u32,
+    },
+}
+
+fn probability_text(per_million: u32) -> String {
+    format!("{:.4}", f64::from(per_million) / 1e6)
+}
+
+/// Why the search could not start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BestShotError {
+    /// There is no plan.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
