@@ -456,7 +456,7 @@ impl FlightResiduals {
     /// Refuses flights that scatter far more than the tracker can.
     ///
     /// # Errors
-    /// They scatter [`MOST_RESIDUALS`] times as much.
+    /// They scatter four times as much.
     pub fn check(&self) -> Result<(), TestError> {
         if self.ratio() > MOST_RESIDUALS {
             Err(TestError::OtherTracker(self.ratio()))

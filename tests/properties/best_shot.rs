@@ -20,7 +20,10 @@ fn wing() -> Profile {
 
 /// The best direct and the best bank shot.
 fn find(profile: &Profile) -> [BestShot; 2] {
-    let topics = SensitivityTopics::NONE;
+    let topics = SensitivityTopics {
+        curves: true,
+        ..SensitivityTopics::NONE
+    };
     let (_, shots) = best_shot::find_kinds(profile, &ShotKind::ALL, topics, &Silent).unwrap();
     let shots: Vec<BestShot> = shots.into_iter().map(Result::unwrap).collect();
     shots.try_into().unwrap()
