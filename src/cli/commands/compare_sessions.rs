@@ -167,14 +167,22 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
     {
         let units = options.measured.units_or(session.units.unwrap_or_default());
         print_prose(&format!(
-            "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}{}; the scatter is that of all.\n\n",
+            "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}{}{}; the scatter is that of all.\n\n",
             session.places,
             session.place + 1,
             match session.place_name.as_str() {
                 "" => String::new(),
                 name => format!("{name}, "),
             },
-            session.profile.location().in_words(units)
+            session.profile.location().in_words(units),
+            // Each shooter has a height of their own.
+            if compared.len() == 1 {
+                let (long, metre) = units.length();
+                let height_m = session.profile.shooter().release_height_m;
+                format!(", released {:.2} {long} up", height_m / metre)
+            } else {
+                String::new()
+            }
         ))?;
     }
     for (number, sessions) in compared.iter().enumerate() {
