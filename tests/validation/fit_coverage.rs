@@ -105,11 +105,17 @@ fn shooter_of_population(places: usize, random: &mut ChaCha12Rng) -> Draw {
         }
         let drawn = shooter((places, WIDE_AIMS), sds, partial, growth, random);
         let v0 = drawn.means.iter().map(|mean| mean[0]).sum::<f64>() / places as f64;
-        if is_speed_scatter_possible(sds[0], growth, v0) {
+        // A profile holds no angle with a greater scatter, and a fit of such a shooter is refused:
+        // one of 5000 of the population.
+        let is_of_a_profile = sds[1..3].iter().all(|sd| *sd < MOST_SCATTER_RAD);
+        if is_of_a_profile && is_speed_scatter_possible(sds[0], growth, v0) {
             return drawn;
         }
     }
 }
+
+/// The greatest standard deviation of an angle in a profile.
+const MOST_SCATTER_RAD: f64 = 0.5;
 
 /// Standard deviations of the aims: speed (ft/s), pitch and polar angle (deg). The prior of the
 /// aims is flat, so those of the population are spread widely; those of a fixed shooter are near
