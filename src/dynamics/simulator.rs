@@ -3,7 +3,9 @@
 use super::batch::{self, BatchWorkspace, InstructionSet};
 use super::contact::oscillator::Oscillator;
 use super::end_rules::ShotLimits;
-use super::flight::{FlightEvents, falls_through, height_at_length_m, next_segment, state_after};
+use super::flight::{
+    FlightEvents, UndisturbedFlight, falls_through, height_at_length_m, next_segment,
+};
 use super::integrators::event_driven;
 use super::integrators::paper_rk4::{self, StepRange};
 use super::observer::Observer;
@@ -292,7 +294,17 @@ impl Simulator {
     /// values must be finite.
     #[must_use]
     pub fn undisturbed_state(&self, start: &BallState, seconds: f64) -> BallState {
-        state_after(&self.params, start, seconds)
+        UndisturbedFlight::new(&self.params, start).state_after(seconds)
+    }
+
+    /// The same at many times, in their order: the flight is computed once.
+    pub fn undisturbed_states(
+        &self,
+        start: &BallState,
+        seconds: impl IntoIterator<Item = f64>,
+    ) -> impl Iterator<Item = BallState> {
+        let mut flight = UndisturbedFlight::new(&self.params, start);
+        seconds.into_iter().map(move |t| flight.state_after(t))
     }
 
     /// The state in which a ball that touches nothing falls through the height of the hoop, and the

@@ -236,10 +236,7 @@ impl<const D: usize> DispersionPosterior<D> {
         let mut squares = vec![0.0; places];
         for group in &self.groups {
             let covariance = factors[group.place] + group.noise;
-            let inverse = Cholesky::new(covariance)?;
-            let factor = inverse.l_dirty();
-            let log_determinant: f64 = (0..D).map(|i| 2.0 * libm::log(factor[(i, i)])).sum();
-            let inverse = inverse.inverse();
+            let (inverse, log_determinant) = inverse_and_log_determinant(covariance)?;
             let at_mean = inverse * group.mean;
             sum -= 0.5 * (group.shots * log_determinant + inverse.dot(&group.scatter));
             squares[group.place] += group.shots * group.mean.dot(&at_mean);
@@ -279,6 +276,30 @@ impl<const D: usize> DispersionPosterior<D> {
         is_speed_scatter_possible(sds[0], growth, self.reference_speed)
             .then_some((log_prior, dispersion))
     }
+}
+
+/// The inverse of a covariance and the logarithm of its determinant; `None` if it is not positive
+/// definite. Each tracked flight has a covariance of its own: so with few divisions and a single
+/// logarithm.
+#[inline]
+fn inverse_and_log_determinant<const D: usize>(
+    covariance: SMatrix<f64, D, D>,
+) -> Option<(SMatrix<f64, D, D>, f64)> {
+    let cholesky = Cholesky::new(covariance)?;
+    let factor = cholesky.l_dirty();
+    // The inverse of the factor, column by column.
+    let mut inverse = SMatrix::<f64, D, D>::zeros();
+    let mut diagonal = 1.0;
+    for i in 0..D {
+        diagonal *= factor[(i, i)];
+        let reciprocal = 1.0 / factor[(i, i)];
+        inverse[(i, i)] = reciprocal;
+        for j in 0..i {
+            let sum: f64 = (j..i).map(|k| factor[(i, k)] * inverse[(k, j)]).sum();
+            inverse[(i, j)] = -sum * reciprocal;
+        }
+    }
+    Some((inverse.tr_mul(&inverse), 2.0 * libm::log(diagonal)))
 }
 
 impl<const D: usize> Model for DispersionPosterior<D> {

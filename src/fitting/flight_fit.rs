@@ -115,45 +115,40 @@ impl Track<'_> {
 
     /// The positions of the points on a flight.
     fn positions(&self, parameters: &Parameters, indices: &[usize]) -> Vec<[f64; 3]> {
-        let start = self.state(parameters);
-        indices
+        let times = indices
             .iter()
-            .map(|&i| {
-                let after = self.points[i].time_s - self.reference_s;
-                self.simulator
-                    .undisturbed_state(&start, after)
-                    .position_m
-                    .into()
-            })
+            .map(|&i| self.points[i].time_s - self.reference_s);
+        self.simulator
+            .undisturbed_states(&self.state(parameters), times)
+            .map(|state| state.position_m.into())
             .collect()
     }
 
-    /// A matrix that makes the errors of one coordinate independent with unit variance: each less
-    /// what the one before predicts.
-    fn whitened(&self, indices: &[usize], rows: &[f64]) -> Vec<f64> {
+    /// What makes the errors of one coordinate independent with unit variance: the share of the
+    /// error before that an error repeats, and the standard deviation of the rest.
+    fn whitening(&self, indices: &[usize]) -> Vec<(f64, f64)> {
         let sigma = self.noise.position_m;
-        let mut whitened = Vec::with_capacity(rows.len());
-        for (k, row) in rows.iter().enumerate() {
-            if k == 0 {
-                whitened.push(row / sigma);
-                continue;
-            }
-            let step = self.points[indices[k]].time_s - self.points[indices[k - 1]].time_s;
+        let correlation = self.noise.frame_correlation;
+        let of_pair = |pair: &[usize]| {
+            let step = self.points[pair[1]].time_s - self.points[pair[0]].time_s;
             let frames = step * self.noise.frames_per_s;
-            let rho = if self.noise.frame_correlation > 0.0 {
-                libm::pow(self.noise.frame_correlation, frames)
+            let rho = if correlation > 0.0 {
+                libm::pow(correlation, frames)
             } else {
                 0.0
             };
-            whitened.push((row - rho * rows[k - 1]) / (sigma * (1.0 - rho * rho).sqrt()));
-        }
-        whitened
+            (rho, sigma * (1.0 - rho * rho).sqrt())
+        };
+        std::iter::once((0.0, sigma))
+            .chain(indices.windows(2).map(of_pair))
+            .collect()
     }
 
     /// Fits the points `indices`, from a guess.
     fn solve(&self, indices: &[usize], guess: Parameters) -> Option<Solution> {
         let mut parameters = guess;
         let count = 3 * indices.len();
+        let whitening = self.whitening(indices);
         let mut last = None;
         for _ in 0..MAX_STEPS {
             let at = self.positions(&parameters, indices);
@@ -164,7 +159,7 @@ impl Track<'_> {
                     .zip(&at)
                     .map(|(&i, at)| self.points[i].position_m[axis] - at[axis])
                     .collect();
-                for (k, value) in self.whitened(indices, &rows).into_iter().enumerate() {
+                for (k, value) in whitened(&whitening, &rows).enumerate() {
                     residuals[3 * k + axis] = value;
                 }
             }
@@ -182,7 +177,7 @@ impl Track<'_> {
                         .zip(&down)
                         .map(|(up, down)| (up[axis] - down[axis]) / (2.0 * DIFFERENCE))
                         .collect();
-                    for (k, value) in self.whitened(indices, &rows).into_iter().enumerate() {
+                    for (k, value) in whitened(&whitening, &rows).enumerate() {
                         derivatives[3 * k + axis][j] = value;
                     }
                 }
@@ -372,6 +367,13 @@ impl Track<'_> {
             court_angle,
         ])
     }
+}
+
+/// The values of one coordinate, each less what the one before predicts.
+fn whitened(whitening: &[(f64, f64)], rows: &[f64]) -> impl Iterator<Item = f64> {
+    let before = std::iter::once(0.0).chain(rows.iter().copied());
+    let next = whitening.iter().zip(rows).zip(before);
+    next.map(|((&(rho, sd), row), before)| (row - rho * before) / sd)
 }
 
 /// Fits the flight of one tracked shot. `release_height_m` is above the floor.

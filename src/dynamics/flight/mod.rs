@@ -23,5 +23,5 @@ pub(crate) use flight_segment::FlightSegment;
 pub(crate) use next_segment::next_segment;
 pub(crate) use parabola_events::FlightEvents;
 pub(crate) use undisturbed_flight::{
-    falls_through, height_at_length_m, highest_point_m, state_after,
+    UndisturbedFlight, falls_through, height_at_length_m, highest_point_m,
 };

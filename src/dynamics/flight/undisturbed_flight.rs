@@ -43,21 +43,46 @@ pub(crate) fn falls_through(
     None
 }
 
-/// The state of an undisturbed ball after `t`, which may be negative, s.
-pub(crate) fn state_after(params: &ModelParams, start: &BallState, t: f64) -> BallState {
-    let (mut state, mut left) = (*start, t);
-    for _ in 0..MAX_PARTS {
-        let path = FlightPath::new(&params.ball, &state);
-        if left.abs() <= path.longest_s || !params.ball.has_air {
-            return path.state_after(left);
+/// The flight of an undisturbed ball, at any times. Its parts are computed once.
+pub(crate) struct UndisturbedFlight<'a> {
+    params: &'a ModelParams,
+    start: BallState,
+    /// The parts that were needed, forwards and backwards in time.
+    parts: [Vec<FlightPath>; 2],
+}
+
+impl<'a> UndisturbedFlight<'a> {
+    pub(crate) fn new(params: &'a ModelParams, start: &BallState) -> Self {
+        Self {
+            params,
+            start: *start,
+            parts: [Vec::new(), Vec::new()],
         }
-        // Half of a path: backwards in time the speed decreases, and with it the radius of
-        // convergence.
-        let part = (0.5 * path.longest_s).copysign(left);
-        state = path.state_after(part);
-        left -= part;
     }
-    state
+
+    /// The state after `t`, which may be negative, s.
+    pub(crate) fn state_after(&mut self, t: f64) -> BallState {
+        let ball = &self.params.ball;
+        let parts = &mut self.parts[usize::from(t < 0.0)];
+        let (mut state, mut left) = (self.start, t);
+        for number in 0..MAX_PARTS as usize {
+            if number == parts.len() {
+                parts.push(FlightPath::new(ball, &state));
+            }
+            let path = &parts[number];
+            if left.abs() <= path.longest_s || !ball.has_air {
+                return path.state_after(left);
+            }
+            // Half of a path: backwards in time the speed decreases, and with it the radius of
+            // convergence.
+            let part = (0.5 * path.longest_s).copysign(left);
+            left -= part;
+            if number + 1 == parts.len() {
+                state = path.state_after(part);
+            }
+        }
+        state
+    }
 }
 
 /// Greatest height of the centre in the first `dt` of `path`, m.
@@ -186,6 +211,24 @@ mod tests {
             prop_assume!(by_distance > -5.0);
             let error = (by_distance - in_time).abs();
             prop_assert!(error < 5e-4, "{by_distance} {in_time}");
+        }
+
+        /// Authority: a flight that is computed anew for each time.
+        #[test]
+        fn prop_kept_parts_do_not_change_a_state(
+            vz in -3.0..9.0_f64, times in proptest::collection::vec(-1.5..1.5_f64, 1..20),
+        ) {
+            let params = ModelParams::new(&Preset::named("ncaa").unwrap().physics());
+            let start = BallState {
+                position_m: Vec3::new(6.0, 1.0, -1.0),
+                velocity_m_s: Vec3::new(-8.0, 1.0, vz),
+                spin_rad_s: Vec3::zeros(),
+            };
+            let mut flight = UndisturbedFlight::new(&params, &start);
+            for t in times {
+                let anew = UndisturbedFlight::new(&params, &start).state_after(t);
+                prop_assert_eq!(flight.state_after(t), anew);
+            }
         }
     }
 }
