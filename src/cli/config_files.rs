@@ -1,6 +1,7 @@
 //! Reads configuration files.
 
 use super::failure::{Failure, io_in_words, refuse_missing};
+use super::fixed_value_flags::FixedOptions;
 use super::nominal_shot_flags::PlaceOptions;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
@@ -66,7 +67,7 @@ pub(crate) fn load_profile(
     physics: &PhysicsArg,
     quiet: bool,
 ) -> Result<Profile, Failure> {
-    Ok(load_profile_with_text(path, physics, quiet)?.0)
+    Ok(load(path, physics, &[], quiet)?.0)
 }
 
 /// The same for a command that fixes some nominal values itself.
@@ -82,9 +83,9 @@ pub(crate) fn load_profile_with_fixed(
 pub(crate) fn load_profile_with_text(
     path: &Path,
     physics: &PhysicsArg,
-    quiet: bool,
+    (fixed, quiet): (&[NominalVariable], bool),
 ) -> Result<(Profile, String), Failure> {
-    load(path, physics, &[], quiet)
+    load(path, physics, fixed, quiet)
 }
 
 fn load(
@@ -176,6 +177,23 @@ pub(crate) fn moved(
     }
     let text = format!("{}\n\n# --distance, --angle\n{table}", text.trim_end());
     Ok((place.moved(profile)?, text))
+}
+
+/// A profile in which the flags' values are fixed, and its text with them.
+pub(crate) fn with_fixed(
+    (profile, text): (Profile, String),
+    fixed: &FixedOptions,
+    origin: &Path,
+) -> Result<(Profile, String), Failure> {
+    // A message about a value names its flag.
+    fixed.values(&profile)?;
+    match fixed.profile_text(&profile, &text) {
+        None => Ok((profile, text)),
+        Some(text) => {
+            let profile = parse_profile(&text, &format!("{} as changed", origin.display()))?;
+            Ok((profile, text))
+        }
+    }
 }
 
 /// What the fit that wrote a profile warned of: its `fit.json` lies beside it.

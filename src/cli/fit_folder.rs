@@ -11,7 +11,7 @@ use crate::fitting::{
 };
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
-use crate::shooter::{Location, Nominal, Profile};
+use crate::shooter::{Location, Nominal, Profile, ShotKind};
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -280,8 +280,9 @@ pub(crate) fn probability_over_draws(
 
 /// The fit that a profile was written by: that of its folder. `None` if there is none.
 pub(crate) fn of_profile(file: &Path) -> Result<Option<FitFolder>, Failure> {
-    let is_first_place = file.file_name().is_some_and(|name| name == "profile.toml");
-    let folder = file.parent().filter(|_| is_first_place);
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let is_of_fit = name == "profile.toml" || name.starts_with("profile_place_");
+    let folder = file.parent().filter(|_| is_of_fit);
     match folder.filter(|folder| folder.join("draws.parquet").is_file()) {
         Some(folder) => read(folder).map(Some),
         None => Ok(None),
@@ -325,12 +326,43 @@ pub(crate) fn text_over_draws(
     profile: &Profile,
     nominal: &Nominal,
 ) -> Result<String, Failure> {
-    let draws = &fit.posterior.draws;
-    let p = probability_over_draws(draws, profile, nominal, SHOTS)?;
+    let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
     Ok(format!(
-        "over {} draws of the scatter in {}, the aim being exact (any other interval of P is numerical): {}\n",
-        draws.len(),
-        folder.display(),
+        "{}: {}\n",
+        introduction(folder, fit),
         probability_text(&p)
     ))
+}
+
+/// P of the best shot of each kind over the draws of a fit, and of bank less direct, in words.
+pub(crate) fn kinds_over_draws(
+    (folder, fit): (&Path, &FitFolder),
+    profile: &Profile,
+    nominals: &[(ShotKind, &Nominal)],
+) -> Result<String, Failure> {
+    let mut text = format!("{}:\n", introduction(folder, fit));
+    let mut by_kind = Vec::new();
+    for (kind, nominal) in nominals {
+        let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
+        text += &format!("{}: {}\n", kind.name(), probability_text(&p));
+        by_kind.push((*kind, p));
+    }
+    if let [(ShotKind::Direct, direct), (ShotKind::Bank, bank)] = &by_kind[..] {
+        let difference = bank.minus(direct);
+        let points = difference.interval().scaled(100.0);
+        let sure = 100.0 * difference.share_positive();
+        text += &format!(
+            "bank less direct, draw by draw: {:+.1} points (95 %: {:+.1} to {:+.1}); bank is the better one in {sure:.0} of 100 draws\n",
+            points.mean, points.low, points.high
+        );
+    }
+    Ok(text)
+}
+
+fn introduction(folder: &Path, fit: &FitFolder) -> String {
+    format!(
+        "over {} draws of the scatter in {}, the aim being exact (any other interval of P is numerical)",
+        fit.posterior.draws.len(),
+        folder.display()
+    )
 }

@@ -8,6 +8,7 @@ mod config_files;
 mod embedded_session;
 mod failure;
 mod fit_folder;
+mod fixed_value_flags;
 mod measured_shots_flags;
 mod nominal_shot_flags;
 mod plot_files;

@@ -26,7 +26,7 @@ pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), 
             let key = format!("physics.{}", error.key);
             if diagnostics[before..].iter().all(|other| other.key != key) {
                 diagnostics.push(Diagnostic {
-                    span: root.span_of(&key),
+                    span: root.as_written(&key).1,
                     key,
                     message: format!("must be {}", error.allowed),
                 });

@@ -94,9 +94,10 @@ pub(crate) fn read_settings_of(
             .iter()
             .any(|diagnostic| diagnostic.key == error.key);
         if !is_reported {
+            let (key, span) = root.as_written(&error.key);
             diagnostics.push(Diagnostic {
-                span: root.span_of(&error.key),
-                key: error.key,
+                span,
+                key,
                 message: error.message,
             });
         }

@@ -19,6 +19,9 @@ const PLAIN_NAMES: [(&str, &str); 4] = [
     ("c40", "backspin"),
 ];
 
+/// What a plain name gives too, where it is written in percent.
+const GROWTHS: [(&str, &str); 2] = [("c11", "speed"), ("c41", "backspin")];
+
 /// Words that others use for a key.
 const OTHER_WORDS: [(&str, &str); 10] = [
     ("left_right", "polar"),
@@ -130,26 +133,30 @@ impl<'t, 'i> TableReader<'t, 'i> {
         }
     }
 
-    /// The place of a dotted key below this table: the deepest part of it that is given.
-    pub(crate) fn span_of(&self, dotted_key: &str) -> Range<usize> {
+    /// A dotted key below this table with the names that the file uses, and its place: that of the
+    /// deepest part of it that is given.
+    pub(crate) fn as_written(&self, dotted_key: &str) -> (String, Range<usize>) {
         let mut span = self.span.clone();
         let mut table = self.table;
-        for part in dotted_key.split('.') {
-            let plain = PLAIN_NAMES.iter().find(|(name, _)| *name == part);
+        let mut names: Vec<&str> = dotted_key.split('.').collect();
+        for name in &mut names {
+            let plain = PLAIN_NAMES.iter().chain(&GROWTHS);
+            let plain = plain.clone().find(|(other, _)| other == name);
             let found = table.and_then(|table| {
-                let value = table.get(part);
-                value.or_else(|| table.get(plain?.1))
+                let value = table.get(*name).map(|value| (*name, value));
+                value.or_else(|| Some((plain?.1, table.get(plain?.1)?)))
             });
-            let Some(value) = found else {
+            let Some((written, value)) = found else {
                 break;
             };
+            *name = written;
             span = value.span();
             table = match value.get_ref() {
                 DeValue::Table(inner) => Some(inner),
                 _ => None,
             };
         }
-        span
+        (names.join("."), span)
     }
 
     /// The table under `key`; an empty one if it is not given.

@@ -54,7 +54,9 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
     ),
     (
         "made",
-        &["made", "make", "result", "outcome", "goal", "basket", "hit"],
+        &[
+            "made", "make", "result", "outcome", "goal", "basket", "hit", "scored",
+        ],
     ),
     (
         "shooter",
@@ -92,8 +94,15 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     let mut is_short_height = false;
     let is_landing = columns.quantity(Quantity::Depth).is_some()
         || unused.iter().any(|name| letters_of(name).contains("depth"));
+    let is_tracked = is_tracked(columns, &unused);
     for name in &unused {
-        let Some(target) = target_of(name, is_landing, &taken) else {
+        let of_tracker = if is_tracked {
+            tracked_target(name)
+        } else {
+            None
+        };
+        let target = of_tracker.filter(|target| !taken.contains(target));
+        let Some(target) = target.or_else(|| target_of(name, is_landing, &taken)) else {
             continue;
         };
         let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
@@ -120,6 +129,7 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     let is_release = taken.contains(&"speed") && !is_landing;
     let needed: &[Quantity] = match () {
         () if maps.is_empty() => &[],
+        () if is_tracked => &[Quantity::Time],
         () if is_landing => &[Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight],
         () if is_release && (taken.contains(&"polar") || taken.contains(&"aim")) => {
             &[Quantity::Pitch]
@@ -127,12 +137,10 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         () if is_release => &[Quantity::Pitch, Quantity::Aim],
         () => &[],
     };
-    {
-        for quantity in needed.iter().copied() {
-            let name = quantity.name();
-            if !taken.contains(&name) && columns.quantity(quantity).is_none() {
-                maps.push(format!("--map '{name}=COLUMN:UNIT'"));
-            }
+    for quantity in needed.iter().copied() {
+        let name = quantity.name();
+        if !taken.contains(&name) && columns.quantity(quantity).is_none() {
+            maps.push(format!("--map '{name}=COLUMN:UNIT'"));
         }
     }
     let mut text = format!("\nits columns are {}", columns.names().join(", "));
@@ -175,7 +183,9 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     let is_known = |quantity: Quantity| {
         taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
     };
-    if !is_known(Quantity::Time) {
+    if is_tracked {
+        text += "\n  x, y and z are taken from the hoop's centre, z upwards; for another origin give --frame or --hoop";
+    } else if !is_known(Quantity::Time) {
         let missing: Vec<&str> = [
             (Quantity::Distance, "--distance '13.75 ft'"),
             (Quantity::ReleaseHeight, "--release-height '7 ft'"),
@@ -191,6 +201,37 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         }
     }
     text
+}
+
+/// Whether three of the columns are the coordinates of a ball.
+fn is_tracked(columns: &Columns, unused: &[&str]) -> bool {
+    [Quantity::X, Quantity::Y, Quantity::Z]
+        .into_iter()
+        .all(|axis| {
+            columns.quantity(axis).is_some()
+                || unused
+                    .iter()
+                    .any(|name| tracked_target(name) == Some(axis.name()))
+        })
+}
+
+/// What a column of a tracked flight may hold: a coordinate, such as `px_m`, `Ball X (ft)`,
+/// `pos_x`, or the time. The number of a frame is no time.
+fn tracked_target(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    let mut words = lower.split(|c: char| !c.is_alphanumeric());
+    let axis = words.find_map(|word| {
+        ["x", "y", "z"].into_iter().find(|axis| {
+            let rest = word.strip_prefix(axis).or_else(|| word.strip_suffix(axis));
+            matches!(rest, Some("" | "p" | "pos" | "ball" | "position"))
+        })
+    });
+    let is_time = match first_word(&lower) {
+        "t" | "time" | "timestamp" | "clock" | "seconds" => true,
+        "frame" => unit_of(name, Quantity::Time).is_some(),
+        _ => false,
+    };
+    axis.or(is_time.then_some("time"))
 }
 
 /// A name in small letters, without spaces and signs.
@@ -401,6 +442,38 @@ mod tests {
         ] {
             assert!(text.contains(&format!("--map '{map}")), "{map}: {text}");
         }
+    }
+
+    #[test]
+    fn contract_maps_of_a_tracker() {
+        let proposal = |header: [&str; 6]| {
+            map_proposal(&Columns::new(&header.map(str::to_owned), &[]).unwrap())
+        };
+        let text = proposal(["trial", "frame_ms", "px_m", "py_m", "pz_m", "scored"]);
+        for map in [
+            "shot=trial'",
+            "time=frame_ms:ms'",
+            "x=px_m:m'",
+            "y=py_m:m'",
+            "z=pz_m:m'",
+            "made=scored'",
+        ] {
+            assert!(text.contains(&format!("--map '{map}")), "{map}: {text}");
+        }
+        assert!(
+            text.contains("--frame") && !text.contains("--distance"),
+            "{text}"
+        );
+        let text = proposal(["Frame", "T (s)", "Ball X (ft)", "Ball Y (ft)", "Z", "id"]);
+        for map in [
+            "shot=id'",
+            "time=T (s):s'",
+            "y=Ball Y (ft):ft'",
+            "z=Z:UNIT'",
+        ] {
+            assert!(text.contains(&format!("--map '{map}")), "{map}: {text}");
+        }
+        assert!(!text.contains("=Frame"), "{text}");
     }
 
     #[test]

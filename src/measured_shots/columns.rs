@@ -224,7 +224,7 @@ enum Meaning {
 }
 
 /// Units as others write them, longest first, and their suffixes here.
-pub(super) const OTHER_UNITS: [(&str, &str); 30] = [
+pub(super) const OTHER_UNITS: [(&str, &str); 32] = [
     ("degrees", "deg"),
     ("inches", "in"),
     ("metres", "m"),
@@ -251,7 +251,9 @@ pub(super) const OTHER_UNITS: [(&str, &str); 30] = [
     ("hz", "rev_s"),
     ("cm", "cm"),
     ("mm", "mm"),
+    ("ms", "ms"),
     ("m", "m"),
+    ("s", "s"),
     ("in", "in"),
     ("ft", "ft"),
     ("°", "deg"),

@@ -72,6 +72,18 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
             text += &format!("Aim at {aim}{of}.\n");
         }
     }
+    let held: Vec<&str> = [
+        NominalVariable::Speed,
+        NominalVariable::Pitch,
+        NominalVariable::Backspin,
+    ]
+    .into_iter()
+    .filter(|variable| !profile.search().choice.includes(*variable))
+    .map(NominalVariable::name)
+    .collect();
+    if !held.is_empty() {
+        text += &format!("Given, not searched for: {}.\n", held.join(" and "));
+    }
     text
 }
 
@@ -195,7 +207,11 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
         // Writing to a String does not fail.
         let _ = writeln!(text, "  {label:<14} {words}");
     };
-    for cost in sensitivity.errors.iter().take(MOST_ERRORS) {
+    let matters = |(place, cost): &(usize, &ErrorCost)| {
+        *place < ALWAYS_TOLD || cost.without.value > LEAST_GAIN_TOLD
+    };
+    let told = sensitivity.errors.iter().take(MOST_ERRORS).enumerate();
+    for (_, cost) in told.filter(matters) {
         let name = ReleaseVariable::name(cost.variable).replace('_', " ");
         line(
             &name,
@@ -229,8 +245,10 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
     text
 }
 
-/// Errors that are worth a line.
-const MOST_ERRORS: usize = 2;
+/// Errors that are worth a line: the first ones, and one more that costs something, in P.
+const MOST_ERRORS: usize = 3;
+const ALWAYS_TOLD: usize = 2;
+const LEAST_GAIN_TOLD: f64 = 0.005;
 
 /// What P leaves out.
 pub const PROFILE_IS_EXACT: &str =

@@ -127,8 +127,9 @@ pub fn nominal_values_not_fixed(profile: &Profile, fixed: &[NominalVariable]) ->
     let left = NominalVariable::SEARCHABLE.into_iter().filter(searched);
     let left = left.filter(|variable| !not_fixed.contains(variable));
     Some(format!(
-        "{}: given, but the search chooses it; to keep what is given, write choose = [{}] in [search]",
+        "{}: given, but the search chooses {}; to keep what is given, write choose = [{}] in [search]",
         names(&not_fixed, "", "nominal."),
+        if not_fixed.len() > 1 { "them" } else { "it" },
         names(&left.collect::<Vec<_>>(), "\"", "")
     ))
 }

@@ -105,6 +105,31 @@ fn contract_best_from_another_place_is_that_of_a_profile_there() {
     assert_eq!(again.stdout, by_file.stdout);
 }
 
+/// A pitch angle that the flag gives is that of a profile which fixes it, and the folder holds it.
+#[test]
+fn contract_best_with_a_given_pitch_is_that_of_a_profile_that_fixes_it() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "p.toml", small_profile());
+    let run = |profile: &Path, name: &str, options: &[&str]| {
+        let mut command = best(profile, &folder.path().join(name));
+        Answer::of(command.arg("--quiet").args(options))
+    };
+    let by_flag = run(&profile, "flag", &["--pitch", "50 deg", "--json"]).exits(0);
+    for kind in ["direct", "bank"] {
+        let pitch_deg = by_flag.json()[kind]["pitch_deg"].as_f64().unwrap();
+        assert!((pitch_deg - 50.0).abs() < 1e-9, "{pitch_deg}");
+    }
+    let own = folder.path().join("flag/profile.toml");
+    let again = run(&own, "again", &["--json"]).exits(0);
+    assert_eq!(again.stdout, by_flag.stdout);
+    run(&own, "words", &[])
+        .exits(0)
+        .prints("Given, not searched for: pitch.");
+    run(&profile, "refused", &["--pitch", "95 deg"])
+        .exits(2)
+        .says("--pitch: must be from 1 to 89 deg");
+}
+
 #[test]
 fn contract_best_says_why_a_location_has_no_shot_and_writes_nothing() {
     let folder = TempDir::new().unwrap();

@@ -155,6 +155,23 @@ fn contract_advice_is_the_same_from_a_file_and_from_its_fit() {
     );
     let text = answer.exits(0).stdout().to_owned();
     assert!(text.contains("over 1000 draws"), "{text}");
+    // Bank against direct over the same draws.
+    let mut command = bankshot();
+    command.arg("best").arg(folder.path()).arg("--quiet");
+    command.args([
+        "--draws",
+        draws,
+        "--out",
+        folder.path().join("best").to_str().unwrap(),
+    ]);
+    let text = Answer::of(&mut command).exits(0).stdout().to_owned();
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in [
+        "bank less direct, draw by draw:",
+        "bank is the better one in",
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
 }
 
 #[test]
@@ -713,6 +730,19 @@ fn contract_places_of_a_shooter_are_told_apart() {
             .arg(out.join("ann/profile_place_2.toml")),
     )
     .exits(0);
+    // A team at the second place of each.
+    let mut command = bankshot();
+    command
+        .arg("team")
+        .arg(&out)
+        .args(["--place", "2", "--quiet"]);
+    let second = Answer::of(&mut command).exits(0);
+    assert!(second.stdout().contains("Ann") && second.stdout().contains("Bob"));
+    let mut command = bankshot();
+    command.arg("team").arg(&out).args(["--place", "3"]);
+    Answer::of(&mut command)
+        .exits(2)
+        .says("profile_place_3.toml");
     // A later fit of one shooter, from one place, renews that shooter's rows and files alone.
     write_file(&folder, "places.csv", all.replace(",8.5,", ",7,"));
     let (ann, flags) = (out.join("ann"), ["--shooter", "Ann"]);

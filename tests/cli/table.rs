@@ -147,6 +147,15 @@ fn contract_nodes_are_added_where_interpolation_costs_too_much() {
             "{distance}"
         );
     }
+    // A draft has the shots of these places alone.
+    let draft = [&range[..], &["--draft"]].concat();
+    let json = table(&folder, &draft).exits(0).json();
+    assert_eq!(json["shots"].as_array().unwrap().len(), 2);
+    assert!(json["greatest_loss"].is_null());
+    for (shot, checked) in [(0, 0), (1, shots.len() - 1)] {
+        assert_eq!(json["shots"][shot], shots[checked]);
+    }
+    assert!(json["notes"].to_string().contains("Not checked between"));
     table(&folder, &["--distances", "8 ft, 16 ft", "--max-loss", "2"])
         .exits(2)
         .says("give a number from 0 to 1");

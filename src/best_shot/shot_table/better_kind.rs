@@ -255,7 +255,7 @@ mod tests {
             standard_error: 0.0,
             banked: 0.0,
             outcome: OutcomeKind::Swish,
-            time_s: 1.0,
+            time_s: Some(1.0),
             entry_rad: None,
             tolerances: [[0.0; 2]; 2],
             other_kind: None,

@@ -28,6 +28,8 @@ pub struct ShotTableRequest {
     /// Where a check finds more, nodes are added halfway, at most [`MOST_HALVINGS`] times (with one
     /// angle three times more where that did not help) and up to [`MOST_NODES`] nodes; 1 adds none.
     pub max_loss: f64,
+    /// Nothing is checked between the nodes, and none are added.
+    pub is_draft: bool,
 }
 
 /// Most nodes of a table.
@@ -61,11 +63,11 @@ impl ShotsOfPlaces {
         &mut self,
         (profile, kind): (&Profile, ShotKind),
         places: impl Iterator<Item = &'a Location>,
-        progress: &dyn Progress,
+        (progress, stage): (&dyn Progress, &str),
     ) -> Result<(), ShotTableError> {
         let is_new = |place: &&Location| !self.0.contains_key(&Self::key(place));
         let new: Vec<&Location> = places.filter(is_new).collect();
-        progress.begin("finding shots", new.len() as u64);
+        progress.begin(stage, new.len() as u64);
         for place in new {
             let shot = best(&profile.moved_to(*place)?, kind)?;
             self.0.insert(Self::key(place), shot);
@@ -92,6 +94,7 @@ impl ShotsOfPlaces {
             angle_rad,
         };
         let places: Vec<Location> = request.distances_m.iter().copied().map(at).collect();
+        let progress = (progress, "where shots begin");
         self.find((profile, kind), places.iter(), progress)?;
         let mut ends = Vec::new();
         for pair in places.windows(2) {
@@ -177,14 +180,22 @@ impl ShotTable {
             added_angles_rad: Vec::new(),
             checks: Vec::new(),
         };
+        if request.is_draft {
+            let nodes = grid(&table.distances_m, &table.angles_rad);
+            shots.find((profile, kind), nodes.iter(), (progress, "finding shots"))?;
+            table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
+            return Ok(table);
+        }
         for halving in 0..=MOST_HALVINGS {
+            let [finding, checking] = stages_of_round(halving + 1);
             let nodes = grid(&table.distances_m, &table.angles_rad);
             let cells = table.cells();
             let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
             let places = nodes.iter().chain(&middles);
-            shots.find((profile, kind), places, progress)?;
+            shots.find((profile, kind), places, (progress, &finding))?;
             table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
-            checks.find((profile, kind), &table, (&cells, &shots), progress)?;
+            let stage = (progress, checking.as_str());
+            checks.find((profile, kind), &table, (&cells, &shots), stage)?;
             table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
             let [distances_m, angles_rad] = table.finer(&cells, &checks, &shots, request.max_loss);
             let is_fine = distances_m.len() == table.distances_m.len()
@@ -196,7 +207,8 @@ impl ShotTable {
             (table.distances_m, table.angles_rad) = (distances_m, angles_rad);
         }
         if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
-            for _ in 0..MOST_SPLITS {
+            for split in 0..MOST_SPLITS {
+                let [finding, checking] = stages_of_round(MOST_HALVINGS + 2 + split);
                 let costly = |cell: &Cell| {
                     checks
                         .of(cell)
@@ -209,8 +221,9 @@ impl ShotTable {
                 table.split_at_jumps((profile, kind), &costly, request.max_loss, &shots)?;
                 let cells = table.cells();
                 let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-                shots.find((profile, kind), middles.iter(), progress)?;
-                checks.find((profile, kind), &table, (&cells, &shots), progress)?;
+                shots.find((profile, kind), middles.iter(), (progress, &finding))?;
+                let stage = (progress, checking.as_str());
+                checks.find((profile, kind), &table, (&cells, &shots), stage)?;
                 table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
             }
         }
@@ -326,6 +339,12 @@ impl ShotTable {
     }
 }
 
+/// What progress calls the two stages of a round.
+fn stages_of_round(round: usize) -> [String; 2] {
+    let most = MOST_HALVINGS + 1 + MOST_SPLITS;
+    ["shots", "checks"].map(|stage| format!("{stage}, round {round} of {most} at most"))
+}
+
 /// The profile with values that the search leaves as they are.
 fn with_fixed(
     profile: &Profile,
@@ -360,12 +379,12 @@ impl ChecksOfCells {
         (profile, kind): (&Profile, ShotKind),
         table: &ShotTable,
         (cells, shots): (&[Cell], &ShotsOfPlaces),
-        progress: &dyn Progress,
+        (progress, stage): (&dyn Progress, &str),
     ) -> Result<(), ShotTableError> {
         let is_new = |cell: &&Cell| !self.0.contains_key(&cell.key());
         let new: Vec<&Cell> = cells.iter().filter(is_new).collect();
         let places: usize = new.iter().map(|cell| cell.checked_places().len()).sum();
-        progress.begin("checking between", places as u64);
+        progress.begin(stage, places as u64);
         for cell in new {
             let around: Vec<PlacedShot> = cell
                 .corners()

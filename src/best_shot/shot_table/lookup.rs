@@ -42,8 +42,9 @@ pub struct TableShot {
     /// How the error-free shot goes in.
     pub outcome: OutcomeKind,
     /// Time from the release until the error-free shot first falls to the height of the hoop, as if
-    /// there were no ring, s: a bank shot after it leaves the board.
-    pub time_s: f64,
+    /// there were no ring, s: a bank shot after it leaves the board. `None` for a shot that meets
+    /// the ring on its way up, and would fall behind the board without it.
+    pub time_s: Option<f64>,
     /// Its angle below the horizontal then, rad; `None` if it is not defined.
     pub entry_rad: Option<f64>,
     /// How far speed (m/s) and pitch angle (rad) can be below and above their values until an

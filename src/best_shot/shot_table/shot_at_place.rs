@@ -80,7 +80,7 @@ pub(super) fn table_shot(
         standard_error: estimate.standard_error,
         banked: estimate.shares.banked() / estimate.probability.max(f64::MIN_POSITIVE),
         outcome: outcome.kind,
-        time_s: time_s.unwrap_or(outcome.verdict.time_s),
+        time_s,
         entry_rad,
         tolerances,
         other_kind: None,

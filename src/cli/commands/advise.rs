@@ -7,7 +7,7 @@ use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{Posterior, advise};
-use crate::output::fit_files::advice_text::{advice_json, advice_text};
+use crate::output::fit_files::advice_text::{advice_json, advice_text, other_kind_not_advised};
 use crate::shooter::Profile;
 use crate::units::UnitSystem;
 use clap::Args;
@@ -54,7 +54,8 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
                     observed: fit.observed[place],
                 })
                 .collect();
-            answer(options, &places, &fit.posterior, units, quiet)?;
+            let shooter_of = (number, folders.len());
+            answer(options, &places, &fit.posterior, units, (shooter_of, quiet))?;
         }
         return Ok(code::DONE);
     }
@@ -81,7 +82,8 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
         separate(options, number)?;
         print_warnings(&file.name_of(shots), &fit.warnings);
         let units = options.measured.unit_system();
-        answer(options, &places, &fit.posterior, units, quiet)?;
+        let shooter_of = (number, file.shooters.len());
+        answer(options, &places, &fit.posterior, units, (shooter_of, quiet))?;
     }
     Ok(worst)
 }
@@ -110,16 +112,26 @@ struct ShooterPlace<'a> {
     observed: (usize, usize),
 }
 
-/// Advice for each place.
+/// Advice for each place. `shooter_of` is the index of the shooter and the number of all.
 fn answer(
     options: &AdviseOptions,
     places: &[ShooterPlace<'_>],
     posterior: &Posterior,
     units: UnitSystem,
-    quiet: bool,
+    (shooter_of, quiet): ((usize, usize), bool),
 ) -> Result<(), Failure> {
     let bars = ProgressBars::new(quiet);
+    let (shooter, shooters) = shooter_of;
     for (number, place) in places.iter().enumerate() {
+        if !quiet && shooters * places.len() > 1 {
+            print_remark(&format!(
+                "{}: shooter {} of {shooters}, place {} of {}",
+                place.profile.shooter().name,
+                shooter + 1,
+                number + 1,
+                places.len()
+            ));
+        }
         let (profile, observed) = (place.profile, Some(place.observed));
         let advice = advise(profile, posterior, number, &bars)?;
         let (name, location) = (&profile.shooter().name, profile.location());
@@ -148,7 +160,8 @@ fn answer(
         let text = advice_text(name, &advice, observed, angle, units);
         // The sentences end with an empty line.
         let first = text.split_once("\n\n").filter(|_| options.brief);
-        print_prose(&first.map_or(text.clone(), |(first, _)| format!("{first}\n")))?;
+        let told = first.map(|(first, _)| format!("{first}\n{}", other_kind_not_advised(&advice)));
+        print_prose(&told.unwrap_or(text))?;
     }
     Ok(())
 }

@@ -1,9 +1,10 @@
 //! `bankshot best`: load, plan, search, write.
 
 use crate::best_shot;
-use crate::cli::config_files::{load_profile_with_text, moved};
+use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
+use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
@@ -24,6 +25,7 @@ Examples:
   bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
   bankshot best configs/bank_wing.toml --units metric --out wing
   bankshot best configs/free_throw.toml --distance '12 ft' --angle '45 deg'
+  bankshot best configs/free_throw.toml --pitch '50 deg'
 
 Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
 best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
@@ -34,11 +36,13 @@ pub(crate) struct BestOptions {
     pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) place: PlaceOptions,
+    #[command(flatten)]
+    pub(crate) fixed: FixedOptions,
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
-    /// scatter.
+    /// scatter, and how sure it is that bank beats direct.
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
     pub(crate) draws: Option<PathBuf>,
     /// Also print how each kind of shot goes in, and what every error, backspin and height are
@@ -54,7 +58,9 @@ pub(crate) struct BestOptions {
 }
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
-    let loaded = load_profile_with_text(&options.profile, &options.physics, quiet)?;
+    let fixed = options.fixed.variables();
+    let loaded = load_profile_with_text(&options.profile, &options.physics, (&fixed, quiet))?;
+    let loaded = with_fixed(loaded, &options.fixed, &options.profile)?;
     let (mut profile, text) = moved(loaded, &options.place)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
@@ -89,12 +95,16 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         print_prose(&text)?;
     }
     if let Some((folder, fit)) = &draws {
-        for (kind, shot) in best.by_kind() {
-            if let Ok(shot) = shot {
-                let text = fit_folder::text_over_draws((folder, fit), &profile, &shot.nominal)?;
-                print_prose(&format!("{}, {text}", kind.name()))?;
-            }
-        }
+        let found = best.by_kind().map(|(kind, shot)| (kind, shot.as_ref()));
+        let nominals: Vec<_> = found
+            .into_iter()
+            .filter_map(|(kind, shot)| Some((kind, &shot.ok()?.nominal)))
+            .collect();
+        print_prose(&fit_folder::kinds_over_draws(
+            (folder, fit),
+            &profile,
+            &nominals,
+        )?)?;
     }
     if !quiet {
         print_remark(&format!(

@@ -42,7 +42,7 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
-    let (profile, text) = load_profile_with_text(&options.profile, &options.physics, quiet)?;
+    let (profile, text) = load_profile_with_text(&options.profile, &options.physics, (&[], quiet))?;
     TablePlan::for_search(&profile)?;
     let own = profile.output().units;
     let units = options.units.map_or(own, UnitSystem::from);

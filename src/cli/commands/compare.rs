@@ -151,10 +151,10 @@ fn compare_on_court(
 
 fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     let own_physics = PhysicsArg::default();
-    let (profile, profile_text) = load_profile_with_text(&options.what, &own_physics, true)?;
+    let (profile, profile_text) = load_profile_with_text(&options.what, &own_physics, (&[], true))?;
     let other = match &options.against {
         None => None,
-        Some(path) => Some(load_profile_with_text(path, &own_physics, true)?),
+        Some(path) => Some(load_profile_with_text(path, &own_physics, (&[], true))?),
     };
     let bars = ProgressBars::new(quiet);
     let best = best_shot::find(&profile, &bars)?;

@@ -5,6 +5,7 @@ use crate::best_shot::{
 };
 use crate::cli::config_files::load_profile_with_fixed;
 use crate::cli::failure::{Failure, code};
+use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
@@ -14,7 +15,7 @@ use crate::output::shot_table_files::notes;
 use crate::output::shot_table_files::source_code::{Language, source_code};
 use crate::output::shot_table_files::table_text::table_text;
 use crate::shooter::{Location, NominalVariable, Profile};
-use crate::units::{self, DEGREE_RAD, Dimension, REV_RAD};
+use crate::units::{self, Dimension};
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ interpolated. This is checked at the quarters of each step: where it costs more 
 interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
 The table is made in rounds: each looks at the places that the one before added. \
 Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes two or three minutes on two cores, with a free pitch several; \
-with --max-loss 1 no nodes are added, so it is a draft in half of the time or less.
+with --max-loss 1 no nodes are added, which takes half of the time or less; --draft leaves out the checks too.
 
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
@@ -49,19 +50,16 @@ pub(crate) struct TableOptions {
     /// The kind of the shots.
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
-    /// Fix the speed.
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
-    pub(crate) speed: Option<String>,
-    /// Fix the pitch angle.
-    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
-    pub(crate) pitch: Option<String>,
-    /// Fix the backspin.
-    #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
-    pub(crate) backspin: Option<String>,
+    #[command(flatten)]
+    pub(crate) fixed: FixedOptions,
     /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds
     /// no nodes (with `--kind best` those where a kind begins, ends or becomes the better one).
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
+    /// A first look in a fraction of the time: nothing is checked between the places, and none are
+    /// added.
+    #[arg(long, conflicts_with = "max_loss")]
+    pub(crate) draft: bool,
     /// The form of the table [default: by the end of the output's name, else text].
     #[arg(long, value_enum)]
     pub(crate) format: Option<TableFormat>,
@@ -116,14 +114,7 @@ impl TableFormat {
 }
 
 pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
-    let fixed: Vec<NominalVariable> = [
-        (NominalVariable::Speed, &options.speed),
-        (NominalVariable::Pitch, &options.pitch),
-        (NominalVariable::Backspin, &options.backspin),
-    ]
-    .into_iter()
-    .filter_map(|(variable, text)| text.as_ref().map(|_| variable))
-    .collect();
+    let fixed = options.fixed.variables();
     let mut profile = load_profile_with_fixed(&options.profile, &options.physics, (&fixed, quiet))?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
@@ -149,32 +140,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             })?;
         }
     }
-    let mut fixed = Vec::new();
-    for (variable, text) in [
-        (NominalVariable::Speed, &options.speed),
-        (NominalVariable::Pitch, &options.pitch),
-        (NominalVariable::Backspin, &options.backspin),
-    ] {
-        if let Some(text) = text {
-            let value = units::parse(text, variable.dimension())
-                .map_err(|error| Failure::usage(format!("--{}: {error}", variable.name())))?;
-            if variable == NominalVariable::Pitch
-                && !(DEGREE_RAD..=89.0 * DEGREE_RAD).contains(&value)
-            {
-                return Err(Failure::usage(format!(
-                    "--pitch: must be from 1 to 89 deg, not '{text}'"
-                )));
-            }
-            let most = profile.shooter().max_backspin_rad_s;
-            if variable == NominalVariable::Backspin && value > most {
-                return Err(Failure::usage(format!(
-                    "--backspin: \"{text}\" is more than shooter.max_backspin ({:.3} rev/s)",
-                    most / REV_RAD
-                )));
-            }
-            fixed.push((variable, value));
-        }
-    }
+    let fixed = options.fixed.values(&profile)?;
     let outputs = outputs(options)?;
     let request = ShotTableRequest {
         kind: match options.kind {
@@ -186,6 +152,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         angles_rad,
         fixed,
         max_loss: options.max_loss,
+        is_draft: options.draft,
     };
     let table =
         ShotTable::compute(&profile, &request, &ProgressBars::new(quiet)).map_err(|error| {

@@ -178,6 +178,23 @@ fn other_kind_in_words(advice: &Advice) -> String {
     )
 }
 
+/// Where the sentences do not advise the other kind of shot: how it compares. Empty where they do,
+/// or where one kind cannot be made.
+#[must_use]
+pub fn other_kind_not_advised(advice: &Advice) -> String {
+    let Some(kinds) = &advice.kinds else {
+        return String::new();
+    };
+    if !other_kind_in_words(advice).is_empty() {
+        return String::new();
+    }
+    let [direct, bank] = kinds.probabilities.map(|p| 100.0 * p.mean);
+    let sure = 100.0 * kinds.bank_is_better;
+    format!(
+        "Bank or direct: the best bank shot makes {bank:.0} %, the best direct one {direct:.0} % (bank is better in {sure:.0} % of the draws).\n"
+    )
+}
+
 /// What to train, in a sentence: the scatter that costs most, and what costs about as much.
 fn training_in_words(training: &[TrainingGain]) -> String {
     /// What gains this fraction of the largest gain is about as good.

@@ -35,7 +35,12 @@ pub(super) fn columns(kind: TableKind, units: UnitSystem) -> Vec<TableColumn> {
             |s| s.nominal.backspin_rad_s,
             REV_RAD,
         ),
-        (in_unit("time", "s"), 2, |s| s.time_s, 1.0),
+        (
+            in_unit("time", "s"),
+            2,
+            |s| s.time_s.unwrap_or(f64::NAN),
+            1.0,
+        ),
         (
             in_unit("entry", "deg"),
             1,

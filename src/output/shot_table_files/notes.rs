@@ -84,7 +84,7 @@ pub(super) fn physics_note(profile: &Profile, units: UnitSystem) -> String {
 /// What interpolation costs, and by how much the interpolated P errs.
 fn check_note(table: &ShotTable, units: UnitSystem) -> String {
     let (Some(costliest), Some(most_wrong)) = (table.costliest(), table.most_wrong()) else {
-        return "No place between could be checked.".to_owned();
+        return "Not checked between the table's places.".to_owned();
     };
     format!(
         "Checked at {} places, the quarters between the table's: interpolated shots lose at most \

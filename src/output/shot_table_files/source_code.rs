@@ -33,7 +33,7 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 10] {
             REV_RAD,
         ),
         ("probability".to_owned(), |s| s.probability, 1.0),
-        ("time_s".to_owned(), |s| s.time_s, 1.0),
+        ("time_s".to_owned(), |s| s.time_s.unwrap_or(f64::NAN), 1.0),
         (
             "entry_deg".to_owned(),
             |s| s.entry_rad.unwrap_or(f64::NAN),
@@ -128,7 +128,7 @@ pub fn source_code(
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
         "Time and entry angle are those where the ball first falls to the height of the hoop, as if \
-         there were no ring. A tolerance is how far speed or pitch can be off, up or down, alone, \
+         there were no ring; NaN for a shot that meets the ring on its way up. A tolerance is how far speed or pitch can be off, up or down, alone, \
          until the shot first misses; near the ring more shots may go in beyond it. Between two nodes \
          the smaller tolerance of both is given; it is not checked there. is_bank is 1 for a bank \
          shot, 0 for a direct one."

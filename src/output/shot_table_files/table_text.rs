@@ -115,6 +115,13 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     let unit_names = of_place.iter().map(|(_, unit, _)| *unit);
     let unit_names = unit_names.chain(columns.iter().map(|column| column.unit.as_str()));
     text += &line(unit_names, &widths);
+    let (long, metre) = units.length();
+    let limit = profile
+        .search()
+        .speed_max_m_s
+        .map_or(String::new(), |most| {
+            format!(" (up to {:.1} {long}/s)", most / metre)
+        });
     for TableNode {
         distance,
         angle,
@@ -134,7 +141,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         }
         let Some(shot) = shot else {
             text += &format!(
-                "{} no shot within the limits goes in\n",
+                "{} no shot within the limits{limit} goes in\n",
                 line(cells.iter().map(String::as_str), &widths).trim_end_matches('\n')
             );
             continue;

@@ -73,13 +73,21 @@ pub(super) fn estimate(
         let tracks: Vec<_> = shots.tracks.iter().map(Vec::as_slice).collect();
         let backspin = file.backspin_rad_s.unwrap_or(0.0);
         let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
+        let own = file.physics.air.drag_coefficient;
+        let agrees = |low: f64, high: f64| {
+            if (low..=high).contains(&own) {
+                "which these flights do not contradict"
+            } else {
+                "outside of that"
+            }
+        };
         return Ok(match found {
             Some((best, [low, high])) => UnmeasuredParameter {
                 text: format!(
-                    "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {:.3}\n{}",
+                    "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {own:.3}, {}\n{}",
                     tracks.len(),
                     file.physics_name,
-                    file.physics.air.drag_coefficient,
+                    agrees(low, high),
                     physics_with(file, &format!("drag_coefficient = {best:.3}"))
                 ),
                 json: json!({ "name": name, "unit": "", "best": best, "low": low, "high": high, "is_decided": true }),

@@ -47,6 +47,7 @@ the same command continues.
 Examples:
   bankshot team ann.toml bo.toml cy.toml
   bankshot team results/season-fit
+  bankshot team results/season-fit --place 2
   bankshot team ann.toml bo.toml cy.toml \\
     --sweep configs/half_court_3ft.toml --plan
   bankshot team ann.toml bo.toml cy.toml \\
@@ -62,6 +63,10 @@ pub(crate) struct TeamOptions {
     /// Folder of the results of --sweep.
     #[arg(long, value_name = "DIR", default_value = "results/team")]
     pub(crate) out: PathBuf,
+    /// Of fits with several places: the number of the place that each player shoots from, 1 for the
+    /// first.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "sweep")]
+    pub(crate) place: Option<u32>,
     /// With --sweep: say how long it takes, and stop.
     #[arg(long, requires = "sweep")]
     pub(crate) plan: bool,
@@ -75,8 +80,8 @@ pub(crate) fn run(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
 }
 
 /// The files of the profiles: in place of the folder of a fit its profile, and those of all
-/// shooters in place of the folder of their fits.
-fn files_of_players(paths: &[PathBuf]) -> Vec<PathBuf> {
+/// shooters in place of the folder of their fits. With a number of a place those of that place.
+fn files_of_players(paths: &[PathBuf], place: Option<u32>) -> Vec<PathBuf> {
     let fits = paths.iter().flat_map(|path| {
         let shooters = fit_folder::of_shooters(path);
         if shooters.is_empty() {
@@ -86,16 +91,26 @@ fn files_of_players(paths: &[PathBuf]) -> Vec<PathBuf> {
         }
     });
     fits.map(|path| {
-        let profile = path.join("profile.toml");
-        if profile.is_file() { profile } else { path }
+        let profile = match place {
+            None | Some(1) => path.join("profile.toml"),
+            Some(number) => path.join(format!("profile_place_{number}.toml")),
+        };
+        if profile.is_file() || (path.is_dir() && place.is_some()) {
+            profile
+        } else {
+            path
+        }
     })
     .collect()
 }
 
 /// The players' profiles. Each has a name of its own, which is also that of its folder.
-fn load_players(paths: &[PathBuf], quiet: bool) -> Result<Vec<(PathBuf, Profile)>, Failure> {
+fn load_players(
+    (paths, place): (&[PathBuf], Option<u32>),
+    quiet: bool,
+) -> Result<Vec<(PathBuf, Profile)>, Failure> {
     let mut players: Vec<(PathBuf, Profile)> = Vec::new();
-    for path in files_of_players(paths) {
+    for path in files_of_players(paths, place) {
         if is_sweep(&read_text(&path)?) {
             return Err(Failure::usage(format!(
                 "{path}: this is a sweep, not a player; name the players alone, and the sweep with --sweep {path}",
@@ -156,12 +171,13 @@ impl Verdict {
 const SURE: f64 = 0.9;
 
 fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
-    let profiles = load_players(&options.players, quiet)?;
-    let has_further_places =
-        |(path, _): &(PathBuf, Profile)| path.with_file_name("profile_place_2.toml").is_file();
-    if !quiet && profiles.iter().any(has_further_places) {
+    let profiles = load_players((&options.players, options.place), quiet)?;
+    let has_further_places = |(path, _): &(PathBuf, Profile)| {
+        path.ends_with("profile.toml") && path.with_file_name("profile_place_2.toml").is_file()
+    };
+    if !quiet && options.place.is_none() && profiles.iter().any(has_further_places) {
         print_remark(
-            "of fits with several places: each player shoots from the first one; --sweep COURT.toml covers others (a region \"places\" takes a list of them)",
+            "of fits with several places: each player shoots from the first one; --place 2 takes the second, and --sweep COURT.toml any (a region \"places\" takes a list of them)",
         );
     }
     let header = ["player", "place", "direct", "bank", "shoot it"];
@@ -266,7 +282,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     // Every profile is read before anything is computed.
     let mut sweeps = Vec::new();
     let mut folders: Vec<PathBuf> = Vec::new();
-    let players = load_players(&options.players, quiet)?;
+    let players = load_players((&options.players, None), quiet)?;
     let mut warnings = String::new();
     for (path, player) in players {
         for words in warnings_of_fit(&path) {
