@@ -186,14 +186,12 @@ pub(crate) fn with_fixed(
     origin: &Path,
 ) -> Result<(Profile, String), Failure> {
     // A message about a value names its flag.
-    fixed.values(&profile)?;
-    match fixed.profile_text(&profile, &text) {
-        None => Ok((profile, text)),
-        Some(text) => {
-            let profile = parse_profile(&text, &format!("{} as changed", origin.display()))?;
-            Ok((profile, text))
-        }
+    if fixed.values(&profile)?.is_empty() {
+        return Ok((profile, text));
     }
+    let text = fixed.profile_text(&profile, &text)?;
+    let profile = parse_profile(&text, &format!("{} as changed", origin.display()))?;
+    Ok((profile, text))
 }
 
 /// What the fit that wrote a profile warned of: its `fit.json` lies beside it.

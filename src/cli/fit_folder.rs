@@ -329,7 +329,7 @@ pub(crate) fn text_over_draws(
     let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
     Ok(format!(
         "{}: {}\n",
-        introduction(folder, fit),
+        which_draws(folder, fit),
         probability_text(&p)
     ))
 }
@@ -340,7 +340,7 @@ pub(crate) fn kinds_over_draws(
     profile: &Profile,
     nominals: &[(ShotKind, &Nominal)],
 ) -> Result<String, Failure> {
-    let mut text = format!("{}:\n", introduction(folder, fit));
+    let mut text = format!("{}:\n", which_draws(folder, fit));
     let mut by_kind = Vec::new();
     for (kind, nominal) in nominals {
         let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
@@ -359,7 +359,8 @@ pub(crate) fn kinds_over_draws(
     Ok(text)
 }
 
-fn introduction(folder: &Path, fit: &FitFolder) -> String {
+/// Which draws an interval is over, and what it leaves out.
+fn which_draws(folder: &Path, fit: &FitFolder) -> String {
     format!(
         "over {} draws of the scatter in {}, the aim being exact (any other interval of P is numerical)",
         fit.posterior.draws.len(),

@@ -60,14 +60,13 @@ impl FixedOptions {
         self.given().map(checked).collect()
     }
 
-    /// The text of a profile in which these values are fixed; `None` if there are none. A value
-    /// stands as it was written, so that it is read as the same number.
-    pub(crate) fn profile_text(&self, profile: &Profile, text: &str) -> Option<String> {
+    /// The text of a profile in which these values are fixed. A value stands as it was written, so
+    /// that it is read as the same number.
+    pub(crate) fn profile_text(&self, profile: &Profile, text: &str) -> Result<String, Failure> {
         let fixed = self.variables();
-        if fixed.is_empty() {
-            return None;
-        }
-        let mut root: toml::Table = text.parse().ok()?;
+        let refuse = |error: String| Failure::usage(format!("the profile: {error}"));
+        let parsed = text.parse::<toml::Table>();
+        let mut root = parsed.map_err(|error| refuse(error.to_string()))?;
         let mut set = |table: &str, key: &str, value: toml::Value| {
             let table = root
                 .entry(table)
@@ -91,9 +90,7 @@ impl FixedOptions {
             .given()
             .map(|(variable, text)| format!(" --{} '{text}'", variable.name()))
             .collect();
-        Some(format!(
-            "# With{flags}\n{}",
-            toml::to_string_pretty(&root).ok()?
-        ))
+        let changed = toml::to_string_pretty(&root).map_err(|error| refuse(error.to_string()))?;
+        Ok(format!("# With{flags}\n{changed}"))
     }
 }

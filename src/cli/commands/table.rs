@@ -26,7 +26,7 @@ Distances and angles are a list, or a range with a step. What is fixed is not se
 interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
 interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
 The table is made in rounds: each looks at the places that the one before added. \
-Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes two or three minutes on two cores, with a free pitch several; \
+Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes two to four minutes on two cores, with a free pitch more; \
 with --max-loss 1 no nodes are added, which takes half of the time or less; --draft leaves out the checks too.
 
 Examples:
