@@ -48,9 +48,10 @@ pub struct BestShot {
     pub nominal: Nominal,
     /// Its probability.
     pub estimate: Estimate,
-    /// The largest P of this kind in the table of the window.
-    pub table_probability: f64,
-    /// The plan of the window's table.
+    /// The largest P of this kind in the table of the window; `None` where errors are correlated or
+    /// the side spin is searched, which a table does not have.
+    pub table_probability: Option<f64>,
+    /// The plan of the window.
     pub window: TablePlan,
     /// The outcome of the error-free shot.
     pub outcome: Outcome,

@@ -6,8 +6,18 @@ use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
 /// Greatest number of moves from one start.
 const MAX_MOVES: u32 = 200;
-/// Times that the steps are halved.
-const HALVINGS: u32 = 2;
+
+/// The steps of a climb, as multiples of the first step of each variable; each is half the one
+/// before.
+#[derive(Clone, Copy)]
+pub(super) struct Steps(&'static [f64]);
+
+impl Steps {
+    /// From a start on a coarse grid.
+    pub(super) const ALL: Self = Self(&[1.0, 0.5, 0.25]);
+    /// From an optimum that was found with fewer points.
+    pub(super) const SMALL: Self = Self(&[0.5, 0.25]);
+}
 
 /// First step along a variable, SI units. That of the speed is relative to the parabola through the
 /// hoop's centre.
@@ -33,13 +43,13 @@ impl Climb<'_> {
         &self,
         kind: ShotKind,
         start: Nominal,
+        steps: Steps,
         value: impl Fn(&Nominal) -> u64,
     ) -> Nominal {
         let choice = self.profile.search().choice;
         let mut best = (value(&start), start);
         let mut moves = 0;
-        let mut scale = 1.0;
-        for _ in 0..=HALVINGS {
+        for scale in steps.0 {
             let mut moved = true;
             while moved && moves < MAX_MOVES {
                 moved = false;
@@ -60,9 +70,39 @@ impl Climb<'_> {
                     }
                 }
             }
-            scale *= 0.5;
         }
         best.1
+    }
+
+    /// The top of the parabola through a shot and two others, `reach` to each side, along one
+    /// variable after the other. `value` is the number of made shots. A variable stays where a
+    /// limit or the other kind is within reach, or the parabola has no top.
+    pub(super) fn top_of_parabolas(
+        &self,
+        kind: ShotKind,
+        optimum: Nominal,
+        reach: impl Fn(NominalVariable) -> f64,
+        value: impl Fn(&Nominal) -> u64,
+    ) -> Nominal {
+        let mut best = optimum;
+        for variable in self.profile.search().choice.iter() {
+            let step = reach(variable);
+            let sides = [-step, step].map(|by| self.moved(&best, variable, by));
+            let is_free = |side: &Nominal| {
+                let moved = (side.get(variable) - best.get(variable)).abs();
+                moved > 0.999 * step && ShotKind::of(self.profile, side) == kind
+            };
+            if step == 0.0 || !sides.iter().all(is_free) {
+                continue;
+            }
+            let [low, middle, high] = [&sides[0], &best, &sides[1]].map(|shot| value(shot) as f64);
+            let curvature = low - 2.0 * middle + high;
+            if curvature < 0.0 {
+                let part = (0.5 * (low - high) / curvature).clamp(-1.0, 1.0);
+                best = self.moved(&best, variable, part * step);
+            }
+        }
+        best
     }
 
     /// The nominal shot moved along one variable and kept within the limits. A move in pitch

@@ -6,11 +6,13 @@
 //! shooter, so the other starts are tried with few points. About the highest optimum a finer table,
 //! a window, gives P of all nominal shots to about 0.001. While its best shot lies at the window's
 //! edge, the window moves on. A parabola along each axis finds the optimum between the points of
-//! the table. P of the winner is computed again with independent scrambles, so it is not the
-//! largest of many noisy values.
+//! the table. A table has four independent errors and one side spin: where errors are correlated,
+//! or the side spin is searched too, a climb with more points takes the place of the windows. P of
+//! the winner is computed again with independent scrambles, so it is not the largest of many noisy
+//! values.
 
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
-use super::pattern_search::Climb;
+use super::pattern_search::{Climb, Steps};
 use super::table_maxima::{Candidate, maxima_by_pitch, maxima_by_speed, separated};
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
@@ -39,6 +41,8 @@ const COMPARISON_FACTOR: u32 = 8;
 const MAX_WINDOWS: u32 = 4;
 /// Fraction of a window's half width over which the parabola about its best shot is taken.
 const PARABOLA_REACH: f64 = 0.3;
+/// The same where P comes from samples, whose differences are less exact than those of a table.
+const SAMPLED_PARABOLA_REACH: f64 = 0.7;
 
 /// Finds the best direct and the best bank shot of a profile, on the current rayon pool.
 ///
@@ -141,11 +145,12 @@ fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
     }
 }
 
-/// The window about the optimum of a kind.
+/// The refined optimum of a kind, and the window about it.
 struct Window {
     plan: TablePlan,
     nominal: Nominal,
-    table_probability: f64,
+    /// The largest P of the window's table, where there is one.
+    table_probability: Option<f64>,
     curves: Vec<ProbabilityCurve>,
 }
 
@@ -219,26 +224,18 @@ impl BestShotSearch<'_> {
         let Some(start) = self.climb_from(kind, starts, &sampler, &scramble) else {
             return Ok(Err(NoShot::Impossible(kind)));
         };
-        let mut window = self.move_window(kind, start)?;
         let searches_side_spin = search.choice.includes(NominalVariable::SideSpin);
-        if !self.profile.shooter().dispersion.is_of_eq_25() || searches_side_spin {
-            // The table has four independent errors and one side spin. The samples have all of
-            // them.
-            let points = COMPARISON_FACTOR * search.climb_samples;
-            window.nominal = self.climb(kind, window.nominal, &sampler, &scramble, points);
-            window.plan = self.plan.window(self.profile, &window.nominal)?;
-            let (plan, nominal) = (&window.plan, &window.nominal);
-            window.curves = if self.topics.curves {
-                probability_curves::from_samples(self.profile, &sampler, &scramble, plan, nominal)
-            } else {
-                Vec::new()
-            };
-        }
+        let tables_hold = self.profile.shooter().dispersion.is_of_eq_25() && !searches_side_spin;
+        let mut window = if tables_hold {
+            self.move_window(kind, start)?
+        } else {
+            self.climb_with_more_points(kind, start, &sampler, &scramble)?
+        };
         if !self.is_made(&window.nominal) {
             // The most probable shot goes in only with errors: take the best one that needs none.
             let table = self.table(&window.plan);
             if let Some((p, clean)) = self.best_clean(kind, &table) {
-                window.table_probability = p;
+                window.table_probability = tables_hold.then_some(p);
                 window.nominal = clean;
                 window.curves = probability_curves::from_table(&table, &clean);
             }
@@ -393,12 +390,45 @@ impl BestShotSearch<'_> {
         scramble: &Scramble,
         points: u32,
     ) -> Nominal {
-        let climb = Climb {
+        let made = |nominal: &Nominal| sampler.count(nominal, scramble, (0, points)).made();
+        self.pattern_search().run(kind, start, Steps::ALL, made)
+    }
+
+    fn pattern_search(&self) -> Climb<'_> {
+        Climb {
             profile: self.profile,
             bracket: &self.plan.bracket,
+        }
+    }
+
+    /// The optimum near one that was found with few points, for errors that a table does not have.
+    fn climb_with_more_points(
+        &self,
+        kind: ShotKind,
+        start: Nominal,
+        sampler: &Sampler<'_>,
+        scramble: &Scramble,
+    ) -> Result<Window, PlanError> {
+        let points = COMPARISON_FACTOR * self.profile.search().climb_samples;
+        let made = |nominal: &Nominal| sampler.count(nominal, scramble, (0, points)).made();
+        let search = self.pattern_search();
+        let optimum = search.run(kind, start, Steps::SMALL, made);
+        let plan = self.plan.window(self.profile, &optimum)?;
+        let reach = |variable| {
+            let axis = plan.nominal.axis(variable);
+            SAMPLED_PARABOLA_REACH * 0.5 * (axis.high - axis.low)
         };
-        climb.run(kind, start, |nominal| {
-            sampler.count(nominal, scramble, (0, points)).made()
+        let nominal = search.top_of_parabolas(kind, optimum, reach, made);
+        let curves = if self.topics.curves {
+            probability_curves::from_samples(self.profile, sampler, scramble, &plan, &nominal)
+        } else {
+            Vec::new()
+        };
+        Ok(Window {
+            plan,
+            nominal,
+            table_probability: None,
+            curves,
         })
     }
 
@@ -407,7 +437,7 @@ impl BestShotSearch<'_> {
         let mut window = Window {
             plan: self.plan.window(self.profile, &start)?,
             nominal: start,
-            table_probability: 0.0,
+            table_probability: None,
             curves: Vec::new(),
         };
         for _ in 0..MAX_WINDOWS {
@@ -416,7 +446,7 @@ impl BestShotSearch<'_> {
             let Some(&(p, maximum)) = separated(&maxima[kind.index()]).first() else {
                 break;
             };
-            window.table_probability = p;
+            window.table_probability = Some(p);
             window.nominal = self.between_points(kind, &table, &maximum);
             window.curves = probability_curves::from_table(&table, &window.nominal);
             let next = self.plan.window(self.profile, &window.nominal)?;

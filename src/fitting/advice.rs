@@ -1,6 +1,6 @@
 //! What a shooter should change, and how sure that is.
 
-use super::advice_steps::{AdviceSteps, Cause, Shooting};
+use super::advice_steps::{AdviceSteps, Cause, Change, ChangedShots, Shooting};
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
 use super::landing::{Landing, landing_of};
@@ -13,8 +13,6 @@ use crate::shooter::{NominalVariable, Profile, SearchChoice, ShotKind};
 
 /// Draws that advice is computed for, at most.
 const DRAWS: usize = 400;
-/// Shots of each sample.
-const SHOTS: usize = 32_768;
 /// The factor on a standard deviation for "10 % less scatter".
 const TRAINED: f64 = 0.9;
 
@@ -114,13 +112,8 @@ pub fn advise(
     let typical = posterior.typical();
     let step = posterior.draws.len().div_ceil(DRAWS);
     let draws: Vec<Draw> = posterior.draws.iter().step_by(step).cloned().collect();
-    let seed = profile.search().seed;
-    let simulate =
-        |means: &[Values]| WeightedShots::simulate(profile, (&draws, place), means, SHOTS, seed);
-    let factor = |draw: &Draw| draw.factors[place];
-    let usual_means: Vec<Values> = draws.iter().map(|draw| draw.means[place]).collect();
-    let usual_shots = simulate(&usual_means);
-    let usual_p = usual_shots.probabilities(&draws, |draw| draw.means[place], factor);
+    let mut shooting = Shooting::new(profile, &draws, &typical, place);
+    let usual_p = shooting.with(Change::default()).probabilities.clone();
     let keeps_backspin = posterior.spin != SpinSource::Measured;
     let usual = typical.means[place];
     let kind = ShotKind::of(profile, &nominal_of(&usual));
@@ -131,20 +124,13 @@ pub fn advise(
     };
     let (_, found) = find_kinds(searched, &ShotKind::ALL, SensitivityTopics::NONE, progress)?;
     let best_of = |kind: ShotKind| found[kind as usize].as_ref().ok();
-    let fixed = |best: &BestShot| {
-        let of_draw = |draw: &Draw| {
-            let mut values = values_of(&best.nominal);
-            if keeps_backspin {
-                values[3] = draw.means[place][3];
-            }
-            values
-        };
-        let means: Vec<Values> = draws.iter().map(of_draw).collect();
-        simulate(&means).probabilities(&draws, of_draw, factor)
-    };
     let by_kind: Vec<Option<DrawProbabilities>> = ShotKind::ALL
         .into_iter()
-        .map(|kind| best_of(kind).map(fixed))
+        .map(|kind| {
+            let values = values_of(&best_of(kind)?.nominal);
+            let change = Change::to(&values, |i| keeps_backspin && i == Cause::BACKSPIN.0);
+            Some(shooting.with(change).probabilities.clone())
+        })
         .collect();
     let kinds = match &by_kind[..] {
         [Some(direct), Some(bank)] => {
@@ -159,21 +145,12 @@ pub fn advise(
     };
     let best = best_of(kind);
     let gain = by_kind[kind as usize].as_ref().map(|p| p.minus(&usual_p));
-    let shooting = Shooting {
-        profile,
-        draws: &draws,
-        typical: &typical,
-        place,
-    };
-    let steps = best.map(|best| shooting.steps(&usual, &values_of(&best.nominal), !keeps_backspin));
-    let advised = |draw: &Draw| {
-        let own = draw.means[place];
-        steps
-            .as_ref()
-            .map_or(own, |steps| steps.advised_of(draw, place))
-    };
-    let advised_means: Vec<Values> = draws.iter().map(advised).collect();
-    let mut training = training_gains(&simulate(&advised_means), &draws, place, advised);
+    let (steps, change) = best
+        .map(|best| shooting.steps(&usual, &values_of(&best.nominal), !keeps_backspin))
+        .unzip();
+    let change = change.unwrap_or_default();
+    let advised = |draw: &Draw| change.of_draw(draw, place);
+    let mut training = training_gains(shooting.with(change), &draws, place, advised);
     // Nothing is known of a scatter that was not measured.
     training.retain(|gain| !(keeps_backspin && gain.cause == Cause::BACKSPIN));
     let fall = |values: &Values| {
@@ -218,24 +195,23 @@ fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
         .unwrap_or_else(|_| profile.clone())
 }
 
-/// What 10 % less scatter of each value gains about the aim `mean`.
+/// What 10 % less scatter of each value gains about the advised release, `mean`.
 fn training_gains(
-    shots: &WeightedShots,
+    advised: &ChangedShots,
     draws: &[Draw],
     place: usize,
     mean: impl Fn(&Draw) -> Values + Sync,
 ) -> Vec<TrainingGain> {
-    let untrained = shots.probabilities(draws, &mean, |draw| draw.factors[place]);
     let mut gains: Vec<TrainingGain> = (0..VALUE_NAMES.len())
         .map(|i| {
-            let trained = shots.probabilities(draws, &mean, |draw| {
+            let trained = advised.shots.probabilities(draws, &mean, |draw| {
                 let mut factor = draw.factors[place];
                 factor.row_mut(i).scale_mut(TRAINED);
                 factor
             });
             TrainingGain {
                 cause: Cause(i),
-                gain: trained.minus(&untrained).interval(),
+                gain: trained.minus(&advised.probabilities).interval(),
             }
         })
         .collect();

@@ -82,64 +82,93 @@ pub struct AdviceSteps {
     pub alone: Option<[Interval; 2]>,
 }
 
-/// A release in which some values are those of a target and the others the usual ones of a draw.
-#[derive(Clone, Copy)]
-struct Change {
-    target: Values,
-    changed: [bool; VALUE_NAMES.len()],
-}
+/// What a release changes of the usual one of each draw: a value where there is one.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(super) struct Change([Option<f64>; VALUE_NAMES.len()]);
 
 impl Change {
+    /// Every value but those that are kept.
+    pub(super) fn to(target: &Values, is_kept: impl Fn(usize) -> bool) -> Self {
+        Self(std::array::from_fn(|i| (!is_kept(i)).then_some(target[i])))
+    }
+
     fn with(mut self, i: usize, value: f64) -> Self {
-        self.target[i] = value;
-        self.changed[i] = true;
+        self.0[i] = Some(value);
         self
     }
 
-    fn of_draw(&self, draw: &Draw, place: usize) -> Values {
-        std::array::from_fn(|i| {
-            if self.changed[i] {
-                self.target[i]
-            } else {
-                draw.means[place][i]
-            }
-        })
+    /// The release of a draw with this change.
+    pub(super) fn of_draw(&self, draw: &Draw, place: usize) -> Values {
+        std::array::from_fn(|i| self.0[i].unwrap_or(draw.means[place][i]))
     }
 }
 
-impl AdviceSteps {
-    /// The advised release of a draw: its own but for what changes.
-    pub(super) fn advised_of(&self, draw: &Draw, place: usize) -> Values {
-        let change = Change {
-            target: self.advised,
-            changed: self.is_changed,
-        };
-        change.of_draw(draw, place)
-    }
-}
-
-/// The shooter at a place.
+/// A shooter at a place, with the shots that were simulated there.
 pub(super) struct Shooting<'a> {
-    pub(super) profile: &'a Profile,
-    pub(super) draws: &'a [Draw],
-    pub(super) typical: &'a Draw,
-    pub(super) place: usize,
+    profile: &'a Profile,
+    draws: &'a [Draw],
+    typical: &'a Draw,
+    place: usize,
+    /// A sample for each change that was asked for: most are asked for more than once.
+    samples: Vec<ChangedShots>,
 }
 
-impl Shooting<'_> {
-    /// P for each draw with a change.
-    fn probabilities(&self, change: &Change) -> DrawProbabilities {
-        let mean = |draw: &Draw| change.of_draw(draw, self.place);
+/// Shots about a changed release, and P for each draw.
+pub(super) struct ChangedShots {
+    change: Change,
+    pub(super) shots: WeightedShots,
+    pub(super) probabilities: DrawProbabilities,
+}
+
+impl<'a> Shooting<'a> {
+    pub(super) fn new(
+        profile: &'a Profile,
+        draws: &'a [Draw],
+        typical: &'a Draw,
+        place: usize,
+    ) -> Self {
+        Self {
+            profile,
+            draws,
+            typical,
+            place,
+            samples: Vec::new(),
+        }
+    }
+
+    /// Shots with a change.
+    pub(super) fn with(&mut self, change: Change) -> &ChangedShots {
+        let known = self.samples.iter().position(|known| known.change == change);
+        let index = known.unwrap_or_else(|| {
+            self.samples.push(self.simulate(change));
+            self.samples.len() - 1
+        });
+        &self.samples[index]
+    }
+
+    fn simulate(&self, change: Change) -> ChangedShots {
+        let place = self.place;
+        let mean = |draw: &Draw| change.of_draw(draw, place);
         let means: Vec<Values> = self.draws.iter().map(mean).collect();
-        let seed = self.profile.search().seed;
-        WeightedShots::simulate(
+        let shots = WeightedShots::simulate(
             self.profile,
-            (self.draws, self.place),
+            (self.draws, place),
             &means,
             STEP_SHOTS,
-            seed,
-        )
-        .probabilities(self.draws, mean, |draw| draw.factors[self.place])
+            self.profile.search().seed,
+        );
+        let factor = |draw: &Draw| draw.factors[place];
+        ChangedShots {
+            change,
+            probabilities: shots.probabilities(self.draws, mean, factor),
+            shots,
+        }
+    }
+
+    /// P for each draw with a change less that of another.
+    fn gain(&mut self, change: Change, before: Change) -> Interval {
+        let p = self.with(change).probabilities.clone();
+        p.minus(&self.with(before).probabilities).interval()
     }
 
     /// The best speed of a release for the typical scatter, near the speed of the release, and its
@@ -187,8 +216,8 @@ impl Shooting<'_> {
         (means[top][0] + part * step, p[top] + gain)
     }
 
-    /// The speed and the angle of the second step.
-    fn speed_and_angle(&self, usual: &Values, best: &Values) -> (f64, f64) {
+    /// The best speed at the usual angle; and the speed and the angle of the second step.
+    fn speed_and_angle(&self, usual: &Values, best: &Values) -> (f64, (f64, f64)) {
         let on_the_way: Vec<(f64, f64, f64)> = (0..=ANGLES)
             .map(|k| {
                 let part = k as f64 / ANGLES as f64;
@@ -200,27 +229,26 @@ impl Shooting<'_> {
                 (speed, release[1], p)
             })
             .collect();
+        let own_speed = on_the_way[0].0;
         let most = on_the_way.iter().map(|(.., p)| *p).fold(0.0, f64::max);
-        on_the_way
+        let second = on_the_way
             .into_iter()
             .find(|(.., p)| *p >= most - TOLERANCE)
-            .map_or((best[0], best[1]), |(speed, angle, _)| (speed, angle))
+            .map_or((best[0], best[1]), |(speed, angle, _)| (speed, angle));
+        (own_speed, second)
     }
 
-    /// The steps from the usual release to the best one of the same kind.
-    pub(super) fn steps(&self, usual: &Values, best: &Values, changes_spin: bool) -> AdviceSteps {
-        let none = Change {
-            target: *usual,
-            changed: [false; VALUE_NAMES.len()],
-        };
-        let mut best = *best;
-        if !changes_spin {
-            best[3] = usual[3];
-        }
-        let (own_speed, _) = self.best_speed(*usual);
-        let (speed, angle) = self.speed_and_angle(usual, &best);
-        let mut order = vec![(Cause::SPEED, none.with(0, own_speed))];
+    /// The steps from the usual release to the best one of the same kind, and what they change.
+    pub(super) fn steps(
+        &mut self,
+        usual: &Values,
+        best: &Values,
+        changes_spin: bool,
+    ) -> (AdviceSteps, Change) {
+        let none = Change::default();
+        let (own_speed, (speed, angle)) = self.speed_and_angle(usual, best);
         let mut change = none.with(0, own_speed);
+        let mut order = vec![(Cause::SPEED, change)];
         if angle != usual[1] {
             change = change.with(0, speed).with(1, angle);
             order.push((Cause::PITCH, change));
@@ -230,38 +258,33 @@ impl Shooting<'_> {
         if changes_spin {
             order.push((Cause::BACKSPIN, change.with(3, best[3])));
         }
-        let usual_p = self.probabilities(&none);
-        let mut before = usual_p.clone();
+        let mut before = none;
         let mut steps = Vec::new();
         for (cause, change) in order {
-            let p = self.probabilities(&change);
             steps.push(AdviceStep {
                 cause,
                 release: change.of_draw(self.typical, self.place),
-                gain: p.minus(&before).interval(),
+                gain: self.gain(change, before),
             });
-            before = p;
+            before = change;
         }
-        let advised = advised(&steps, none);
-        let is_two = advised.changed[0] && advised.changed[1];
-        AdviceSteps {
+        let advised = sure_steps_together(&steps);
+        let speed_and_pitch = advised.0[0].zip(advised.0[1]);
+        let steps = AdviceSteps {
             advised: advised.of_draw(self.typical, self.place),
-            is_changed: advised.changed,
-            gain: self.probabilities(&advised).minus(&usual_p).interval(),
-            alone: is_two.then(|| {
-                [0, 1].map(|i| {
-                    let alone = none.with(i, advised.target[i]);
-                    self.probabilities(&alone).minus(&usual_p).interval()
-                })
+            is_changed: advised.0.map(|value| value.is_some()),
+            gain: self.gain(advised, none),
+            alone: speed_and_pitch.map(|(speed, pitch)| {
+                [none.with(0, speed), none.with(1, pitch)].map(|alone| self.gain(alone, none))
             }),
             steps,
-        }
+        };
+        (steps, advised)
     }
 }
 
-/// The sure steps together.
-fn advised(steps: &[AdviceStep], none: Change) -> Change {
-    let mut change = none;
+fn sure_steps_together(steps: &[AdviceStep]) -> Change {
+    let mut change = Change::default();
     for step in steps.iter().filter(|step| step.is_sure()) {
         if step.cause == Cause::PITCH {
             change = change.with(0, step.release[0]);

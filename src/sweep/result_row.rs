@@ -138,10 +138,12 @@ impl ResultRow {
                 columns::SHARE_BOARD_AND_RING,
                 estimate.shares.board_and_ring,
             ),
-            (columns::TABLE_PROBABILITY, shot.table_probability),
             (columns::MASS_OUTSIDE_BRACKET, shot.mass_outside),
         ] {
             self.set_real(column, value);
+        }
+        if let Some(p) = shot.table_probability {
+            self.set_real(columns::TABLE_PROBABILITY, p);
         }
         self.set_integer(columns::SHOTS, estimate.shots);
         self.set_integer(columns::UNRESOLVED, estimate.unresolved);

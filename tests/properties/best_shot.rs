@@ -109,7 +109,10 @@ fn prop_curves_pass_through_the_best_shot() {
                 .fold(0.0, |top: f64, &(_, p)| top.max(p));
             // The line passes through the table's nominal shot nearest to the best one, not through
             // the table's best.
-            assert!((top - shot.table_probability).abs() < 0.005, "{curve:?}");
+            assert!(
+                (top - shot.table_probability.unwrap()).abs() < 0.005,
+                "{curve:?}"
+            );
             assert!(curve.points.is_sorted_by(|a, b| a.0 < b.0));
         }
     }
@@ -148,7 +151,7 @@ fn prop_the_best_shot_is_not_below_its_own_table() {
         .with(|settings| settings.search.standard_error = Some(0.0007))
         .unwrap();
     for shot in find(&profile) {
-        let difference = shot.estimate.probability - shot.table_probability;
+        let difference = shot.estimate.probability - shot.table_probability.unwrap();
         let error = shot.estimate.standard_error;
         println!("best minus table: {difference:+.5}, standard error {error:.5}");
         // Three times the rms error of the table, and 4.5 standard errors: a false alarm for fewer
