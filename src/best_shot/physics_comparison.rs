@@ -82,15 +82,19 @@ impl PhysicsComparison {
         }
         let same = |row: &PhysicsRow| Some(row.same_shot.as_ref()?.probability);
         let same = self.unmeasured_changes(same);
-        let together = |changes: &[(&str, f64)]| format!("{:.0}", 100.0 * together(changes));
+        let together = |changes: &[(&str, f64)]| {
+            // Rounded first, and 0 added: no negative zero.
+            let [down, up] = together(changes).map(|by| libm::round(100.0 * by) + 0.0);
+            format!("together about {down:+.0} to {up:+.0}")
+        };
         let mut text = format!(
-            "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {} (together about {}).",
+            "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {} ({}).",
             list(&best),
             together(&best)
         );
         if !same.is_empty() {
             text += &format!(
-                " To {}, which is not aimed again: {} (together about {}).",
+                " To {}, which is not aimed again: {} ({}).",
                 self.same_shot.in_words(),
                 list(&same),
                 together(&same)
@@ -100,17 +104,20 @@ impl PhysicsComparison {
     }
 }
 
-/// How far single changes may move P together: the root of the sum of squares, of each quantity
-/// the change that does most. The changes are ends of what the quantities may be.
-fn together(changes: &[(&str, f64)]) -> f64 {
+/// How far single changes may lower and raise P together: the root of the sum of squares, of each
+/// quantity the change that does most on that side. The changes are ends of what the quantities may
+/// be.
+fn together(changes: &[(&str, f64)]) -> [f64; 2] {
     // `with hoop_restitution 0.45`: the second word is the quantity.
     let quantity = |name: &str| name.split(' ').nth(1).unwrap_or(name).to_owned();
-    let mut most: BTreeMap<String, f64> = BTreeMap::new();
-    for (name, by) in changes {
-        let most = most.entry(quantity(name)).or_default();
-        *most = most.max(by.abs());
-    }
-    most.values().map(|by| by * by).sum::<f64>().sqrt()
+    [-1.0, 1.0].map(|side| {
+        let mut most: BTreeMap<String, f64> = BTreeMap::new();
+        for (name, by) in changes {
+            let most = most.entry(quantity(name)).or_default();
+            *most = most.max(side * by);
+        }
+        side * most.values().map(|by| by * by).sum::<f64>().sqrt()
+    })
 }
 
 /// A shot that is released the same way under each physics.

@@ -23,14 +23,21 @@ const PLAIN_NAMES: [(&str, &str); 4] = [
 const GROWTHS: [(&str, &str); 2] = [("c11", "speed"), ("c41", "backspin")];
 
 /// Words that others use for a key.
-const OTHER_WORDS: [(&str, &str); 10] = [
+const OTHER_WORDS: [(&str, &str); 17] = [
     ("left_right", "polar"),
     ("leftright", "polar"),
     ("aim", "polar"),
     ("yaw", "polar"),
+    ("direction", "polar"),
     ("azimuth", "polar"),
     ("angle", "pitch"),
     ("launch_angle", "pitch"),
+    ("elevation", "pitch"),
+    ("max_pitch", "pitch_max"),
+    ("min_pitch", "pitch_min"),
+    ("max_speed", "speed_max"),
+    ("top_speed", "speed_max"),
+    ("backspin_max", "max_backspin"),
     ("spin", "backspin"),
     ("height", "release_height"),
     ("drag", "drag_coefficient"),

@@ -76,6 +76,19 @@ pub fn wilson_interval(made: usize, shots: usize) -> Wilson {
     }
 }
 
+/// The change from one share to another, each of `(made, shots)`, with its 95 % interval (the
+/// "square and add" interval from two of Wilson's; Newcombe, Stat. Med. 17 (1998) 873, method 10).
+#[must_use]
+pub fn change_of_share(before: (usize, usize), after: (usize, usize)) -> Wilson {
+    let [a, b] = [after, before].map(|(made, shots)| wilson_interval(made, shots));
+    let change = a.share - b.share;
+    Wilson {
+        share: change,
+        low: change - (a.share - a.low).hypot(b.high - b.share),
+        high: change + (a.high - a.share).hypot(b.share - b.low),
+    }
+}
+
 /// Predicted against observed.
 #[derive(Clone, Debug)]
 pub struct ExpectedMakes {
@@ -328,6 +341,15 @@ mod tests {
         assert!((wilson.low - 0.490).abs() < 5e-4, "{wilson:?}");
         assert!((wilson.high - 0.943).abs() < 5e-4, "{wilson:?}");
         assert_eq!(wilson_interval(0, 10).low, 0.0);
+    }
+
+    /// Authority: Newcombe 1998, table II, 56 of 70 less 48 of 80: 0.0524 to 0.3339.
+    #[test]
+    fn val_change_of_share() {
+        let change = change_of_share((48, 80), (56, 70));
+        assert!((change.share - 0.2).abs() < 1e-12, "{change:?}");
+        assert!((change.low - 0.0524).abs() < 5e-5, "{change:?}");
+        assert!((change.high - 0.3339).abs() < 5e-5, "{change:?}");
     }
 
     /// By hand: chances of 0.8 and 0.2 are right if they are wrong once in five, and too sure if

@@ -36,7 +36,8 @@ pub use advice_steps::{AdviceStep, AdviceSteps, Cause};
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{
-    ExpectedMakes, ReliabilityBin, ShotChance, Wilson, expected_makes, wilson_interval,
+    ExpectedMakes, ReliabilityBin, ShotChance, Wilson, change_of_share, expected_makes,
+    wilson_interval,
 };
 pub use fit_checks::{
     FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, check_releases,

@@ -12,7 +12,7 @@ use crate::dynamics::{InstructionSet, Integrator, Release, Simulator, SimulatorE
 use crate::model::Physics;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde::{Serialize, Serializer};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Longest name of a shooter, in characters.
 const LONGEST_NAME: usize = 500;
@@ -122,6 +122,7 @@ impl ProfileSettings {
             .check(&mut checks, shooter.max_backspin_rad_s);
         check_nominal(&self.nominal, &mut checks);
         if let Some(backspin) = self.nominal.backspin_rad_s
+            && checks.is_valid("shooter.max_backspin")
             && backspin > shooter.max_backspin_rad_s
         {
             let (fixed, most) = (backspin / REV_RAD, shooter.max_backspin_rad_s / REV_RAD);
@@ -217,9 +218,8 @@ fn check_nominal(nominal: &NominalOverrides, checks: &mut SettingChecks) {
                 value > 0.0 && value <= MAX_SPEED_M_S,
                 "above 0 and at most 40 m/s",
             ),
-            NominalVariable::Pitch | NominalVariable::Polar => {
-                (value.abs() <= PI, "between -180 and 180 deg")
-            }
+            NominalVariable::Pitch => (value.abs() <= FRAC_PI_2, "between -90 and 90 deg"),
+            NominalVariable::Polar => (value.abs() <= PI, "between -180 and 180 deg"),
             NominalVariable::Backspin | NominalVariable::SideSpin | NominalVariable::RifleSpin => (
                 value.abs() <= MAX_SPIN_RAD_S,
                 "within 200 rad/s (31.8 rev/s)",

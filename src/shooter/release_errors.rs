@@ -196,6 +196,7 @@ impl ReleaseDispersion {
             );
         }
         if checks.is_valid(&key("c40"))
+            && checks.is_valid("shooter.max_backspin")
             && !is_plausible(max_backspin_rad_s, MAX_SPIN_RAD_S, &|w| {
                 self.backspin_rad_s(w)
             })

@@ -392,16 +392,23 @@ fn contract_a_table_or_a_folder_in_place_of_a_profile_is_told_apart() {
 #[test]
 fn contract_odd_nominal_angles_and_balls_are_named() {
     let folder = TempDir::new().unwrap();
-    let steep = format!("{FREE_THROW}\n[nominal]\npitch = \"95 deg\"\n");
-    let profile = write_file(&folder, "steep.toml", &steep);
-    check(&profile)
+    let with_pitch = |pitch: &str| {
+        let text = format!("{FREE_THROW}\n[nominal]\npitch = \"{pitch}\"\n");
+        write_file(&folder, "steep.toml", text)
+    };
+    check(&with_pitch("85 deg"))
         .exits(0)
-        .says("nominal.pitch: 95.0 deg above the horizontal");
-    let fixed = format!("{steep}[search]\nchoose = [\"speed\", \"polar\", \"backspin\"]\n");
+        .says("nominal.pitch: 85.0 deg above the horizontal");
+    check(&with_pitch("95 deg"))
+        .exits(2)
+        .says("between -90 and 90 deg");
+    let fixed = format!(
+        "{FREE_THROW}\n[nominal]\npitch = \"-5 deg\"\n[search]\nchoose = [\"speed\", \"polar\", \"backspin\"]\n"
+    );
     let profile = write_file(&folder, "fixed.toml", fixed);
     let refused = check(&profile).exits(2);
     refused
-        .says("nominal.pitch: 95.0 deg: must be from 1 to 89 deg (search.choose leaves pitch out");
+        .says("nominal.pitch: -5.0 deg: must be from 1 to 89 deg (search.choose leaves pitch out");
     let foam = |more: &str| {
         let physics = format!("preset = \"ncaa\"\nball_mass = \"136 g\"\n{more}");
         let text = FREE_THROW.replace("preset = \"paper\"", &physics);

@@ -1,6 +1,6 @@
 //! `fit`, `advise`, `compare-sessions`, `design`: from measured shots to a profile and advice.
 
-use super::support::{Answer, bankshot, write_file};
+use super::support::{Answer, bankshot, make_search_small, write_file};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -134,6 +134,7 @@ fn contract_advice_is_the_same_from_a_file_and_from_its_fit() {
         .map(|cause| cause["mean"].as_f64().unwrap())
         .sum();
     assert!((sum - mean(&of_file, "gain")).abs() < 0.01, "{sum}");
+    make_search_small(folder.path());
     let draws = folder.path().to_str().unwrap();
     let profile = folder.path().join("profile.toml");
     let flags = [
@@ -483,6 +484,9 @@ fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
     one.says("Bob: ").says("has one session, June");
     let out = folder.path().join("out");
     fit(team.to_str().unwrap(), &out, &["--units", "metric"]).exits(0);
+    for name in ["ann", "bob"] {
+        make_search_small(&out.join(name));
+    }
     let mut advise = bankshot();
     let answer = Answer::of(advise.arg("advise").arg(&out).arg("--quiet")).exits(0);
     let text = answer.stdout();
@@ -701,6 +705,9 @@ fn contract_places_of_a_shooter_are_told_apart() {
         .sum();
     assert_eq!(shots, 60);
     assert_eq!((rows[0][3], rows[1][3]), ("low post", "high post"));
+    for name in ["ann", "bob"] {
+        make_search_small(&out.join(name));
+    }
     let mut advise = bankshot();
     advise.arg("advise").arg(out.join("ann"));
     let brief = Answer::of(advise.args(["--brief", "--quiet"])).exits(0);
@@ -810,17 +817,18 @@ fn contract_warnings_of_a_fit_follow_its_profile() {
         made += &format!("{rest},{}\n", u8::from(i > 0));
     }
     let path = write_file(&folder, "made.csv", &made);
-    // Advice that the makes contradict begins with that.
-    let mut advise = bankshot();
-    Answer::of(advise.arg("advise").arg(&path).arg("--quiet"))
-        .exits(0)
-        .prints("Do not act on this yet");
     let out = folder.path().join("made-fit");
     let answer = fit(path.to_str().unwrap(), &out, &[]).exits(0);
     assert!(
         answer.stdout().contains("59 shots went in where"),
         "{answer:?}"
     );
+    make_search_small(&out);
+    // Advice that the makes contradict begins with that.
+    let mut advise = bankshot();
+    Answer::of(advise.arg("advise").arg(&out).arg("--quiet"))
+        .exits(0)
+        .prints("Do not act on this yet");
     let mut command = bankshot();
     command.arg("team").arg(out.join("profile.toml"));
     Answer::of(&mut command)

@@ -97,8 +97,26 @@ impl Answer {
 /// A profile that is small enough to run in a moment.
 pub(crate) fn small_profile() -> String {
     format!(
-        "{FREE_THROW}\n[grid]\nspeed = 16\npitch = 12\npolar = 12\nbackspin = 4\n[search]\nstandard_error = 0.01\n"
+        "{FREE_THROW}\n[grid]\nspeed = 16\npitch = 12\npolar = 12\nbackspin = 4\n[search]\nstandard_error = 0.01\nclimb_samples = 128\n"
     )
+}
+
+/// Makes the searches from the profiles of a fit small enough to run in a moment.
+pub(crate) fn make_search_small(fit: &Path) {
+    let small = small_profile().split_off(FREE_THROW.len());
+    let mut profiles = 0;
+    for entry in fs::read_dir(fit).unwrap() {
+        let path = entry.unwrap().path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
+            let profile = fs::read_to_string(&path).unwrap();
+            fs::write(path, profile + &small).unwrap();
+            profiles += 1;
+        }
+    }
+    assert!(profiles > 0);
 }
 
 /// A small profile whose greatest speed is too low to reach the hoop.

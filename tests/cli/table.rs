@@ -30,6 +30,7 @@ polar = 12
 backspin = 4
 [search]
 standard_error = 0.005
+climb_samples = 256
 "#;
 
 fn table(folder: &TempDir, more: &[&str]) -> Answer {
@@ -175,7 +176,7 @@ int main() {
 #[test]
 fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     let folder = TempDir::new().unwrap();
-    let range = ["--distances", "10 ft, 12 ft", "--max-loss", "1"];
+    let range = ["--distances", "10 ft, 12 ft", "--draft"];
     // The end of the name says the form.
     for file in ["t.csv", "t.py", "Launcher.java", "t.hpp"] {
         table(&folder, &[&range[..], &["--output", file]].concat()).exits(0);

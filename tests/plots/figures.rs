@@ -48,19 +48,18 @@ fn contract_the_half_court_results_of_the_docs_are_up_to_date() {
     let columns = result_columns();
     let jobs = Jobs::new(&config);
     assert_eq!(rows.len(), jobs.count());
-    // Two spots computed again, bit for bit.
-    for spot in [101, 303] {
-        let computed = compute_jobs(&config, &jobs, spot, &[0, 1]).unwrap();
-        assert_eq!(computed.len(), 2);
-        for (kind, row) in computed.iter().enumerate() {
-            let kept = &rows[&jobs.number(spot, kind)];
-            for &column in &columns {
-                assert_eq!(
-                    kept.cells()[column],
-                    row.cells()[column],
-                    "docs/data/half_court.csv is out of date"
-                );
-            }
+    // One spot computed again, bit for bit.
+    let spot = 303;
+    let computed = compute_jobs(&config, &jobs, spot, &[0, 1]).unwrap();
+    assert_eq!(computed.len(), 2);
+    for (kind, row) in computed.iter().enumerate() {
+        let kept = &rows[&jobs.number(spot, kind)];
+        for &column in &columns {
+            assert_eq!(
+                kept.cells()[column],
+                row.cells()[column],
+                "docs/data/half_court.csv is out of date"
+            );
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
     DrawProbabilities, MeasuredRelease, Posterior, ProbabilityChange, SessionComparison,
-    ShooterFit, SpinSource, VALUE_NAMES, compare_probabilities, compare_sessions,
+    ShooterFit, SpinSource, VALUE_NAMES, change_of_share, compare_probabilities, compare_sessions,
     probability_change,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
@@ -474,10 +474,16 @@ fn json(
             },
         })
     });
+    let change_of_makes = (before.makes.1 > 0 && after.makes.1 > 0).then(|| {
+        let change = change_of_share(before.makes, after.makes);
+        let [change, low, high] = [change.share, change.low, change.high].map(|p| 100.0 * p);
+        json!({ "unit": "%", "mean": change, "low": low, "high": high })
+    });
     json!({
         "shooter": before.profile.shooter().name,
         "before": session(before),
         "after": session(after),
+        "change_of_makes": change_of_makes,
         "changes": listed.collect::<Value>(),
         "change_of_P_by_scatter": object(interval_json(&causes.by_scatter.scaled(100.0))),
         "change_of_P_by_aim": object(interval_json(&causes.by_aim.scaled(100.0))),

@@ -1,6 +1,8 @@
 //! What changed between two sessions of a shooter, as text.
 
-use crate::fitting::{Interval, ProbabilityChange, SessionComparison, TWO_SIDED_95};
+use crate::fitting::{
+    Interval, ProbabilityChange, SessionComparison, TWO_SIDED_95, change_of_share,
+};
 use crate::math::normal_distribution::quantile;
 
 /// What changed in one quantity.
@@ -102,6 +104,11 @@ pub struct SessionSummary<'a> {
     pub makes: (usize, usize),
 }
 
+/// In points, without a decimal. 0 is added: no negative zero.
+fn in_points(change: f64) -> f64 {
+    libm::round(100.0 * change) + 0.0
+}
+
 /// A change of P: `+3.1 points (95 %: -1.2 to +7.4)`.
 fn points(change: &Interval) -> String {
     // Rounded first, and 0 added: no negative zero.
@@ -117,11 +124,11 @@ pub fn session_changes_text(
     changes: &[SessionChange],
     causes: &ProbabilityChange,
 ) -> String {
-    let counted = sessions.each_ref().map(|session| match session.makes {
-        (_, 0) => None,
-        (made, of) => Some(100.0 * made as f64 / of as f64),
-    });
-    let [before, after] = sessions.map(|session| {
+    let makes = sessions.each_ref().map(|session| session.makes);
+    let chances = changes.iter().find(|change| change.name == "P");
+    let chances = chances.map(|p| [p.comparison.before, p.comparison.after]);
+    let [before, after] = [0, 1].map(|i| {
+        let session = &sessions[i];
         let makes = match session.makes {
             (_, 0) => String::new(),
             (made, of) => {
@@ -129,7 +136,13 @@ pub fn session_changes_text(
                 format!(", {made} of {of} made: {percent:.0} %")
             }
         };
-        format!("{} ({} shots{makes})", session.name, session.shots)
+        let chance = chances.map_or_else(String::new, |chances| {
+            let Interval {
+                mean, low, high, ..
+            } = chances[i].scaled(100.0);
+            format!("; the chance is {mean:.0} %, 95 %: {low:.0} to {high:.0}")
+        });
+        format!("{} ({} shots{makes}{chance})", session.name, session.shots)
     });
     let mut text = verdict(changes);
     text += &format!(
@@ -137,9 +150,14 @@ pub fn session_changes_text(
         points(&causes.by_scatter),
         points(&causes.by_aim)
     );
-    if let [Some(before), Some(after)] = counted {
+    if let [first @ (made, 1..), second @ (made_then, 1..)] = makes {
+        let percent = |made: usize, of: usize| 100.0 * made as f64 / of as f64;
+        let change = change_of_share(first, second);
+        let [by, low, high] = [change.share, change.low, change.high].map(in_points);
         text += &format!(
-            "The chance is that of the releases as measured; the makes themselves went from {before:.0} to {after:.0} %.\n"
+            "The chance is that of the releases as measured; the makes themselves went from {:.0} to {:.0} %, {by:+.0} points (95 %: {low:+.0} to {high:+.0}).\n",
+            percent(made, first.1),
+            percent(made_then, second.1)
         );
     }
     text += &format!(

@@ -11,6 +11,7 @@ mod unmeasured_parameters;
 
 use crate::cli::failure::{Failure, code};
 use crate::cli::run_folder;
+use remarks::{print_sessions, print_sides};
 use std::path::{Path, PathBuf};
 
 pub(crate) use failure::failure;
@@ -30,6 +31,11 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     });
     for shots in &file.shooters {
         report_rejected(&file, shots, file.shooters.len() == 1);
+    }
+    if !quiet {
+        // Before the fit: a wrong side makes it worthless.
+        print_sides(&file.shooters);
+        print_sessions(&file.shooters);
     }
     let is_complete = file.shooters.iter().all(|shots| shots.rejected.is_empty());
     let code = if is_complete {

@@ -3,7 +3,7 @@
 use super::failure::failure;
 use super::files::write;
 use super::options::FitOptions;
-use super::remarks::{print_merged_heights, print_sessions, print_sides, print_unused};
+use super::remarks::{print_merged_heights, print_unused};
 use super::shooters_table::{TABLE_FILE, renew_table};
 use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, estimate, with_free};
 use crate::cli::failure::Failure;
@@ -90,8 +90,6 @@ fn answer(
             print_remark(&format!("warning: {words}"));
         }
         print_merged_heights(shots, units);
-        print_sides(std::slice::from_ref(shots));
-        print_sessions(std::slice::from_ref(shots));
         if fit.places.len() > 1 {
             print_remark(
                 "profile.toml is that of place 1; each other place has its own, profile_place_2.toml and so on",

@@ -2,7 +2,7 @@
 
 use super::files::write;
 use super::options::FitOptions;
-use super::remarks::{print_sessions, print_sides, print_unused};
+use super::remarks::print_unused;
 use super::shooters_table::{Record, TABLE_FILE, records, table_header, write_table};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
@@ -117,8 +117,6 @@ pub(super) fn fit(
         print_remark(warning);
     }
     if !quiet {
-        print_sides(&file.shooters);
-        print_sessions(&file.shooters);
         print_unused(file);
         print_remark(&format!(
             "written: {}, and a folder for each shooter; next: bankshot advise {}",
