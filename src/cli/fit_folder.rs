@@ -11,8 +11,8 @@ use crate::fitting::{
 };
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
-use crate::shooter::{Location, Nominal, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
+use crate::shooter::{Location, Nominal, Profile, ProfileError, ShotKind};
+use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -182,7 +182,10 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     let (name, typical) = (&written.shooter().name, posterior.typical());
     let profiles = places
         .iter()
-        .map(|place| fitted_profile(name, written.physics(), &typical, place))
+        .map(|place| {
+            let fitted = fitted_profile(name, written.physics(), &typical, place)?;
+            with_search_of(&fitted, &written)
+        })
         .collect::<Result<_, _>>()?;
     let name_of = |place: usize| json["places"][place]["name"].as_str().unwrap_or_default();
     let names = 0..places.len();
@@ -212,6 +215,26 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
             .collect(),
     })
 }
+
+/// A profile with what a user may have changed of the search in the file of the fit.
+fn with_search_of(fitted: &Profile, written: &Profile) -> Result<Profile, ProfileError> {
+    let own = written.settings();
+    let most = own.shooter.max_backspin_rad_s;
+    let fitted_most = fitted.shooter().max_backspin_rad_s;
+    let is_changed = libm::fabs(most - fitted_most) > ROUNDING_OF_BACKSPIN_RAD_S;
+    fitted.with(|settings| {
+        settings.search = own.search;
+        settings.nominal = own.nominal;
+        settings.grid = own.grid;
+        if is_changed {
+            settings.shooter.max_backspin_rad_s = most;
+        }
+    })
+}
+
+/// How far a spin in the file of a fit may be from that of the fit, rad/s: it has three decimals of
+/// rev/s.
+const ROUNDING_OF_BACKSPIN_RAD_S: f64 = 0.001 * REV_RAD;
 
 /// Made and all shots with a result at each place of `fit.json`. Before a place had its own there
 /// was the count of all, which is that of an only place.
