@@ -1,24 +1,35 @@
 //! P along each variable of a nominal shot, the others fixed.
 
 use crate::math::evenly_spaced::Linspace;
-use crate::math::sobol::Scramble;
-use crate::probability::{NominalProbabilities, Sampler};
+use crate::probability::{NominalProbabilities, Sampler, Silent, TABLE_RMS_ERROR};
 use crate::search_space::TablePlan;
 use crate::shooter::{Nominal, NominalVariable, Profile};
 use serde::Serialize;
 
 /// Values of a curve that is sampled.
-const SAMPLED_VALUES: usize = 9;
-/// Sobol points of each of them.
-const SAMPLES: u32 = 16384;
+const SAMPLED_VALUES: usize = 13;
+/// Shots of each of them.
+const SAMPLES: u64 = 16384;
+
+/// P at one value of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CurvePoint {
+    /// The value (SI units).
+    pub value: f64,
+    /// P.
+    pub probability: f64,
+    /// Its numerical standard error. The values share their samples, so differences along a curve
+    /// are more exact.
+    pub standard_error: f64,
+}
 
 /// P along one variable of a nominal shot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbabilityCurve {
     /// The variable.
     pub variable: NominalVariable,
-    /// Its values (SI units) with P.
-    pub points: Vec<(f64, f64)>,
+    /// P at its values, in their order.
+    pub points: Vec<CurvePoint>,
 }
 
 /// The lines of a window's table through the nominal shot nearest to the given one.
@@ -39,8 +50,12 @@ pub(crate) fn from_table(table: &NominalProbabilities, nominal: &Nominal) -> Vec
                 .map(|i| {
                     let mut at = index;
                     at[axis] = i;
-                    let (p, nominal) = table.at(at);
-                    (nominal.get(variable), p)
+                    let (probability, nominal) = table.at(at);
+                    CurvePoint {
+                        value: nominal.get(variable),
+                        probability,
+                        standard_error: TABLE_RMS_ERROR,
+                    }
                 })
                 .collect(),
         })
@@ -51,7 +66,6 @@ pub(crate) fn from_table(table: &NominalProbabilities, nominal: &Nominal) -> Vec
 pub(crate) fn from_samples(
     profile: &Profile,
     sampler: &Sampler<'_>,
-    scramble: &Scramble,
     window: &TablePlan,
     nominal: &Nominal,
 ) -> Vec<ProbabilityCurve> {
@@ -68,10 +82,15 @@ pub(crate) fn from_samples(
         .filter(|(_, range)| range.low < range.high)
         .map(|(variable, Linspace { low, high, .. })| {
             let values = Linspace::new(low, high, SAMPLED_VALUES).values();
+            let seed = profile.search().seed;
             let points = values.map(|value| {
                 let shot = nominal.with(variable, value);
-                let made = sampler.count(&shot, scramble, (0, SAMPLES)).made();
-                (value, made as f64 / f64::from(SAMPLES))
+                let estimate = sampler.estimate_within(&shot, 0.0, SAMPLES, seed, &Silent);
+                CurvePoint {
+                    value,
+                    probability: estimate.probability,
+                    standard_error: estimate.standard_error,
+                }
             });
             ProbabilityCurve {
                 variable,

@@ -420,7 +420,7 @@ impl BestShotSearch<'_> {
         };
         let nominal = search.top_of_parabolas(kind, optimum, reach, made);
         let curves = if self.topics.curves {
-            probability_curves::from_samples(self.profile, sampler, scramble, &plan, &nominal)
+            probability_curves::from_samples(self.profile, sampler, &plan, &nominal)
         } else {
             Vec::new()
         };

@@ -33,7 +33,8 @@ pub(crate) struct MeasuredShotsOptions {
     pub(crate) tracker: Option<String>,
     /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
     /// 'made=Result'. A minus before COLUMN turns its sign round and a number after UNIT is added:
-    /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated.
+    /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such maps,
+    /// one a line.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
     /// Only the shots of this shooter, of a file with several.
@@ -178,6 +179,27 @@ impl MeasuredFile {
 }
 
 impl MeasuredShotsOptions {
+    /// The maps of columns, with those in files. A line of a file may be what a message proposes:
+    /// with `--map`, quotes and a backslash at its end.
+    fn maps(&self) -> Result<Vec<String>, Failure> {
+        let mut maps = Vec::new();
+        for map in &self.map {
+            let Some(file) = map.strip_prefix('@') else {
+                maps.push(map.clone());
+                continue;
+            };
+            for line in read_text(Path::new(file))?.lines() {
+                let line = line.trim().trim_end_matches('\\').trim_end();
+                let line = line.strip_prefix("--map").map_or(line, str::trim_start);
+                let quoted = line.strip_prefix('\'').and_then(|l| l.strip_suffix('\''));
+                if !line.is_empty() && !line.starts_with('#') {
+                    maps.push(quoted.unwrap_or(line).to_owned());
+                }
+            }
+        }
+        Ok(maps)
+    }
+
     pub(crate) fn unit_system(&self) -> UnitSystem {
         self.units_or(UnitSystem::Imperial)
     }
@@ -226,8 +248,8 @@ impl MeasuredShotsOptions {
             ));
         }
         let mut table = Table::read(path).map_err(refuse)?;
-        let columns =
-            Columns::new(&table.header, &self.map).map_err(|errors| refuse(errors.join("\n")))?;
+        let columns = Columns::new(&table.header, &self.maps()?)
+            .map_err(|errors| refuse(errors.join("\n")))?;
         keep_sessions(&mut table, &columns, sessions).map_err(refuse)?;
         let source = Source::of(&columns).map_err(refuse)?;
         let physics_name = self

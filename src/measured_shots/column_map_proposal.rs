@@ -153,7 +153,7 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
     }
     // One a line, so that they can be copied whole.
     text += &format!(
-        "\nadd to the command, where it fits:\n  {}",
+        "\nadd to each command on this file, where it fits (or keep these lines in a file, and add --map @FILE):\n  {}",
         maps.join(" \\\n  ")
     );
     for quantity in has_no_unit {

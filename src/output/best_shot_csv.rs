@@ -8,7 +8,14 @@ use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;
 
 /// The header of [`curves_csv`].
-pub const CURVES_HEADER: [&str; 5] = ["kind", "variable", "unit", "value", "probability"];
+pub const CURVES_HEADER: [&str; 6] = [
+    "kind",
+    "variable",
+    "unit",
+    "value",
+    "probability",
+    "standard_error",
+];
 /// The header of [`sensitivity_csv`].
 pub const SENSITIVITY_HEADER: [&str; 7] = [
     "kind",
@@ -82,9 +89,10 @@ pub fn curves_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
         let Ok(shot) = shot else { continue };
         for curve in &shot.curves {
             let (unit, scale) = unit_of(curve.variable, units);
-            for (value, p) in &curve.points {
-                let (value, p) = ((value / scale).to_string(), p.to_string());
-                csv.row([kind.name(), curve.variable.name(), &unit, &value, &p]);
+            for point in &curve.points {
+                let words = [kind.name(), curve.variable.name(), &unit].map(str::to_owned);
+                let numbers = [point.value / scale, point.probability, point.standard_error];
+                csv.row(words.into_iter().chain(numbers.map(|x| x.to_string())));
             }
         }
     }

@@ -33,7 +33,7 @@ impl<'a> Curves<'a> {
     fn new(rows: &'a [Vec<String>]) -> Self {
         let mut curves = Self::default();
         for row in rows {
-            let [kind, variable, unit, value, probability] = &row[..] else {
+            let [kind, variable, unit, value, probability, ..] = &row[..] else {
                 continue;
             };
             let variable_with_unit = (variable.as_str(), unit.as_str());
@@ -89,7 +89,7 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// Draws the rows of `curves.csv` (kind, variable, unit, value, probability; the header first);
+/// Draws the rows of `curves.csv` (kind, variable, unit, value, probability and more; the header first);
 /// `None` if there are no curves.
 #[must_use]
 pub fn draw(profile: &Profile, rows: &[Vec<String>]) -> Option<Plot> {

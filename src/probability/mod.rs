@@ -18,7 +18,9 @@ mod progress;
 mod shared_sample;
 mod sobol_integration;
 
-pub use nominal_probability_table::{MAX_BATCH_BYTES, NominalProbabilities, NominalTable};
+pub use nominal_probability_table::{
+    MAX_BATCH_BYTES, NominalProbabilities, NominalTable, TABLE_RMS_ERROR,
+};
 pub use probability_and_error::{Estimate, MadeShares};
 pub use progress::{Progress, Silent};
 pub(crate) use shared_sample::{MadeReleases, SharedSample};

@@ -35,6 +35,9 @@ const BATCHES_PER_THREAD: usize = 8;
 /// it is 8e-5, within the grid less. In a window that is a third of the points.
 const REACH_SIGMAS: f64 = 4.5;
 
+/// The root mean square error of P in the table of a window (`campaign_table`).
+pub const TABLE_RMS_ERROR: f64 = 0.001;
+
 /// The made shots of a plan, summed over speed and backspin with the weights of every nominal speed
 /// and backspin.
 #[derive(Clone, Debug)]

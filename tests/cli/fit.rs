@@ -104,6 +104,14 @@ fn contract_columns_of_other_names_and_units_give_the_same_profile() {
         .exits(0)
         .json();
     assert_eq!(own["parameters"], other["parameters"]);
+    // The maps in a file, as they are typed and as a message proposes them.
+    let lines = "# the lab's names\nspeed_ft_s=Release Speed\n  --map 'aim_deg=Direction' \\\n\n";
+    let file = format!("@{}", write_file(&folder, "maps.txt", lines).display());
+    let of_file = ["--json", "--map", &file];
+    let of_file = fit(path.to_str().unwrap(), &folder.path().join("c"), &of_file)
+        .exits(0)
+        .json();
+    assert_eq!(own["parameters"], of_file["parameters"]);
 }
 
 #[test]

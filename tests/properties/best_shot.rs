@@ -106,14 +106,14 @@ fn prop_curves_pass_through_the_best_shot() {
             let top = curve
                 .points
                 .iter()
-                .fold(0.0, |top: f64, &(_, p)| top.max(p));
+                .fold(0.0, |top: f64, point| top.max(point.probability));
             // The line passes through the table's nominal shot nearest to the best one, not through
             // the table's best.
             assert!(
                 (top - shot.table_probability.unwrap()).abs() < 0.005,
                 "{curve:?}"
             );
-            assert!(curve.points.is_sorted_by(|a, b| a.0 < b.0));
+            assert!(curve.points.is_sorted_by(|a, b| a.value < b.value));
         }
     }
 }
