@@ -70,17 +70,29 @@ pub(crate) fn from_samples(
     nominal: &Nominal,
 ) -> Vec<ProbabilityCurve> {
     let max_side_spin = profile.shooter().max_side_spin_rad_s;
-    let range = |variable| match variable {
-        NominalVariable::SideSpin => Linspace::new(-max_side_spin, max_side_spin, SAMPLED_VALUES),
-        _ => window.nominal.axis(variable),
+    let search = profile.search();
+    // Twice as far as the window, within what is searched.
+    let range = |variable| {
+        let (least, most) = match variable {
+            NominalVariable::Speed => (0.1, window.bracket.speed_max_m_s),
+            NominalVariable::Pitch => (search.pitch_min_rad, search.pitch_max_rad),
+            NominalVariable::Polar => window.bracket.polar_rad,
+            NominalVariable::Backspin => profile.backspin_range_rad_s(),
+            NominalVariable::SideSpin | NominalVariable::RifleSpin => {
+                return (-max_side_spin, max_side_spin);
+            }
+        };
+        let Linspace { low, high, .. } = window.nominal.axis(variable);
+        let more = 0.5 * (high - low);
+        ((low - more).max(least), (high + more).min(most))
     };
     profile
         .search()
         .choice
         .iter()
         .map(|variable| (variable, range(variable)))
-        .filter(|(_, range)| range.low < range.high)
-        .map(|(variable, Linspace { low, high, .. })| {
+        .filter(|(_, (low, high))| low < high)
+        .map(|(variable, (low, high))| {
             let values = Linspace::new(low, high, SAMPLED_VALUES).values();
             let seed = profile.search().seed;
             let points = values.map(|value| {

@@ -61,6 +61,21 @@ impl PhysicsComparison {
         changes
     }
 
+    /// The greatest numerical standard error of a P of the rows.
+    #[must_use]
+    pub fn greatest_standard_error(&self) -> f64 {
+        let errors = self.rows.iter().flat_map(|row| {
+            let of_best =
+                |shot: &Result<BestShot, NoShot>| Some(shot.as_ref().ok()?.estimate.standard_error);
+            let same = row
+                .same_shot
+                .as_ref()
+                .map(|estimate| estimate.standard_error);
+            [of_best(&row.direct), of_best(&row.bank), same]
+        });
+        errors.flatten().fold(0.0, f64::max)
+    }
+
     /// One sentence or two: how far P of the best direct shot rests on what nobody measured in this
     /// gym, and how far that of [`Self::same_shot`] does.
     #[must_use]

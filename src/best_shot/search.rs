@@ -419,6 +419,7 @@ impl BestShotSearch<'_> {
             SAMPLED_PARABOLA_REACH * 0.5 * (axis.high - axis.low)
         };
         let nominal = search.top_of_parabolas(kind, optimum, reach, made);
+        let plan = self.plan.window(self.profile, &nominal)?;
         let curves = if self.topics.curves {
             probability_curves::from_samples(self.profile, sampler, &plan, &nominal)
         } else {

@@ -3,7 +3,7 @@
 
 use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
 use super::posterior::{Draw, SpinSource, Tails};
-use super::session_trends::trends;
+use super::session_trends::SessionTrend;
 use crate::math::normal_distribution::cdf;
 use crate::model::Physics;
 use nalgebra::{SMatrix, SVector};
@@ -385,10 +385,11 @@ pub fn tails_of(shots: &[MeasuredRelease], places: usize) -> Tails {
     }
 }
 
-/// What should be said of a fit; `sessions` has the name of each shot's session, or nothing.
+/// What should be said of a fit with these tests of its shots.
 #[must_use]
 pub fn warnings(
-    (shots, sessions): (&[MeasuredRelease], &[String]),
+    shots: &[MeasuredRelease],
+    (shape, trends): (&ShapeTest, &[SessionTrend]),
     typical: &Draw,
     prior_weights: &Values,
     values: usize,
@@ -396,7 +397,6 @@ pub fn warnings(
     /// From this share of the variance on, a user is told.
     const NOISY: f64 = 0.4;
     let mut warnings = Vec::new();
-    let places = typical.means.len();
     for (i, name) in VALUE_NAMES.iter().enumerate().take(values) {
         let noise = shots.iter().map(|shot| shot.noise[(i, i)]).sum::<f64>() / shots.len() as f64;
         let own = typical.sds[i] * typical.sds[i];
@@ -408,13 +408,12 @@ pub fn warnings(
             warnings.push(FitWarning::MostlyPopulation(name, prior_weights[i]));
         }
     }
-    let shape = shape_test(shots, places);
     if typical.tail_weight > 0.0 {
         warnings.push(FitWarning::HeavyTails(typical.tail_weight));
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
         warnings.push(FitWarning::NotNormal(shape.skewness_p, shape.kurtosis_p));
     }
-    for trend in trends(shots, sessions, &typical.means, values) {
+    for trend in trends {
         if let Some(p) = trend.sessions_p.filter(|p| *p < WARNING_LEVEL) {
             warnings.push(FitWarning::SessionsDiffer(trend.name, p));
         }

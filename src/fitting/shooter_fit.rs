@@ -3,10 +3,13 @@
 use super::advice::{USUAL_SHOTS, usual_probabilities};
 use super::draw_probabilities::DrawProbabilities;
 use super::expected_makes::{ExpectedMakes, expected_makes};
-use super::fit_checks::{FitWarning, FlightResiduals, TestError, check_releases, warnings};
+use super::fit_checks::{
+    FitWarning, FlightResiduals, ShapeTest, TestError, check_releases, shape_test, warnings,
+};
 use super::fitted_profile::fitted_profile;
 use super::measured_release::{MeasuredRelease, Place};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
+use super::session_trends::{SessionTrend, trends};
 use crate::model::Physics;
 use crate::shooter::{Profile, ProfileError};
 
@@ -34,6 +37,10 @@ pub struct ShooterFit {
     pub makes: ExpectedMakes,
     /// How well tracked flights fit; `None` without any.
     pub residuals: Option<FlightResiduals>,
+    /// Whether the releases are normal.
+    pub shape: ShapeTest,
+    /// How each measured value runs over the sessions.
+    pub trends: Vec<SessionTrend>,
     /// What should be said.
     pub warnings: Vec<FitWarning>,
 }
@@ -102,8 +109,11 @@ pub fn fit_shooter(
     let is_measured = options.spin == SpinSource::Measured;
     let makes = expected_makes(&profiles, test.shots, &typical, is_measured);
     let values = if is_measured { 4 } else { 3 };
+    let shape = shape_test(test.shots, test.places.len());
+    let trends = trends(test.shots, test.sessions, &typical.means, values);
     let mut warnings = warnings(
-        (test.shots, test.sessions),
+        test.shots,
+        (&shape, &trends),
         &typical,
         &posterior.prior_weights,
         values,
@@ -129,6 +139,8 @@ pub fn fit_shooter(
         probabilities,
         makes,
         residuals,
+        shape,
+        trends,
         warnings,
     })
 }

@@ -184,6 +184,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
                 ])
             }),
         ),
+        named("tests", tests_json(fit)),
         named("shots", posterior.shots.into()),
         named("rejected", rejected.collect()),
         named("measured_less_from_landings", differences.collect()),
@@ -222,4 +223,28 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     ];
     record.extend(provenance(fit.profiles[0].hash()));
     object(record)
+}
+
+/// The tests of the shots, whether they warn or not.
+fn tests_json(fit: &ShooterFit) -> Value {
+    let trends = fit.trends.iter().map(|trend| {
+        object(vec![
+            named("name", trend.name.into()),
+            named("drift_p", number(trend.drift_p)),
+            named("serial_correlation_p", number(trend.serial_p)),
+            named(
+                "equal_sessions_p",
+                trend.sessions_p.map_or(Value::Null, number),
+            ),
+        ])
+    });
+    object(vec![
+        named("mardia_skewness_p", number(fit.shape.skewness_p)),
+        named("mardia_kurtosis_p", number(fit.shape.kurtosis_p)),
+        named(
+            "kurtosis_over_that_of_normal_values",
+            number(fit.shape.kurtosis_ratio),
+        ),
+        named("order", trends.collect()),
+    ])
 }

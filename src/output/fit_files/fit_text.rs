@@ -140,9 +140,34 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         100.0 * posterior.prior_weights[1],
         100.0 * posterior.prior_weights[2]
     );
+    text += &tests_text(fit);
     text += "The intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.\n";
     for warning in &fit.warnings {
         text += &format!("warning: {warning}\n");
     }
     text
+}
+
+/// The tests of the shots in one sentence, whether they warn or not.
+fn tests_text(fit: &ShooterFit) -> String {
+    let all = fit.trends.iter().flat_map(|trend| {
+        [
+            Some(("drift", trend.drift_p)),
+            Some(("a shot like the one before", trend.serial_p)),
+            trend.sessions_p.map(|p| ("unequal sessions", p)),
+        ]
+        .map(|test| test.map(|(what, p)| (what, trend.name, p)))
+    });
+    let all: Vec<_> = all.flatten().collect();
+    let least = all.iter().min_by(|a, b| a.2.total_cmp(&b.2));
+    let order = least.map_or_else(String::new, |(what, name, p)| {
+        format!(
+            "; least p of {} tests of the order of the shots {p:.2} ({what} of {name})",
+            all.len()
+        )
+    });
+    format!(
+        "Tests: normal releases (Mardia) skewness p = {:.2}, kurtosis p = {:.2}{order}.\n",
+        fit.shape.skewness_p, fit.shape.kurtosis_p
+    )
 }
