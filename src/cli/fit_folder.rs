@@ -172,6 +172,7 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     let posterior = read_draws(file, spin, shots).map_err(|error| damaged(&draws_path, error))?;
     let written = load_profile(&folder.join("profile.toml"), &PhysicsArg::default(), true)?;
     let places = places(&json).map_err(|error| damaged(&json_path, error))?;
+    check_most_backspin(folder, &written, &posterior)?;
     if places.len() != posterior.draws[0].means.len() {
         return Err(damaged(
             &json_path,
@@ -230,6 +231,31 @@ fn with_search_of(fitted: &Profile, written: &Profile) -> Result<Profile, Profil
             settings.shooter.max_backspin_rad_s = most;
         }
     })
+}
+
+/// The usual shot of a fit cannot have more backspin than the shooter can give.
+fn check_most_backspin(
+    folder: &Path,
+    written: &Profile,
+    posterior: &Posterior,
+) -> Result<(), Failure> {
+    let most = written.shooter().max_backspin_rad_s;
+    let means = posterior.typical().means;
+    let usual = means.iter().map(|mean| mean[3]).fold(0.0, f64::max);
+    if most >= usual - ROUNDING_OF_BACKSPIN_RAD_S {
+        return Ok(());
+    }
+    let spin = most / REV_RAD;
+    Err(Failure::usage(format!(
+        "{}: shooter.max_backspin is {spin:.2} rev/s, but the shots were fitted with a backspin of {:.2} rev/s ({}); fit them again with --backspin '{spin:.2} rev/s'",
+        folder.join("profile.toml").display(),
+        usual / REV_RAD,
+        match posterior.spin {
+            SpinSource::Measured => "measured",
+            SpinSource::Given => "given",
+            SpinSource::Assumed => "assumed",
+        }
+    )))
 }
 
 /// How far a spin in the file of a fit may be from that of the fit, rad/s: it has three decimals of

@@ -52,9 +52,13 @@ pub(crate) struct PlaceOptions {
 }
 
 impl PlaceOptions {
+    pub(crate) fn is_given(&self) -> bool {
+        self.distance.is_some() || self.angle.is_some()
+    }
+
     /// The profile at this place.
     pub(crate) fn moved(&self, profile: Profile) -> Result<Profile, Failure> {
-        if self.distance.is_none() && self.angle.is_none() {
+        if !self.is_given() {
             return Ok(profile);
         }
         let value = |flag: &str, text: &Option<String>, dimension, own: f64| match text {
@@ -86,7 +90,7 @@ impl PlaceOptions {
     /// The `[location]` table of the place, if a flag gives one; `own` is that of the profile. What
     /// a flag gives stands as it was written, so that it is read as the same number.
     pub(crate) fn table(&self, own: &Location) -> Option<String> {
-        if self.distance.is_none() && self.angle.is_none() {
+        if !self.is_given() {
             return None;
         }
         let value = |flag: &Option<String>, own: String| {

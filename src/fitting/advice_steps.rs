@@ -13,6 +13,7 @@ use super::interval::Interval;
 use super::measured_release::{VALUE_NAMES, Values};
 use super::posterior::Draw;
 use crate::shooter::Profile;
+use crate::units::{DEGREE_RAD, FOOT_M};
 
 /// Shots of a sample that two steps are compared with, and of one that a speed is chosen with.
 const STEP_SHOTS: usize = 32_768;
@@ -24,6 +25,9 @@ const SPEEDS_PER_SIGMA: i32 = 4;
 const ANGLES: usize = 8;
 /// How much P may be below the greatest for an angle nearer to the usual one.
 const TOLERANCE: f64 = 0.005;
+/// Nobody can throw harder or softer, or aim to a side, by less than this on purpose: m/s, rad.
+pub const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
+const SAME_AIM_RAD: f64 = 0.05 * DEGREE_RAD;
 /// The least gain in P that is worth a change.
 const WORTH_A_CHANGE: f64 = 0.005;
 
@@ -247,14 +251,19 @@ impl<'a> Shooting<'a> {
     ) -> (AdviceSteps, Change) {
         let none = Change::default();
         let (own_speed, (speed, angle)) = self.speed_and_angle(usual, best);
-        let mut change = none.with(0, own_speed);
-        let mut order = vec![(Cause::SPEED, change)];
+        let (mut change, mut order) = (none, Vec::new());
+        if (own_speed - usual[0]).abs() >= SAME_SPEED_M_S {
+            change = none.with(0, own_speed);
+            order.push((Cause::SPEED, change));
+        }
         if angle != usual[1] {
             change = change.with(0, speed).with(1, angle);
             order.push((Cause::PITCH, change));
         }
-        change = change.with(2, best[2]);
-        order.push((Cause::AIM, change));
+        if (best[2] - usual[2]).abs() >= SAME_AIM_RAD {
+            change = change.with(2, best[2]);
+            order.push((Cause::AIM, change));
+        }
         if changes_spin {
             order.push((Cause::BACKSPIN, change.with(3, best[3])));
         }

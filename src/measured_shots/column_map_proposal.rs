@@ -72,9 +72,10 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
 ];
 
 /// Names that are too short to be looked for within others.
-const SHORT_NAMES: [(&str, &str); 8] = [
+const SHORT_NAMES: [(&str, &str); 9] = [
     ("release_height", "height"),
     ("pitch", "angle"),
+    ("made", "in"),
     ("left_right", "lr"),
     ("left_right", "side"),
     ("left_right", "left"),

@@ -68,11 +68,11 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         match others {
             0 => format!(
                 "Your surest place is {named}: {} of 100 go in.",
-                shown(best.0)
+                of_hundred(best.0)
             ),
             _ => format!(
                 "Your surest place is {named}: {} of 100 go in; {others} more {} as sure.",
-                shown(best.0),
+                of_hundred(best.0),
                 if others == 1 { "is" } else { "are" }
             ),
         },
@@ -80,7 +80,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         format!(
             "Your hardest place is {}: {} of 100 go in.",
             worst.1.in_words_with_mirror(&alike(worst.0), units),
-            shown(worst.0)
+            of_hundred(worst.0)
         ),
     ];
     let drawing = |words: &[String]| {
@@ -129,6 +129,15 @@ fn shown(p: f64) -> String {
     format!("{:.0}", 100.0 * p)
 }
 
+/// A chance in a sentence: nobody makes all shots.
+fn of_hundred(p: f64) -> String {
+    if p >= 0.995 {
+        "more than 99".to_owned()
+    } else {
+        shown(p)
+    }
+}
+
 /// The colour of a probability, so pale that black numbers stand out on it.
 fn pale(p: f64) -> Rgb {
     sequential(p).map(|part| 140 + (u16::from(part) * 115 / 255) as u8)
@@ -170,7 +179,7 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}{}: {} of 100 go in{direct}. Aim at {}.",
         if most.name.is_some() { "at " } else { "" },
         place,
-        in_hundred(most.bank).unwrap_or_default(),
+        most.bank.map_or_else(String::new, |p| of_hundred(p.value)),
         aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
     )
 }

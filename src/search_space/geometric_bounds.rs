@@ -26,13 +26,19 @@ const POLAR_STEP_RAD: f64 = 0.000_5;
 /// Default of the greatest speed, as a multiple of the least speed that reaches the hoop.
 const MAX_SPEED_FACTOR: f64 = 2.0;
 
+/// Standard deviations of the error in speed beyond a limit of the nominal speed.
+const SPEED_DEVIATIONS: f64 = 5.0;
+
 /// The speeds (for each direction) and the polar angles of the releases that can go in.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bracket {
     /// Least and greatest polar angle, rad.
     pub polar_rad: (f64, f64),
-    /// Greatest speed, m/s.
+    /// Greatest nominal speed, m/s.
     pub speed_max_m_s: f64,
+    /// Greatest speed of a release, m/s. Where the profile limits the nominal speed, errors lead
+    /// beyond it.
+    pub release_speed_max_m_s: f64,
     location: Location,
     start_height_m: f64,
     reach_m: f64,
@@ -70,12 +76,13 @@ impl Bracket {
             BoardEdge::Rounded { .. } => physics.ball_radius_m,
         };
         let contact_m = physics.ball_radius_m + physics.ring_tube_radius_m();
+        let limit = profile.search().speed_max_m_s;
+        let with_errors =
+            |limit: f64| limit + SPEED_DEVIATIONS * profile.shooter().dispersion.speed_m_s(limit);
         let mut bracket = Self {
             polar_rad: (0.0, 0.0),
-            speed_max_m_s: profile
-                .search()
-                .speed_max_m_s
-                .unwrap_or(MAX_SPEED_FACTOR * least),
+            speed_max_m_s: limit.unwrap_or(MAX_SPEED_FACTOR * least),
+            release_speed_max_m_s: limit.map_or(MAX_SPEED_FACTOR * least, with_errors),
             location,
             start_height_m,
             reach_m: physics.ring_radius_m + contact_m,
@@ -173,7 +180,7 @@ impl Bracket {
         let over_board = board.map_or(0.0, |(first, last)| {
             greatest([first, last], self.board_top_m)
         });
-        let most = over_ring.max(over_board).min(self.speed_max_m_s);
+        let most = over_ring.max(over_board).min(self.release_speed_max_m_s);
         (least < most).then_some((least, most))
     }
 

@@ -343,7 +343,7 @@ fn cell_axis((low, high): Range, limits: Range, count: usize, min_half_width: f6
 fn search_speeds(profile: &Profile, bracket: &Bracket) -> Result<(Linspace, Range), PlanError> {
     let in_reach = nominal_speeds(profile, bracket).ok_or(PlanError::OutOfReach)?;
     if profile.search().choice.includes(NominalVariable::Speed) {
-        return Ok((in_reach, (0.0, bracket.speed_max_m_s)));
+        return Ok((in_reach, (0.0, bracket.release_speed_max_m_s)));
     }
     let speed = profile.fixed_nominal().speed_m_s;
     let margin =
@@ -400,9 +400,11 @@ fn nominal_speeds(profile: &Profile, bracket: &Bracket) -> Option<Linspace> {
         let part = f64::from(i) / f64::from(PITCHES);
         let pitch = search.pitch_min_rad + part * (search.pitch_max_rad - search.pitch_min_rad);
         for polar in [polar_low, middle, polar_high] {
-            if let Some((least, most)) = bracket.speeds_m_s(pitch, polar) {
+            if let Some((least, most)) = bracket.speeds_m_s(pitch, polar)
+                && least < bracket.speed_max_m_s
+            {
                 low = low.min(least);
-                high = high.max(most);
+                high = high.max(most.min(bracket.speed_max_m_s));
             }
         }
     }

@@ -842,4 +842,21 @@ fn contract_warnings_of_a_fit_follow_its_profile() {
     Answer::of(&mut command)
         .exits(0)
         .says("its fit warned: 59 shots went in where");
+    // The usual shot cannot have more backspin than the player can give.
+    let profile = fs::read_to_string(out.join("profile.toml")).unwrap();
+    let lowered: String = profile
+        .lines()
+        .map(|line| match line.split_once(" = ") {
+            Some(("max_backspin" | "backspin", _)) if !line.contains("_sd") => {
+                line.split(" = ").next().unwrap().to_owned() + " = \"1.5 rev/s\"\n"
+            }
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    fs::write(out.join("profile.toml"), lowered).unwrap();
+    let mut advise = bankshot();
+    Answer::of(advise.arg("advise").arg(&out).arg("--quiet"))
+        .exits(2)
+        .says("max_backspin is 1.50 rev/s")
+        .says("fit them again with --backspin '1.50 rev/s'");
 }

@@ -28,7 +28,8 @@ pub struct ShotTableRequest {
     /// Where a check finds more, nodes are added halfway, at most [`MOST_HALVINGS`] times (with one
     /// angle three times more where that did not help) and up to [`MOST_NODES`] nodes; 1 adds none.
     pub max_loss: f64,
-    /// Nothing is checked between the nodes, and none are added.
+    /// Nothing is checked between the nodes, and none are added but for the distances at which the
+    /// better kind changes.
     pub is_draft: bool,
 }
 
@@ -67,7 +68,7 @@ impl ShotsOfPlaces {
     ) -> Result<(), ShotTableError> {
         let is_new = |place: &&Location| !self.0.contains_key(&Self::key(place));
         let new: Vec<&Location> = places.filter(is_new).collect();
-        progress.begin(stage, new.len() as u64);
+        progress.begin(&format!("{}: {stage}", kind.name()), new.len() as u64);
         for place in new {
             let shot = best(&profile.moved_to(*place)?, kind)?;
             self.0.insert(Self::key(place), shot);
@@ -153,6 +154,10 @@ impl ShotTable {
                 merged(&profile, tables, request.max_loss)?
             }
         };
+        if request.is_draft {
+            // Those beside the change of the better kind alone would seem to be of all.
+            table.checks.clear();
+        }
         let added = |all: &[f64], asked: &[f64]| {
             let is_new = |value: &&f64| !asked.contains(value);
             all.iter().filter(is_new).copied().collect()
@@ -384,7 +389,7 @@ impl ChecksOfCells {
         let is_new = |cell: &&Cell| !self.0.contains_key(&cell.key());
         let new: Vec<&Cell> = cells.iter().filter(is_new).collect();
         let places: usize = new.iter().map(|cell| cell.checked_places().len()).sum();
-        progress.begin(stage, places as u64);
+        progress.begin(&format!("{}: {stage}", kind.name()), places as u64);
         for cell in new {
             let around: Vec<PlacedShot> = cell
                 .corners()

@@ -202,27 +202,16 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         shots_for_a_change(&rows)
     );
     if let Some((points, shots)) = needed {
-        text += &match shots {
-            MOST_SHOTS.. => {
-                format!(
-                    "\nMore than {MOST_SHOTS} shots make P known to {points} points (one standard deviation).\n"
-                )
-            }
-            _ => format!(
-                "\nAbout {shots} shots make P known to {points} points (one standard deviation).\n"
-            ),
+        let in_words = |shots: usize| match shots {
+            MOST_SHOTS.. => format!("More than {MOST_SHOTS}"),
+            shots => format!("About {}", two_digits(shots as f64)),
         };
-        // The same with the interval that `fit` prints.
-        text += &match shots_for(&rows, points / 100.0 / TWO_SIDED_95) {
-            MOST_SHOTS.. => {
-                format!(
-                    "More than {MOST_SHOTS} make its 95 % interval reach {points} points to each side.\n"
-                )
-            }
-            shots => format!(
-                "About {shots} make its 95 % interval reach {points} points to each side.\n"
-            ),
-        };
+        // First the interval that `fit` prints.
+        text += &format!(
+            "\n{} shots make the 95 % interval of P reach {points} points to each side; {} make its standard deviation {points} points.\n",
+            in_words(shots_for(&rows, points / 100.0 / TWO_SIDED_95)),
+            in_words(shots).to_lowercase()
+        );
     }
     let sd = |i: usize, size: f64| noise[(i, i)].max(0.0).sqrt() / size;
     let (long, metre) = units.length();

@@ -57,7 +57,7 @@ pub(crate) struct TableOptions {
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
     /// A first look in a fraction of the time: nothing is checked between the places, and none are
-    /// added.
+    /// added, but for the distances at which the better kind changes.
     #[arg(long, conflicts_with = "max_loss")]
     pub(crate) draft: bool,
     /// The form of the table [default: by the end of the output's name, else text].

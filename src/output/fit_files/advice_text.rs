@@ -5,12 +5,12 @@ use super::fit_text::percent;
 use super::parameters::value_units;
 use crate::best_shot::{BestShot, Limit};
 use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, SpinSource, TrainingGain, Values,
-    values_of, wilson_interval,
+    Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, SAME_SPEED_M_S, SpinSource,
+    TrainingGain, Values, values_of, wilson_interval,
 };
 use crate::output::json_object::{number, object};
 use crate::shooter::{Location, ShotKind};
-use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
+use crate::units::{DEGREE_RAD, UnitSystem};
 use serde_json::Value;
 
 /// Points of P with their interval: `2.1 points (95 %: 0.4 to 3.9)`.
@@ -20,9 +20,6 @@ fn points(interval: &Interval) -> String {
         [interval.mean, interval.low, interval.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
     format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
 }
-
-/// Nobody can throw harder or softer by less than this on purpose, m/s.
-const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 
 /// Words for the change of one value.
 struct ChangeWords {
@@ -68,10 +65,8 @@ impl ChangeWords {
         let mut text = self.of_value(step.cause, from[i], step.release[i]);
         if step.cause == Cause::PITCH {
             let speed = self.of_value(Cause::SPEED, from[0], step.release[0]);
-            text += &format!(
-                ", {}",
-                speed.trim_start_matches("throw ").replace("keep", "with")
-            );
+            let speed = speed.trim_start_matches("throw ");
+            text += &format!(", {}", speed.replace("keep the", "with the same"));
         }
         text
     }

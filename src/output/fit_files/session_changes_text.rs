@@ -197,7 +197,7 @@ fn verdict(changes: &[SessionChange]) -> String {
             }
             format!(
                 "These shots do not show that the chance of a shot changed. The best estimate is that it \
-                 {direction} by {points:.0} {unit} ({interval}), and it {direction} at all with {sure:.0} %.\n"
+                 {direction} by {points:.0} {unit} ({interval}); the chance that it {direction} at all is {sure:.0} %.\n"
             )
         };
     }

@@ -92,6 +92,12 @@ pub(super) fn print_unused(file: &MeasuredFile) {
             "columns that were not used: {}",
             file.unused.join(", ")
         ));
+        let mut shots = file.shooters.iter().flat_map(|shots| &shots.shots);
+        if shots.all(|shot| shot.made.is_none()) {
+            print_remark(
+                "no column says what went in, so the chances are not checked; if one does: --map 'made=COLUMN'",
+            );
+        }
     }
 }
 

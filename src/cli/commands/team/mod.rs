@@ -11,6 +11,7 @@ use crate::cli::config_files::{
 };
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
+use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
@@ -38,7 +39,7 @@ use court_results::{
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Without --sweep each player shoots from the location of their profile, and one table is printed.
+Without --sweep each player shoots from the location of their profile, or all from --distance and --angle, and one table is printed.
 
 With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.html is a page to look at, OUT/team.csv has \
 every place and player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
@@ -48,6 +49,7 @@ Examples:
   bankshot team ann.toml bo.toml cy.toml
   bankshot team results/season-fit
   bankshot team results/season-fit --place 2
+  bankshot team results/season-fit --distance '10 ft' --angle '45 deg'
   bankshot team ann.toml bo.toml cy.toml \\
     --sweep configs/half_court_3ft.toml --plan
   bankshot team ann.toml bo.toml cy.toml \\
@@ -67,6 +69,8 @@ pub(crate) struct TeamOptions {
     /// first.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "sweep")]
     pub(crate) place: Option<u32>,
+    #[command(flatten)]
+    pub(crate) from: PlaceOptions,
     /// With --sweep: say how long it takes, and stop.
     #[arg(long, requires = "sweep")]
     pub(crate) plan: bool,
@@ -75,6 +79,9 @@ pub(crate) struct TeamOptions {
 pub(crate) fn run(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
     match &options.sweep {
         None => from_their_places(options, quiet),
+        Some(_) if options.from.is_given() => Err(Failure::usage(
+            "--distance and --angle: one place for all players; with --sweep they shoot from its places",
+        )),
         Some(sweep) => over_the_court(options, sweep, quiet),
     }
 }
@@ -186,7 +193,8 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     let (mut any_either, mut any_draws) = (false, false);
     let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
     let mut verdicts: Vec<(Verdict, String)> = Vec::new();
-    for (path, profile) in &profiles {
+    for (path, profile) in profiles {
+        let profile = &options.from.moved(profile)?;
         let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
         let p: Vec<Option<Difference>> = shots
             .iter()
@@ -215,7 +223,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         let mut is_sure = true;
         if let [Ok(direct), Ok(bank)] = &shots[..]
             && preference != Some(Preference::Either)
-            && let Some(fit) = fit_folder::of_profile(path)?
+            && let Some(fit) = fit_folder::of_profile(&path)?
         {
             let nominals = [&direct.nominal, &bank.nominal];
             let bank_is_better = fit_folder::bank_is_better(&fit, profile, nominals)?;
