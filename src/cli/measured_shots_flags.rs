@@ -33,8 +33,8 @@ pub(crate) struct MeasuredShotsOptions {
     pub(crate) tracker: Option<String>,
     /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
     /// 'made=Result'. A minus before COLUMN turns its sign round and a number after UNIT is added:
-    /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such maps,
-    /// one a line.
+    /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such
+    /// maps, one a line.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
     /// Only the shots of this shooter, of a file with several.

@@ -89,8 +89,8 @@ impl<'a> Curves<'a> {
     }
 }
 
-/// Draws the rows of `curves.csv` (kind, variable, unit, value, probability and more; the header first);
-/// `None` if there are no curves.
+/// Draws the rows of `curves.csv` (kind, variable, unit, value, probability and more; the header
+/// first); `None` if there are no curves.
 #[must_use]
 pub fn draw(profile: &Profile, rows: &[Vec<String>]) -> Option<Plot> {
     let curves = Curves::new(rows.get(1..)?);

@@ -847,7 +847,9 @@ fn contract_warnings_of_a_fit_follow_its_profile() {
     let lowered: String = profile
         .lines()
         .map(|line| match line.split_once(" = ") {
-            Some(("max_backspin" | "backspin", _)) if !line.contains("_sd") => {
+            Some(("max_backspin" | "backspin", value))
+                if value.contains("rev/s") && !line.contains("_sd") =>
+            {
                 line.split(" = ").next().unwrap().to_owned() + " = \"1.5 rev/s\"\n"
             }
             _ => format!("{line}\n"),
