@@ -84,8 +84,8 @@ pub fn change_of_share(before: (usize, usize), after: (usize, usize)) -> Wilson 
     let change = a.share - b.share;
     Wilson {
         share: change,
-        low: change - (a.share - a.low).hypot(b.high - b.share),
-        high: change + (a.high - a.share).hypot(b.share - b.low),
+        low: change - libm::hypot(a.share - a.low, b.high - b.share),
+        high: change + libm::hypot(a.high - a.share, b.share - b.low),
     }
 }
 
