@@ -7,8 +7,8 @@
 //! a window, gives P of all nominal shots to about 0.001. While its best shot lies at the window's
 //! edge, the window moves on. A parabola along each axis finds the optimum between the points of
 //! the table. A table has four independent errors and one side spin: where errors are correlated,
-//! or the side spin is searched too, a climb with more points and parabolas through its optimum take
-//! the place of the windows. P of the winner is computed again with independent scrambles, so it is
+//! or the side spin is searched too, a climb with more points and parabolas through its optimum
+//! take the place of the windows. P of the winner is computed again with independent scrambles, so it is
 //! not the largest of many noisy values.
 
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
