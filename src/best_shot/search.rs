@@ -8,8 +8,8 @@
 //! edge, the window moves on. A parabola along each axis finds the optimum between the points of
 //! the table. A table has four independent errors and one side spin: where errors are correlated,
 //! or the side spin is searched too, a climb with more points and parabolas through its optimum
-//! take the place of the windows. P of the winner is computed again with independent scrambles, so it is
-//! not the largest of many noisy values.
+//! take the place of the windows. P of the winner is computed again with independent scrambles, so
+//! it is not the largest of many noisy values.
 
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
 use super::pattern_search::{Climb, Steps};
