@@ -11,8 +11,8 @@ use crate::model::{BallState, SolidId};
 /// Settings of a simulation that are not part of the equations: limits, steps and precision.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotLimits {
-    /// Longest step of a contact in the world frame, s.
-    pub(crate) longest_world_step_s: f64,
+    /// Longest step of a contact in the world frame with one solid, and with both, s.
+    pub(crate) longest_world_steps_s: [f64; 2],
     /// Contacts with one solid are computed in single precision.
     pub(crate) single_precision: bool,
     /// The normal motion and the longest step in contact with each solid, by [`SolidId::index`].

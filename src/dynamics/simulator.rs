@@ -126,9 +126,8 @@ fn suits_single_precision(physics: &Physics) -> bool {
         && (0.1..=100.0).contains(&physics.gravity_m_s2)
 }
 
-/// Ratio of the steps in the world frame to the steps per contact. (Two solids together are
-/// stiffer.)
-const WORLD_STEP_FACTOR: f64 = 1.5;
+/// Ratio of the steps with both solids to the steps per contact. (Two solids together are stiffer.)
+const BOTH_SOLIDS_STEP_FACTOR: f64 = 1.5;
 
 /// Steps in contact after which a shot is given up. A swirl of three seconds takes about 1,000 at
 /// the default steps (four a contact of some 13 ms); constants far from those of any ball can
@@ -256,7 +255,8 @@ impl Simulator {
             integrator,
             params,
             limits: ShotLimits {
-                longest_world_step_s: physics.contact_time_s() / (steps * WORLD_STEP_FACTOR),
+                longest_world_steps_s: [1.0, BOTH_SOLIDS_STEP_FACTOR]
+                    .map(|factor| physics.contact_time_s() / (steps * factor)),
                 single_precision: integrator.is_single_precision(physics),
                 oscillators: [
                     Oscillator::new(&params.board.material, steps),

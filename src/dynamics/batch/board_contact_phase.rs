@@ -1,10 +1,10 @@
-//! The contacts of a batch with the board.
+//! The contacts of a batch with the face of the board.
 
 use super::batch_state::Batch;
 use crate::math::real::SimdReal;
 use fearless_simd::Simd;
 
-/// Steps the shots on the board until they leave it, touch the ring or end, or another phase can
+/// Steps the shots on the face until they leave it, touch the ring or end, or another phase can
 /// use the lanes better.
 ///
 /// One module for each phase: they compile in parallel.

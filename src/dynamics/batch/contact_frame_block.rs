@@ -5,8 +5,7 @@ use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::hoop_crossing::HoopCrossing;
 use crate::dynamics::integrators::event_driven::ShotProgress;
 use crate::math::real::{LaneBits, LaneElement, MAX_LANES, SimdReal};
-use crate::model::SolidId;
-use crate::model::solids::{CONTACT_VALUES, ContactFrameState};
+use crate::model::solids::{CONTACT_VALUES, ContactFrameState, FramedPart};
 use std::array::from_fn;
 
 type Row<E> = [E; MAX_LANES];
@@ -14,7 +13,7 @@ type Row<E> = [E; MAX_LANES];
 /// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
 /// the last one, and steps on without harm.
 pub(super) struct ContactFrameBlock<E> {
-    solid: SolidId,
+    part: FramedPart,
     /// The values of [`ContactFrameState`].
     motion: [Row<E>; CONTACT_VALUES],
     slip_tolerances: Row<E>,
@@ -51,10 +50,10 @@ pub(super) struct ContactShots<T: SimdReal> {
 }
 
 impl<E: LaneElement> ContactFrameBlock<E> {
-    pub(super) fn new(solid: SolidId) -> Self {
+    pub(super) fn new(part: FramedPart) -> Self {
         let zeros = [E::default(); MAX_LANES];
         Self {
-            solid,
+            part,
             motion: [zeros; CONTACT_VALUES],
             slip_tolerances: zeros,
             step_fractions: zeros,
@@ -72,10 +71,10 @@ impl<E: LaneElement> ContactFrameBlock<E> {
         self.flags.occupied
     }
 
-    /// The solid that the shots are on.
+    /// The part of a solid that the shots are on.
     #[inline(always)]
-    pub(super) fn solid(&self) -> SolidId {
-        self.solid
+    pub(super) fn part(&self) -> FramedPart {
+        self.part
     }
 
     /// The slot of the shot in a lane.
@@ -102,7 +101,7 @@ impl<E: LaneElement> ContactFrameBlock<E> {
             for (row, value) in self.motion.iter_mut().zip(shot.motion.to_array()) {
                 row[lane] = E::from_f64(value);
             }
-            let friction = &shot.friction[self.solid.index()];
+            let friction = &shot.friction[self.part.solid().index()];
             self.slip_tolerances[lane] = E::from_f64(friction.slip_tolerance);
             self.step_fractions[lane] = E::from_f64(shot.step_fraction);
             self.contact_times_s[lane] = E::from_f64(shot.contact_time_s);
@@ -136,8 +135,8 @@ impl<E: LaneElement> ContactFrameBlock<E> {
             #[inline(always)]
             |i| self.motion[i][lane].to_f64(),
         ));
-        shot.frame = Some(self.solid);
-        shot.friction[self.solid.index()] = FrictionState {
+        shot.frame = Some(self.part);
+        shot.friction[self.part.solid().index()] = FrictionState {
             rolling: bit(self.flags.rolling, lane),
             rolling_failed: bit(self.flags.rolling_failed, lane),
             slip_tolerance: self.slip_tolerances[lane].to_f64(),

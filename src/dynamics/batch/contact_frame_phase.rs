@@ -40,7 +40,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         A: Solid<T>,
         B: Solid<T>,
     {
-        let phase = Phase::OnSolid(A::ID);
+        let phase = Phase::InFrame(A::PART);
         let oscillator = &self.limits.oscillators[A::ID.index()].map(
             #[inline(always)]
             |value| T::broadcast(self.simd, value),
@@ -50,7 +50,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             solid,
             oscillator,
         };
-        let mut block = ContactFrameBlock::<T::Element>::new(A::ID);
+        let mut block = ContactFrameBlock::<T::Element>::new(A::PART);
         loop {
             let free = T::ALL & !block.occupied();
             let (slots, queue) = self.workspace.slots_and_queue(phase);
@@ -106,8 +106,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 shot.arrive(self.params, other);
                 self.workspace.queue_mut(Phase::InWorld).push(slot);
             } else if !bit(result.beside, lane) {
-                shot.leave_frame(self.params, block.solid());
-                self.workspace.queue_mut(Phase::InWorld).push(slot);
+                shot.leave_frame(self.params, block.part().solid());
+                self.workspace.enqueue(slot);
             } else {
                 shot.end_single_contact(ContactState::Free);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
@@ -144,7 +144,7 @@ fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
         contact_time_s: shots.contact_time_s + step.dt,
         crossing: shots.crossing,
     };
-    let was_below = shots.motion.is_below_hoop();
+    let was_below = solid.is_below_hoop(&shots.motion);
     next.crossing
         .after_step(params, was_below, &after, !rejected);
     let mut accepted = T::ALL;

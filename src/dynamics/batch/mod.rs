@@ -4,6 +4,7 @@ mod batch_state;
 mod board_contact_phase;
 mod contact_frame_block;
 mod contact_frame_phase;
+mod edge_contact_phase;
 mod instruction_set;
 mod parabola_flight_phase;
 mod ring_contact_phase;

@@ -10,6 +10,7 @@ use crate::dynamics::integrators::event_driven::{self, MAX_PHASES, solids_touche
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::real::{LaneBits, MAX_F64_LANES, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
+use crate::model::solids::FramedPart;
 use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId};
 use fearless_simd::Simd;
@@ -191,7 +192,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 shot.contacts.push(solid);
                 shot.friction[solid.index()] = new_friction;
                 if solid == SolidId::Ring && bit(end.ring_motions(), lane) {
-                    shot.begin_single_contact(solid);
+                    shot.begin_single_contact(FramedPart::RingCircle);
                 } else {
                     shot.step_fraction = 1.0;
                     shot.set_touching(self.params, SolidId::ALL.map(|id| id == solid));

@@ -13,6 +13,7 @@ use super::batch_state::{
     Batch, EightLanes, NARROW, SixteenLanes, SixteenLanesF32, ThirtyTwoLanesF32, WIDE,
 };
 use super::board_contact_phase::board_contact;
+use super::edge_contact_phase::edge_contact;
 use super::parabola_flight_phase::{fly, fly_from_release};
 use super::ring_contact_phase::ring_contact;
 use super::segment_flight_phase::fly_in_segments;
@@ -20,8 +21,9 @@ use super::workspace::{BatchWorkspace, Phase};
 use super::world_frame_phase::in_world;
 use crate::dynamics::end_rules::ShotLimits;
 use crate::math::real::SimdReal;
+use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::{BallState, SolidId};
+use crate::model::solids::FramedPart;
 use fearless_simd::{Level, Simd};
 
 /// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace.
@@ -86,26 +88,27 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             Phase::Flight if !self.params.has_paper_flight() => {}
             Phase::Flight if WIDTH == WIDE => fly::<S, SixteenLanes<S>, WIDTH>(self),
             Phase::Flight => fly::<S, EightLanes<S>, WIDTH>(self),
-            Phase::OnSolid(solid) if !self.limits.single_precision => {
-                on_solid::<S, EightLanes<S>, WIDTH>(self, solid);
+            Phase::InFrame(part) if !self.limits.single_precision => {
+                in_frame::<S, EightLanes<S>, WIDTH>(self, part);
             }
-            Phase::OnSolid(solid) if WIDTH == WIDE => {
-                on_solid::<S, ThirtyTwoLanesF32<S>, WIDTH>(self, solid)
+            Phase::InFrame(part) if WIDTH == WIDE => {
+                in_frame::<S, ThirtyTwoLanesF32<S>, WIDTH>(self, part)
             }
-            Phase::OnSolid(solid) => on_solid::<S, SixteenLanesF32<S>, WIDTH>(self, solid),
+            Phase::InFrame(part) => in_frame::<S, SixteenLanesF32<S>, WIDTH>(self, part),
             Phase::InWorld => in_world::<S, EightLanes<S>, WIDTH>(self),
         }
     }
 }
 
-fn on_solid<S, T, const WIDTH: u8>(batch: &mut Batch<'_, S, WIDTH>, solid: SolidId)
+fn in_frame<S, T, const WIDTH: u8>(batch: &mut Batch<'_, S, WIDTH>, part: FramedPart)
 where
     S: Simd,
     T: SimdReal<Simd = S>,
 {
-    match solid {
-        SolidId::Board => board_contact::<S, T, WIDTH>(batch),
-        SolidId::Ring => ring_contact::<S, T, WIDTH>(batch),
+    match part {
+        FramedPart::BoardFace => board_contact::<S, T, WIDTH>(batch),
+        FramedPart::BoardEdges => edge_contact::<S, T, WIDTH>(batch),
+        FramedPart::RingCircle => ring_contact::<S, T, WIDTH>(batch),
     }
 }
 

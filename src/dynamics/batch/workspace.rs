@@ -2,8 +2,9 @@
 
 use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
+use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::{BallState, SolidId};
+use crate::model::solids::FramedPart;
 use std::ops::Range;
 
 /// Shots in progress at once: enough to keep all lanes filled, and few enough to stay in the cache
@@ -30,32 +31,33 @@ pub struct BatchWorkspace {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Phase {
     Flight,
-    OnSolid(SolidId),
+    InFrame(FramedPart),
     InWorld,
 }
 
 impl Phase {
-    pub(super) const COUNT: usize = SolidId::COUNT + 2;
+    pub(super) const COUNT: usize = FramedPart::COUNT + 2;
     /// Every phase, in the order in which they are processed.
     pub(super) const ALL: [Self; Self::COUNT] = [
         Self::Flight,
-        Self::OnSolid(SolidId::Board),
-        Self::OnSolid(SolidId::Ring),
+        Self::InFrame(FramedPart::BoardFace),
+        Self::InFrame(FramedPart::BoardEdges),
+        Self::InFrame(FramedPart::RingCircle),
         Self::InWorld,
     ];
 
     const fn index(self) -> usize {
         match self {
             Self::Flight => 0,
-            Self::OnSolid(solid) => 1 + solid.index(),
-            Self::InWorld => 1 + SolidId::COUNT,
+            Self::InFrame(part) => 1 + part as usize,
+            Self::InWorld => 1 + FramedPart::COUNT,
         }
     }
 
     fn of(contact: &ContactState) -> Self {
         match contact {
             ContactState::Free => Self::Flight,
-            ContactState::OnSolid(solid) => Self::OnSolid(*solid),
+            ContactState::InFrame(part) => Self::InFrame(*part),
             ContactState::InWorld => Self::InWorld,
         }
     }

@@ -7,7 +7,7 @@ use crate::dynamics::integrators::event_driven::ShotProgress;
 use crate::math::real::{LaneArray, LaneBits, MAX_F64_LANES, SimdReal};
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{CONTACT_VALUES, ContactFrameState, Solid};
+use crate::model::solids::{CONTACT_VALUES, ContactFrameState, FramedPart, Solid};
 use crate::model::{BallState, SolidId};
 use std::array::from_fn;
 
@@ -125,7 +125,7 @@ impl WorldFrameBlock {
                 break;
             };
             let shot = &mut slots[slot as usize];
-            let from_ring = shot.frame == Some(SolidId::Ring);
+            let from_ring = shot.frame == Some(FramedPart::RingCircle);
             set_bit(&mut flags.from_ring, lane, from_ring);
             if from_ring {
                 for (row, value) in self.ring_motion.iter_mut().zip(shot.motion.to_array()) {

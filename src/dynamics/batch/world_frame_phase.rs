@@ -1,4 +1,5 @@
-//! The contacts of a batch in the world frame: on a bracket, on an edge, on board and ring at once.
+//! The contacts of a batch in the world frame: on the bracket, at a corner of the board, on board
+//! and ring at once.
 
 use super::batch_state::Batch;
 use super::workspace::Phase;
@@ -11,7 +12,7 @@ use crate::dynamics::outcome::Ending;
 use crate::math::real::{LaneBits, SimdReal};
 use crate::model::SolidId;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::Solid;
+use crate::model::solids::{BoardEdges, Solid};
 use fearless_simd::Simd;
 
 /// Steps the shots in contact in the world frame until they fly, go on in the frame of a contact,
@@ -81,9 +82,12 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             block.load_friction(simd, SolidId::Ring),
         ];
         let touching = block.load_touching::<T>(simd);
+        let [with_one_s, with_both_s] = self.limits.longest_world_steps_s;
         let contact = WorldContact {
             touching,
-            step_s: params.splat(self.limits.longest_world_step_s),
+            step_s: params
+                .splat(with_both_s)
+                .select(touching[0] & touching[1], params.splat(with_one_s)),
             fraction: block.load_step_fractions(simd),
         };
         let mut next_friction = friction;
@@ -128,7 +132,9 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             (touching[0] & !separates[0]) | approach.arrived[0],
             (touching[1] & !separates[1]) | approach.arrived[1],
         ];
-        let enters_frame = (on[0] & !on[1] & solids.0.is_in_frame(&shots.state))
+        let edges = BoardEdges(solids.0);
+        let in_board_frame = solids.0.is_in_frame(&shots.state) | edges.is_in_frame(&shots.state);
+        let enters_frame = (on[0] & !on[1] & in_board_frame)
             | (on[1] & !on[0] & solids.1.is_in_frame(&shots.state));
         let accepted = T::mask_to_bits(!rejected);
         StepResult {

@@ -19,7 +19,9 @@ use crate::math::real::{Real, ScalarReal};
 use crate::math::scalar_f32::F32;
 use crate::math::vector::Vec3;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::{CONTACT_VALUES, ContactFrameState, Solid, TOUCH_GAP_M};
+use crate::model::solids::{
+    BoardEdges, CONTACT_VALUES, ContactFrameState, FramedPart, Solid, TOUCH_GAP_M,
+};
 use crate::model::{BallState, SolidId};
 
 /// Limit on the phases (flights and contacts) of one shot, so that every run ends. Never reached
@@ -31,21 +33,22 @@ pub(crate) const MAX_PHASES: u32 = 100_000;
 pub(crate) enum ContactState {
     /// In flight, or about to be.
     Free,
-    /// On the face of the board or on the ring's circle alone: in the frame of the contact.
-    OnSolid(SolidId),
-    /// On the bracket, on an edge of the board, or on both solids: in the world frame.
+    /// On the face or an edge of the board, or on the ring's circle alone: in the frame of the
+    /// contact.
+    InFrame(FramedPart),
+    /// On the bracket, at a corner of the board, or on both solids: in the world frame.
     InWorld,
 }
 
 /// A shot in progress.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShotProgress {
-    /// In the world frame. If `frame` names a solid, `motion` holds the state and this is out of
+    /// In the world frame. If `frame` names a part, `motion` holds the state and this is out of
     /// date, except right after a step was reported.
     pub(crate) state: BallState,
     /// The ball in the frame of a contact.
     pub(crate) motion: ContactFrameState,
-    pub(crate) frame: Option<SolidId>,
+    pub(crate) frame: Option<FramedPart>,
     pub(crate) contact: ContactState,
     /// The solids that a ball in contact in the world frame touches, by [`SolidId::index`].
     pub(crate) touching: [bool; SolidId::COUNT],
@@ -92,9 +95,9 @@ impl ShotProgress {
 
     /// Begins a contact with one solid. `motion` and `friction` are set by the caller.
     #[inline(always)]
-    pub(crate) fn begin_single_contact(&mut self, solid: SolidId) {
-        self.contact = ContactState::OnSolid(solid);
-        self.frame = Some(solid);
+    pub(crate) fn begin_single_contact(&mut self, part: FramedPart) {
+        self.contact = ContactState::InFrame(part);
+        self.frame = Some(part);
         self.step_fraction = 1.0;
         self.contact_time_s = 0.0;
     }
@@ -112,8 +115,8 @@ impl ShotProgress {
     pub(crate) fn leave_frame(&mut self, params: &ModelParams, solid: SolidId) {
         self.end_single_contact(ContactState::InWorld);
         self.update_state(params);
-        self.touching = SolidId::ALL.map(|id| id == solid);
         self.step_fraction = 1.0;
+        self.set_touching(params, SolidId::ALL.map(|id| id == solid));
     }
 
     /// The ball now also touches `arrived`.
@@ -132,15 +135,20 @@ impl ShotProgress {
         self.touching = touching;
         self.contact = ContactState::InWorld;
         let (board, ring) = (&params.board, &params.ring);
+        let edges = BoardEdges(board);
         match touching {
             [false, false] => self.contact = ContactState::Free,
             [true, false] if board.is_in_frame(&self.state) => {
                 self.motion = board.to_contact(&params.ball, &self.state);
-                self.begin_single_contact(SolidId::Board);
+                self.begin_single_contact(FramedPart::BoardFace);
+            }
+            [true, false] if edges.is_in_frame(&self.state) => {
+                self.motion = edges.to_contact(&params.ball, &self.state);
+                self.begin_single_contact(FramedPart::BoardEdges);
             }
             [false, true] if ring.is_in_frame(&self.state) => {
                 self.motion = ring.to_contact(&params.ball, &self.state);
-                self.begin_single_contact(SolidId::Ring);
+                self.begin_single_contact(FramedPart::RingCircle);
             }
             _ => {}
         }
@@ -151,10 +159,13 @@ impl ShotProgress {
     pub(crate) fn update_state(&mut self, params: &ModelParams) {
         match self.frame {
             None => return,
-            Some(SolidId::Board) => {
+            Some(FramedPart::BoardFace) => {
                 self.state = params.board.to_world(&params.ball, &self.motion);
             }
-            Some(SolidId::Ring) => {
+            Some(FramedPart::BoardEdges) => {
+                self.state = BoardEdges(&params.board).to_world(&params.ball, &self.motion);
+            }
+            Some(FramedPart::RingCircle) => {
                 self.state = params.ring.to_world(&params.ball, &self.motion);
             }
         }
@@ -280,11 +291,11 @@ impl<O: Observer> Run<'_, O> {
                 self.shot.update_state(params);
                 self.fly()
             }
-            ContactState::OnSolid(solid) if self.limits.single_precision => {
+            ContactState::InFrame(part) if self.limits.single_precision => {
                 let params_f32 = params.map(F32::from_f64);
-                self.single_contact(&params_f32, solid)
+                self.single_contact(&params_f32, part)
             }
-            ContactState::OnSolid(solid) => self.single_contact(params, solid),
+            ContactState::InFrame(part) => self.single_contact(params, part),
             ContactState::InWorld => self.contact_in_world((&params.board, &params.ring)),
         }
     }
@@ -292,11 +303,13 @@ impl<O: Observer> Run<'_, O> {
     fn single_contact<T: ScalarReal>(
         &mut self,
         params: &ModelParams<T>,
-        solid: SolidId,
+        part: FramedPart,
     ) -> Option<Verdict> {
-        match solid {
-            SolidId::Board => self.contact_with(params, &params.board, &params.ring),
-            SolidId::Ring => self.contact_with(params, &params.ring, &params.board),
+        let (board, ring) = (&params.board, &params.ring);
+        match part {
+            FramedPart::BoardFace => self.contact_with(params, board, ring),
+            FramedPart::BoardEdges => self.contact_with(params, &BoardEdges(board), ring),
+            FramedPart::RingCircle => self.contact_with(params, ring, board),
         }
     }
 
@@ -436,7 +449,7 @@ impl<O: Observer> Run<'_, O> {
                 fraction = contact.fraction_of_longest(fraction * step.dt);
                 continue;
             }
-            let was_below = motion.is_below_hoop();
+            let was_below = solid.is_below_hoop(&motion);
             (motion, friction) = (step.motion, step.friction);
             elapsed += step.dt;
             let shot = &mut self.shot;
@@ -451,7 +464,7 @@ impl<O: Observer> Run<'_, O> {
                 has_been_above: crossing.has_been_above,
                 rose_through: crossing.rose_through,
             };
-            self.report_contact_step(S::ID, elapsed.to_f64());
+            self.report_contact_step(S::PART, elapsed.to_f64());
             if let Some(ending) = ShotEndFlags::new(params, &after, allowed.lt(elapsed)).ending() {
                 let made = crossing.is_made(params, &after);
                 return Some(self.shot.verdict(ending, made));
@@ -481,20 +494,20 @@ impl<O: Observer> Run<'_, O> {
 
     /// After a step in contact with one solid: updates the state in the world frame, and reports
     /// the step.
-    fn report_contact_step(&mut self, solid: SolidId, contact_time_s: f64) {
+    fn report_contact_step(&mut self, part: FramedPart, contact_time_s: f64) {
         let shot = &mut self.shot;
         let before = shot.state;
-        shot.frame = Some(solid);
+        shot.frame = Some(part);
         shot.update_state(self.params);
         // The next step starts from `motion` again; `state` is for the report.
-        shot.frame = Some(solid);
+        shot.frame = Some(part);
         let (start, dt) = (
             shot.time_s + shot.contact_time_s,
             contact_time_s - shot.contact_time_s,
         );
         shot.contact_time_s = contact_time_s;
         let mut impulses = NO_IMPULSES;
-        impulses[solid.index()] = self.impulse_since(&before, dt);
+        impulses[part.solid().index()] = self.impulse_since(&before, dt);
         self.observer
             .step(start, dt, (&before, &self.shot.state), impulses);
     }
@@ -509,9 +522,11 @@ impl<O: Observer> Run<'_, O> {
         loop {
             let before = self.shot.state;
             let (mut after, mut friction) = (before, self.shot.friction);
+            let [with_one_s, with_both_s] = self.limits.longest_world_steps_s;
+            let on_both = self.shot.touching == [true; SolidId::COUNT];
             let contact = WorldContact {
                 touching: self.shot.touching,
-                step_s: self.limits.longest_world_step_s,
+                step_s: if on_both { with_both_s } else { with_one_s },
                 fraction: self.shot.step_fraction,
             };
             self.shot.steps += 1;

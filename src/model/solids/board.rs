@@ -5,7 +5,7 @@ use super::contact_frame_state::{ContactDistances, ContactFrameState, FrameTurn}
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use super::material::Material;
 use super::rectangle::Rectangle;
-use super::solid::{Solid, SolidId};
+use super::solid::{FramedPart, Solid, SolidId};
 use crate::math::real::Real;
 use crate::math::vector::{Vec2, Vec3};
 use crate::model::ball_params::BallParams;
@@ -66,6 +66,7 @@ impl<T: Real> Board<T> {
 
 impl<T: Real> Solid<T> for Board<T> {
     const ID: SolidId = SolidId::Board;
+    const PART: FramedPart = FramedPart::BoardFace;
     const FLAT: bool = true;
 
     #[inline(always)]

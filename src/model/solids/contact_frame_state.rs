@@ -15,9 +15,11 @@ pub(crate) struct ContactFrameState<T = f64> {
     /// Angular velocity, rad/s.
     pub(crate) spin: ContactVector<T>,
     /// Where the contact is on the solid. On the ring: cos phi, sin phi and the angle by which
-    /// theta has changed since the start. On the board: y, z and zero.
+    /// theta has changed since the start. On the face of the board: y, z and zero. At an edge of
+    /// it: cos phi, sin phi and the position along the edge.
     pub(crate) coordinates: [T; 3],
-    /// On the ring: cos theta and sin theta at the start.
+    /// On the ring: cos theta and sin theta at the start. At an edge of the board: y and z of the
+    /// direction away from the board.
     pub(crate) start: [T; 2],
 }
 
@@ -94,13 +96,6 @@ impl<T: Real> ContactFrameState<T> {
         v.normal.abs() + v.tangent.x.abs() + v.tangent.y.abs()
     }
 
-    /// Whether the centre is below the plane of the hoop: the second value of the coordinates has
-    /// the sign of z on either solid.
-    #[inline(always)]
-    pub(crate) fn is_below_hoop(&self) -> T::Mask {
-        self.coordinates[1].is_negative()
-    }
-
     /// The acceleration by drag and lift, in the frame.
     #[inline(always)]
     pub(super) fn air_acceleration(&self, ball: &BallParams<T>) -> ContactVector<T> {
@@ -137,4 +132,10 @@ pub(crate) struct FrameTurn<T> {
     pub(crate) turn: Vec2<T>,
     /// Turning about the normal, 1/s.
     pub(crate) torsion: T,
+}
+
+/// The factor that makes the length of (cosine, sine) 1 again: one Newton step.
+#[inline(always)]
+pub(super) fn unit_scale<T: Real>(cosine: T, sine: T) -> T {
+    (cosine.squared() + sine.squared()) * -0.5 + 1.5
 }

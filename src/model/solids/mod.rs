@@ -9,16 +9,18 @@
 //!
 //! The equations of contact are written once, in the frame of the contact. The unit normal `n`
 //! points from the solid to the ball's centre; `(n, 1, 2)` is right-handed: `(i, j, k)` at the face
-//! of the board, `(u_n, u_phi, u_theta)` at the ring (Eq. 6). The solids differ in how the frame
+//! of the board, `(u_n, u_phi, u_theta)` at the ring (Eq. 6), and at an edge as `board_edges` says.
+//! The solids differ in how the frame
 //! turns as the ball moves along the surface, `n' = (kappa_1 v_1, kappa_2 v_2)`: not at all at a
 //! face, with the curvatures `1/d` and `-cos(phi)/D_theta` at the ring (Eq. 7), with `1/d` across
 //! an edge and around a corner.
 //!
-//! A ball on the ring's circle or on the board's face is followed in that frame
-//! ([`ContactFrameState`]); on the bracket, on an edge, and on two solids at once, in the world
-//! frame.
+//! A ball on the ring's circle, on the board's face or on one of its edges is followed in that
+//! frame ([`ContactFrameState`]); on the bracket, at a corner, and on two solids at once, in the
+//! world frame.
 
 mod board;
+mod board_edges;
 mod contact_frame_state;
 mod contact_kinematics;
 mod material;
@@ -27,6 +29,7 @@ mod ring;
 mod solid;
 
 pub(crate) use board::Board;
+pub(crate) use board_edges::BoardEdges;
 pub(crate) use contact_frame_state::{
     CONTACT_VALUES, ContactDistances, ContactFrameState, FrameTurn,
 };
@@ -35,4 +38,4 @@ pub(crate) use material::Material;
 pub(crate) use rectangle::Rectangle;
 pub(crate) use ring::Ring;
 pub use solid::SolidId;
-pub(crate) use solid::{Solid, TOUCH_GAP_M};
+pub(crate) use solid::{FramedPart, Solid, TOUCH_GAP_M};

@@ -1,11 +1,11 @@
 //! The hoop: a rod around a circle of radius R_H about the origin, and the bracket between it and
 //! the board.
 
-use super::contact_frame_state::{ContactDistances, ContactFrameState, FrameTurn};
+use super::contact_frame_state::{ContactDistances, ContactFrameState, FrameTurn, unit_scale};
 use super::contact_kinematics::{ContactKinematics, ContactVector};
 use super::material::Material;
 use super::rectangle::Rectangle;
-use super::solid::{Solid, SolidId};
+use super::solid::{FramedPart, Solid, SolidId};
 use crate::math::real::{Mask, Real};
 use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::ball_params::BallParams;
@@ -90,12 +90,6 @@ fn cos_sin<T: Real>(angle: T) -> (T, T) {
         sin = sin * square * (1.0 / (n * (n + 1.0))) + 1.0;
     }
     (cos, sin * angle)
-}
-
-/// The factor that makes the length of (cosine, sine) 1 again: one Newton step.
-#[inline(always)]
-fn unit_scale<T: Real>(cosine: T, sine: T) -> T {
-    (cosine.squared() + sine.squared()) * -0.5 + 1.5
 }
 
 /// Cosine and sine of theta.
@@ -185,6 +179,7 @@ impl<T: Real> Ring<T> {
 
 impl<T: Real> Solid<T> for Ring<T> {
     const ID: SolidId = SolidId::Ring;
+    const PART: FramedPart = FramedPart::RingCircle;
     const FLAT: bool = false;
 
     #[inline(always)]

@@ -40,10 +40,36 @@ impl SolidId {
     }
 }
 
+/// The parts of the solids at which a contact is followed in its own frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FramedPart {
+    /// The flat part of the board's face.
+    BoardFace,
+    /// The four edges of the board, without its corners.
+    BoardEdges,
+    /// The ring's circle.
+    RingCircle,
+}
+
+impl FramedPart {
+    /// Number of parts.
+    pub(crate) const COUNT: usize = 3;
+
+    /// The solid that it belongs to.
+    pub(crate) const fn solid(self) -> SolidId {
+        match self {
+            Self::BoardFace | Self::BoardEdges => SolidId::Board,
+            Self::RingCircle => SolidId::Ring,
+        }
+    }
+}
+
 /// A rigid body that the ball can touch.
 pub(crate) trait Solid<T: Real>: Copy {
     /// Its name.
     const ID: SolidId;
+    /// The part of it that the frame of a contact describes.
+    const PART: FramedPart;
     /// Whether the frame of the contact never turns.
     const FLAT: bool;
 
@@ -107,8 +133,14 @@ pub(crate) trait Solid<T: Real>: Copy {
     /// rectangle.
     fn acts(&self, state: &BallState<T>) -> T::Mask;
 
-    /// Whether the nearest point lies on that part of the solid which the frame of
-    /// [`ContactFrameState`] describes: the face of the board, or the ring's circle.
+    /// Whether a ball in the frame of the contact has its centre below the plane of the hoop. (The
+    /// second coordinate has the sign of z on the face and on the ring.)
+    #[inline(always)]
+    fn is_below_hoop(&self, motion: &ContactFrameState<T>) -> T::Mask {
+        motion.coordinates[1].is_negative()
+    }
+
+    /// Whether the nearest point lies on [`Solid::PART`].
     fn is_in_frame(&self, state: &BallState<T>) -> T::Mask;
 }
 
