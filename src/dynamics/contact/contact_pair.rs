@@ -109,12 +109,13 @@ impl<T: Real> ContactPair<T> {
     #[inline(always)]
     pub(super) fn set_motion(&mut self, state: &BallState<T>, changed: T::Mask) {
         for i in [FIRST, SECOND] {
-            let [n, tangent_1, tangent_2] = self.axes[i];
-            let along =
-                |v: Vec3<T>| ContactVector::new(n.dot(v), tangent_1.dot(v), tangent_2.dot(v));
+            // A closure would not be inlined.
+            let axes = &self.axes[i];
             let kinematics = &mut self.kinematics[i];
-            kinematics.velocity = along(state.velocity_m_s).select(changed, kinematics.velocity);
-            kinematics.spin = along(state.spin_rad_s).select(changed, kinematics.spin);
+            kinematics.velocity =
+                ContactVector::along(axes, state.velocity_m_s).select(changed, kinematics.velocity);
+            kinematics.spin =
+                ContactVector::along(axes, state.spin_rad_s).select(changed, kinematics.spin);
             self.normal_forces[i] = self.kinematics[i].normal_force(&self.materials[i]);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::material::Material;
 use crate::math::real::Real;
-use crate::math::vector::{RealVector, Vec2};
+use crate::math::vector::{RealVector, Vec2, Vec3};
 use crate::model::ball_params::BallParams;
 
 /// A vector along the normal and the two tangents of a contact.
@@ -25,6 +25,12 @@ impl<T> ContactVector<T> {
 }
 
 impl<T: Real> ContactVector<T> {
+    /// The components of a vector along the directions (n, 1, 2).
+    #[inline(always)]
+    pub(crate) fn along([n, tangent_1, tangent_2]: &[Vec3<T>; 3], v: Vec3<T>) -> Self {
+        Self::new(n.dot(v), tangent_1.dot(v), tangent_2.dot(v))
+    }
+
     /// `self` where `condition` holds, `other` elsewhere.
     #[inline(always)]
     pub(crate) fn select(self, condition: T::Mask, other: Self) -> Self {

@@ -92,9 +92,9 @@ impl<T: Real> Rectangle<T> {
         let kinematics = ContactKinematics {
             compression: self.reach - distance,
             lever: distance - self.radius,
-            velocity: along(&axes, state.velocity_m_s),
-            spin: along(&axes, state.spin_rad_s),
-            gravity: along(
+            velocity: ContactVector::along(&axes, state.velocity_m_s),
+            spin: ContactVector::along(&axes, state.spin_rad_s),
+            gravity: ContactVector::along(
                 &axes,
                 ball.free_acceleration(state.velocity_m_s, state.spin_rad_s),
             ),
@@ -103,12 +103,6 @@ impl<T: Real> Rectangle<T> {
         };
         (kinematics, axes)
     }
-}
-
-/// The components of a vector along the axes.
-#[inline(always)]
-fn along<T: Real>([n, tangent_1, tangent_2]: &[Vec3<T>; 3], v: Vec3<T>) -> ContactVector<T> {
-    ContactVector::new(n.dot(v), tangent_1.dot(v), tangent_2.dot(v))
 }
 
 #[inline(always)]
