@@ -557,24 +557,24 @@ fn val_bounces_at_the_edges_of_the_board() {
         let simulator = Simulator::with_integrator(&physics, integrator).unwrap();
         let (mut worst, mut bounces) = ([0.0_f64; 2], 0);
         for bounce in 0..80 {
-            let angle = between(0.1, 1.4);
+            let (sin, cos) = libm::sincos(between(0.1, 1.4));
             let (distance, along) = (physics.ball_radius_m + edge - 1e-6, between(-0.4, 0.4));
             let sign = if bounce % 2 == 0 { 1.0 } else { -1.0 };
-            let out = |side: f64| sign * (side + distance * angle.sin());
+            let out = |side: f64| sign * (side + distance * sin);
             let (normal, y, z) = if bounce % 4 < 2 {
                 (
-                    Vec3::new(angle.cos(), sign * angle.sin(), 0.0),
+                    Vec3::new(cos, sign * sin, 0.0),
                     out(sides[0]),
                     level + along,
                 )
             } else {
                 (
-                    Vec3::new(angle.cos(), 0.0, sign * angle.sin()),
+                    Vec3::new(cos, 0.0, sign * sin),
                     along,
                     level + out(sides[1]),
                 )
             };
-            let x = -physics.board_distance_m - edge + distance * angle.cos();
+            let x = -physics.board_distance_m - edge + distance * cos;
             let tangent = Vec3::new(between(-3.0, 3.0), between(-3.0, 3.0), between(-3.0, 3.0));
             let tangent = tangent - normal * RealVector::dot(tangent, normal);
             let start = BallState {

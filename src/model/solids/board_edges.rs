@@ -269,7 +269,8 @@ mod tests {
             let (board, ball) = (&params.board, &params.ball);
             let (core, edges) = (&board.core, BoardEdges(board));
             let distance = core.reach + gap;
-            let (x, out) = (distance * angle.abs().cos(), distance * (0.1 + angle.abs().sin()));
+            let (sin, cos) = libm::sincos(angle.abs());
+            let (x, out) = (distance * cos, distance * (0.1 + sin));
             let middle = 0.5 * (core.low.z + core.high.z);
             let (y, z) = match side {
                 0 => (core.high.y + out, middle + along),
