@@ -15,7 +15,7 @@
 //!
 //! On the ring the steps use `d v1` and `D v2` (d the distance from the ring's circle, D that from
 //! the hoop's axis) in place of v1 and v2. Without friction they change little: this halves the
-//! error.
+//! error. At an edge of the board d is the distance from the core, and D is 1.
 
 use super::friction::{DIRECTION_SLIP_FRACTION, FrictionState, SLIP_TOLERANCE_M_S};
 use super::oscillator::{EventFunction, NormalMotion, Oscillator};

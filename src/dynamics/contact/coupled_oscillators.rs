@@ -15,8 +15,8 @@ use super::oscillator::parabola_root;
 use crate::math::real::{Mask, Real};
 use crate::model::solids::Material;
 
-/// Terms of the series of the force. (With a sixth of a bounce for a step the next term is below
-/// 1e-5.)
+/// Terms of the series of the force. (With a sixth of a bounce for a step on two solids, and a
+/// quarter on one, the next term is below 1e-5.)
 const TERMS: usize = 8;
 /// Newton steps to an event.
 const NEWTON_STEPS: u32 = 2;

@@ -168,11 +168,7 @@ impl<T: Real> Solid<T> for Board<T> {
         motion: &ContactFrameState<T>,
     ) -> ContactVector<T> {
         let gravity = ContactVector::new(ball.zero(), ball.zero(), -ball.gravity);
-        if ball.has_air {
-            gravity + motion.air_acceleration(ball)
-        } else {
-            gravity
-        }
+        motion.free_acceleration(ball, gravity)
     }
 
     #[inline(always)]

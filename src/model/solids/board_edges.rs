@@ -196,11 +196,7 @@ impl<T: Real> Solid<T> for BoardEdges<'_, T> {
         let outward = -(ball.gravity * o_z);
         let gravity =
             ContactVector::new(outward * sin_phi, outward * cos_phi, -(ball.gravity * o_y));
-        if ball.has_air {
-            gravity + motion.air_acceleration(ball)
-        } else {
-            gravity
-        }
+        motion.free_acceleration(ball, gravity)
     }
 
     #[inline(always)]

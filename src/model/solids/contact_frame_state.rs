@@ -96,12 +96,19 @@ impl<T: Real> ContactFrameState<T> {
         v.normal.abs() + v.tangent.x.abs() + v.tangent.y.abs()
     }
 
-    /// The acceleration by drag and lift, in the frame.
+    /// The acceleration by gravity and air, in the frame in which gravity has these components.
     #[inline(always)]
-    pub(super) fn air_acceleration(&self, ball: &BallParams<T>) -> ContactVector<T> {
+    pub(super) fn free_acceleration(
+        &self,
+        ball: &BallParams<T>,
+        gravity: ContactVector<T>,
+    ) -> ContactVector<T> {
+        if !ball.has_air {
+            return gravity;
+        }
         let in_frame = |v: &ContactVector<T>| Vec3::new(v.normal, v.tangent.x, v.tangent.y);
         let a = ball.air_acceleration(in_frame(&self.velocity), in_frame(&self.spin));
-        ContactVector::new(a.x, a.y, a.z)
+        gravity + ContactVector::new(a.x, a.y, a.z)
     }
 
     /// Velocity of the contact point along the surface (Eqs. 4 and 14), for the lever `lever`.
@@ -120,7 +127,7 @@ pub(crate) struct ContactDistances<T> {
     /// Distance from the core, m, and its inverse; on a flat solid not used.
     pub(crate) core: T,
     pub(crate) inverse_core: T,
-    /// Distance from the axis of the solid; on a flat solid not used.
+    /// Distance from the axis of the solid, 1 at a straight edge; on a flat solid not used.
     pub(crate) axis: T,
     pub(crate) inverse_axis: T,
 }

@@ -10,10 +10,9 @@
 //! The equations of contact are written once, in the frame of the contact. The unit normal `n`
 //! points from the solid to the ball's centre; `(n, 1, 2)` is right-handed: `(i, j, k)` at the face
 //! of the board, `(u_n, u_phi, u_theta)` at the ring (Eq. 6), and at an edge as `board_edges` says.
-//! The solids differ in how the frame
-//! turns as the ball moves along the surface, `n' = (kappa_1 v_1, kappa_2 v_2)`: not at all at a
-//! face, with the curvatures `1/d` and `-cos(phi)/D_theta` at the ring (Eq. 7), with `1/d` across
-//! an edge and around a corner.
+//! The solids differ in how the frame turns as the ball moves along the surface,
+//! `n' = (kappa_1 v_1, kappa_2 v_2)`: not at all at a face, with the curvatures `1/d` and
+//! `-cos(phi)/D_theta` at the ring (Eq. 7), with `1/d` across an edge and around a corner.
 //!
 //! A ball on the ring's circle, on the board's face or on one of its edges is followed in that
 //! frame ([`ContactFrameState`]); on the bracket, at a corner, and on two solids at once, in the

@@ -301,11 +301,7 @@ impl<T: Real> Solid<T> for Ring<T> {
             -(ball.gravity * cos_phi),
             ball.zero(),
         );
-        if ball.has_air {
-            gravity + motion.air_acceleration(ball)
-        } else {
-            gravity
-        }
+        motion.free_acceleration(ball, gravity)
     }
 
     #[inline(always)]
