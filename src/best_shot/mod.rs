@@ -1,5 +1,6 @@
 //! The best direct and the best bank shot from one location (Eq. 26).
 
+mod best_by_pitch;
 mod found_shots;
 mod pattern_search;
 mod physics_comparison;
@@ -8,6 +9,7 @@ mod shot_table;
 mod table_maxima;
 
 pub use crate::shooter::ShotKind;
+pub use best_by_pitch::{ShotAtPitch, best_by_pitch};
 pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
 pub use physics_comparison::{
     PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, compare_physics, physics_variants,
@@ -15,5 +17,5 @@ pub use physics_comparison::{
 pub use search::{find, find_kinds};
 pub use shot_table::{
     InterpolationCheck, MOST_HALVINGS, MOST_NODES, ShotTable, ShotTableError, ShotTableRequest,
-    TableKind, TableShot,
+    TableFinding, TableKind, TableShot,
 };

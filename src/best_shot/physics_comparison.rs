@@ -7,6 +7,7 @@ use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, SolidId};
 use crate::probability::{Estimate, Progress, Sampler, Silent};
 use crate::shooter::{Profile, ShotKind};
+use crate::units::FOOT_M;
 use std::collections::BTreeMap;
 
 /// A physics to compare with.
@@ -178,7 +179,8 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
     };
     let with = if has_air { "with" } else { "ncaa," };
     // The altitude, the thickness of a ring and its bracket are known of every gym.
-    let changes: [(&str, bool, fn(&mut Physics)); 10] = [
+    // A release is measured from the floor, and only its height below the ring matters.
+    let changes: [(&str, bool, fn(&mut Physics)); 12] = [
         ("no air", false, |physics| physics.air = Air::NONE),
         ("air of 5280 ft", false, |physics| {
             physics.air.density_kg_m3 = 0.98
@@ -201,6 +203,12 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         }),
         ("hoop_restitution 0.70", true, |physics| {
             set_restitution(physics, 0.70);
+        }),
+        ("release_height 0.1 ft lower", true, |physics| {
+            physics.hoop_height_m += 0.1 * FOOT_M;
+        }),
+        ("release_height 0.1 ft higher", true, |physics| {
+            physics.hoop_height_m -= 0.1 * FOOT_M;
         }),
         ("friction 0.8", true, |physics| {
             *physics = physics

@@ -10,6 +10,7 @@ use super::commands::design::DesignOptions;
 use super::commands::fit::FitOptions;
 use super::commands::new::NewOptions;
 use super::commands::physics::PhysicsOptions;
+use super::commands::pitch_curve::PitchCurveOptions;
 use super::commands::plan::PlanOptions;
 use super::commands::probability::ProbabilityOptions;
 use super::commands::report::ReportOptions;
@@ -66,6 +67,8 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Find the best direct and the best bank shot from the profile's location.
     Best(BestOptions),
+    /// Find the best shot at each of several pitch angles: how much the angle matters.
+    PitchCurve(PitchCurveOptions),
     /// Write a commented file to edit: a player, a launcher, a sweep, or a physics.
     New(NewOptions),
     /// Say who of a team should bank from where, and who is best from where; posters to print.

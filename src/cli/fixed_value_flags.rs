@@ -20,6 +20,15 @@ pub(crate) struct FixedOptions {
 }
 
 impl FixedOptions {
+    /// The backspin alone may be given.
+    pub(crate) fn of_backspin(backspin: Option<String>) -> Self {
+        Self {
+            speed: None,
+            pitch: None,
+            backspin,
+        }
+    }
+
     /// What is fixed, as it was written.
     fn given(&self) -> impl Iterator<Item = (NominalVariable, &str)> {
         [

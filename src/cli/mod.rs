@@ -16,14 +16,15 @@ mod progress_bars;
 mod run_folder;
 mod signals;
 mod terminal;
+mod value_lists;
 mod value_parsers;
 
 use crate::probability::Progress;
 use clap::{CommandFactory, Parser};
 use command_line::{Arguments, Command};
 use commands::{
-    advise, best, check, compare, compare_sessions, design, figures, fit, new, physics, plan,
-    probability, report, simulate, sweep, sweep_status, table, team, trace,
+    advise, best, check, compare, compare_sessions, design, figures, fit, new, physics,
+    pitch_curve, plan, probability, report, simulate, sweep, sweep_status, table, team, trace,
 };
 use failure::{Failure, code};
 use std::ffi::OsString;
@@ -114,6 +115,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Team(options) => team::run(options, quiet),
         Command::Table(options) => table::run(options, quiet),
         Command::Check(options) => check::run(options, quiet),
+        Command::PitchCurve(options) => pitch_curve::run(options, quiet),
         Command::Physics(options) => physics::run(options, quiet),
         Command::Plan(options) => plan::run(options, quiet),
         Command::Probability(options) => probability::run(options, quiet),

@@ -392,7 +392,10 @@ impl<'t, 'i> TableReader<'t, 'i> {
         };
         for (key, _) in table.iter() {
             let name: &str = key.get_ref();
-            if known.binary_search(&name).is_ok() {
+            let full_name = self.full_name(name);
+            // What is said of a key already says more than that it is unknown.
+            let is_refused = diagnostics.iter().any(|other| other.key == full_name);
+            if is_refused || known.binary_search(&name).is_ok() {
                 continue;
             }
             let radius = name.replace("diameter", "radius");

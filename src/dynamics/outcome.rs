@@ -6,7 +6,7 @@
 //! ...), its entry and its apex.
 
 use crate::model::SolidId;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The contacts of a shot in order: the first [`ContactSequence::KEPT`] by name, and the number
@@ -120,7 +120,7 @@ pub struct Verdict {
 }
 
 /// How a shot was made or missed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutcomeKind {
     /// Made, nothing touched.

@@ -186,10 +186,13 @@ pub fn advise(
 
 /// A profile whose search does not change the backspin.
 fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
-    use NominalVariable::{Pitch, Polar, Speed};
     profile
         .with(|settings| {
-            settings.search.choice = SearchChoice::only(&[Speed, Pitch, Polar]);
+            let chosen = settings.search.choice.iter();
+            let others: Vec<NominalVariable> = chosen
+                .filter(|chosen| *chosen != NominalVariable::Backspin)
+                .collect();
+            settings.search.choice = SearchChoice::only(&others);
             settings.nominal.backspin_rad_s = Some(backspin_rad_s);
         })
         .unwrap_or_else(|_| profile.clone())

@@ -4,6 +4,7 @@
 
 pub mod axes;
 pub mod bank_direct_release_map;
+pub mod best_by_pitch;
 pub mod colormaps;
 pub mod colour_key;
 mod court_lines;

@@ -2,13 +2,13 @@
 
 use crate::model::Physics;
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Greatest distance of a location from the hoop, m.
 const FARTHEST_M: f64 = 40.0;
 
 /// A location on the court, seen from the hoop's axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Location {
     /// Horizontal distance from the hoop's centre, m.
     pub distance_m: f64,

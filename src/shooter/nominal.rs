@@ -1,10 +1,10 @@
 //! Nominal shots: what the shooter intends.
 
 use super::release_variable::NominalVariable;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A nominal shot: the release without errors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nominal {
     /// Speed, m/s.
     pub speed_m_s: f64,

@@ -3,11 +3,11 @@
 use super::nominal::Nominal;
 use super::profile::Profile;
 use crate::model::SolidId;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The two kinds of nominal shots. The kind depends on the first touch of the error-free flight,
 /// not on the outcome.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShotKind {
     /// Touches the ring first, or nothing.

@@ -45,6 +45,58 @@ fn table(folder: &TempDir, more: &[&str]) -> Answer {
     Answer::of(&mut command)
 }
 
+/// A table that is stopped goes on where it was, and is the one that is made in one go.
+#[cfg(unix)]
+#[test]
+fn contract_a_stopped_table_goes_on() {
+    let folder = TempDir::new().unwrap();
+    let range = ["--distances", "10 ft to 14 ft by 2 ft", "--max-loss", "1"];
+    table(&folder, &[&range[..], &["-o", "whole.csv"]].concat()).exits(0);
+    let whole = fs::read_to_string(folder.path().join("whole.csv")).unwrap();
+    assert!(!folder.path().join("whole.csv.unfinished").exists());
+
+    let unfinished = folder.path().join("parts.csv.unfinished");
+    let lines = || fs::read_to_string(&unfinished).map_or(0, |text| text.lines().count());
+    let mut child = bankshot()
+        .current_dir(folder.path())
+        .args(["table", "robot.toml", "--pitch", "66 deg", "--backspin"])
+        .args(["2 rev/s", "-o", "parts.csv"])
+        .args(range)
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    while lines() < 4 {
+        assert!(child.try_wait().unwrap().is_none(), "it was not stopped");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    Command::new("kill")
+        .arg(child.id().to_string())
+        .status()
+        .unwrap();
+    let stopped = child.wait_with_output().unwrap();
+    assert_eq!(stopped.status.code(), Some(75));
+    let said = String::from_utf8(stopped.stderr).unwrap();
+    assert!(said.contains("the same command goes on with it"), "{said}");
+    assert!(!folder.path().join("parts.csv").exists());
+    let kept = fs::read_to_string(&unfinished).unwrap();
+    assert!(kept.lines().count() >= 4);
+
+    table(&folder, &[&range[..], &["-o", "parts.csv"]].concat()).exits(0);
+    let parts = fs::read_to_string(folder.path().join("parts.csv")).unwrap();
+    assert_eq!(parts, whole);
+    assert!(!unfinished.exists());
+
+    // What is kept is used: a shot that was changed there comes out changed.
+    let shot = |line: &&str| line.starts_with("{\"shot\"");
+    let first = kept.lines().find(shot).unwrap();
+    let mut changed: Value = serde_json::from_str(first).unwrap();
+    changed["shot"]["shot"]["probability"] = 0.125.into();
+    fs::write(&unfinished, kept.replace(first, &changed.to_string())).unwrap();
+    table(&folder, &[&range[..], &["-o", "parts.csv"]].concat()).exits(0);
+    let parts = fs::read_to_string(folder.path().join("parts.csv")).unwrap();
+    assert!(parts.contains("0.125"), "{parts}");
+}
+
 #[test]
 fn contract_a_table_has_a_shot_for_each_distance_and_a_check_between() {
     let folder = TempDir::new().unwrap();
@@ -418,4 +470,48 @@ fn campaign_interpolation_of_launchers() {
         ];
         assert!(all.iter().all(|value| *value < 0.01), "{name}: {all:?}");
     }
+}
+
+/// The best shot at each pitch angle is that of a table with the pitch angle fixed.
+#[test]
+fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "robot.toml", ROBOT);
+    let curve = |more: &[&str]| {
+        let mut command = bankshot();
+        command
+            .current_dir(folder.path())
+            .arg("pitch-curve")
+            .arg(&profile)
+            .args(["--backspin", "2 rev/s", "--quiet"])
+            .args(more);
+        Answer::of(&mut command)
+    };
+    let pitches = ["--pitches", "20 deg, 60 deg, 66 deg"];
+    let files = ["-o", "curve.csv", "--plot", "curve.svg", "--json"];
+    let json = curve(&[&pitches[..], &files].concat()).exits(0).json();
+    let shots = json["shots"].as_array().unwrap();
+    assert_eq!(shots.len(), 3);
+    // From 7 ft below the ring nothing falls in at 20 deg up.
+    assert_eq!(shots[0]["has_shot"], false);
+    let fixed = ["--distances", "12 ft", "--format", "json", "--draft"];
+    let table = table(&folder, &fixed).exits(0).json();
+    let of_table = &table["shots"][0];
+    for name in ["speed_ft_s", "probability", "aim_deg", "bank_probability"] {
+        assert_eq!(shots[2][name], of_table[name], "{name}");
+    }
+    assert!((shots[1]["pitch_deg"].as_f64().unwrap() - 60.0).abs() < 1e-9);
+    let csv = fs::read_to_string(folder.path().join("curve.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 4);
+    let svg = fs::read_to_string(folder.path().join("curve.svg")).unwrap();
+    assert!(svg.contains("pitch angle (deg)"));
+    let answer = curve(&pitches).exits(0);
+    let text = answer.stdout();
+    assert!(text.lines().all(|line| line.chars().count() <= 80));
+    assert!(
+        text.contains("The best direct shot of these makes"),
+        "{text}"
+    );
+    let out_of_range = ["--pitches", "60 deg, 95 deg"];
+    curve(&out_of_range).exits(2).says("95 deg is not allowed");
 }

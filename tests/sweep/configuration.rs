@@ -57,6 +57,30 @@ fn contract_another_version_of_the_program_is_refused_and_named() {
     assert_eq!(tables(&out), bytes);
 }
 
+/// A table that belongs to the shooter's file is refused once, not also as unknown.
+#[test]
+fn contract_physics_beside_a_named_shooter_is_refused_once() {
+    let test = TestFolder::new();
+    let (sweep, rest) = SWEEP.split_at(SWEEP.find("[shooter]").unwrap());
+    let (shooter, settings) = rest.split_at(rest.find("[grid]").unwrap());
+    let sweep = format!("{sweep}shooter = \"other.toml\"\n{settings}");
+    let shooter = format!("{shooter}[location]\ndistance = \"12 ft\"\nangle = \"0 deg\"\n");
+    fs::write(test.sweep.with_file_name("other.toml"), shooter).unwrap();
+    fs::write(
+        &test.sweep,
+        format!("{sweep}\n[physics]\npreset = \"ncaa\"\n"),
+    )
+    .unwrap();
+    let output = bankshot().arg("check").arg(&test.sweep).output().unwrap();
+    assert_code(&output, 2);
+    let printed = printed(&output);
+    assert!(
+        printed.contains("comes from the file that sweep.shooter names"),
+        "{printed}"
+    );
+    assert_eq!(printed.matches("error:").count(), 1, "{printed}");
+}
+
 #[test]
 fn contract_invalid_sweeps_are_refused_with_each_error_at_its_line() {
     for (from, to, message) in [

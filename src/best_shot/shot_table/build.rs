@@ -3,18 +3,19 @@
 
 use super::better_kind::merged;
 use super::cells::{Cell, grid};
-use super::interpolation_check::{BestKnown, InterpolationCheck, PlacedShot, check, moved};
+use super::interpolation_check::{PlacedShot, moved};
 use super::lookup::{ShotTable, TableKind, TableShot};
 use super::shot_at_place::{ShotTableError, best, table_shot};
+use super::table_search::{TableFinding, TableLog, TableSearch};
 use crate::best_shot::search::climb_from_shots;
 use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{
     Location, Nominal, NominalVariable, Profile, ProfileError, SearchChoice, ShotKind,
 };
-use std::collections::HashMap;
+use serde::Serialize;
 
 /// What a table is made of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShotTableRequest {
     /// Which shots. The better kind needs one angle.
     pub kind: TableKind,
@@ -40,85 +41,9 @@ pub const MOST_NODES: usize = 2000;
 const MARGIN: f64 = 0.75;
 /// Most times that a step between two nodes is halved.
 pub const MOST_HALVINGS: usize = 4;
-/// How often a step is halved to find where shots of a kind begin or end.
-const END_HALVINGS: usize = 4;
 /// Most times that a cell is split where the best shot may jump. The branches of both sides do not
 /// always reach its middle, so one split does not find every jump.
 const MOST_SPLITS: usize = 3;
-
-/// The best shots of places; `None` where there is no clean one.
-#[derive(Default)]
-struct ShotsOfPlaces(HashMap<[u64; 2], Option<TableShot>>);
-
-impl ShotsOfPlaces {
-    fn key(place: &Location) -> [u64; 2] {
-        [place.distance_m.to_bits(), place.angle_rad.to_bits()]
-    }
-
-    fn at(&self, place: &Location) -> Option<&TableShot> {
-        self.0.get(&Self::key(place))?.as_ref()
-    }
-
-    /// Finds the shots of those places that have none yet.
-    fn find<'a>(
-        &mut self,
-        (profile, kind): (&Profile, ShotKind),
-        places: impl Iterator<Item = &'a Location>,
-        (progress, stage): (&dyn Progress, &str),
-    ) -> Result<(), ShotTableError> {
-        let is_new = |place: &&Location| !self.0.contains_key(&Self::key(place));
-        let new: Vec<&Location> = places.filter(is_new).collect();
-        progress.begin(&format!("{}: {stage}", kind.name()), new.len() as u64);
-        for place in new {
-            let shot = best(&profile.moved_to(*place)?, kind)?;
-            self.0.insert(Self::key(place), shot);
-            progress.advance(1);
-        }
-        progress.end();
-        Ok(())
-    }
-}
-
-impl ShotsOfPlaces {
-    /// From where on there are shots of a kind, or up to where, between places of a table with one
-    /// angle of which one has such a shot and the next has none: distances near these ends that
-    /// have one, m.
-    fn ends(
-        &mut self,
-        (profile, kind): (&Profile, ShotKind),
-        request: &ShotTableRequest,
-        progress: &dyn Progress,
-    ) -> Result<Vec<f64>, ShotTableError> {
-        let angle_rad = request.angles_rad[0];
-        let at = |distance_m| Location {
-            distance_m,
-            angle_rad,
-        };
-        let places: Vec<Location> = request.distances_m.iter().copied().map(at).collect();
-        let progress = (progress, "where shots begin");
-        self.find((profile, kind), places.iter(), progress)?;
-        let mut ends = Vec::new();
-        for pair in places.windows(2) {
-            let has_shot = [0, 1].map(|i: usize| self.at(&pair[i]).is_some());
-            if has_shot[0] == has_shot[1] {
-                continue;
-            }
-            let [mut with_m, mut without_m] =
-                [has_shot[0], !has_shot[0]].map(|first| pair[usize::from(!first)].distance_m);
-            for _ in 0..END_HALVINGS {
-                let middle = at(0.5 * (with_m + without_m));
-                self.find((profile, kind), std::iter::once(&middle), progress)?;
-                if self.at(&middle).is_some() {
-                    with_m = middle.distance_m;
-                    ends.push(with_m);
-                } else {
-                    without_m = middle.distance_m;
-                }
-            }
-        }
-        Ok(ends)
-    }
-}
 
 impl ShotTable {
     /// Computes a table, with checks between all nodes. Where interpolation costs or errs by more
@@ -132,26 +57,44 @@ impl ShotTable {
         request: &ShotTableRequest,
         progress: &dyn Progress,
     ) -> Result<Self, ShotTableError> {
-        let profile = with_fixed(profile, &request.fixed)?;
+        Self::resume((profile, request), &[], &mut |_| {}, progress)
+    }
+
+    /// As [`ShotTable::compute`], with what was `known` when the same table was made before and
+    /// stopped: what an earlier call gave to `found`. The table is the same as in one go.
+    ///
+    /// # Errors
+    /// As [`ShotTable::compute`].
+    pub fn resume(
+        (profile, request): (&Profile, &ShotTableRequest),
+        known: &[TableFinding],
+        found: &mut dyn FnMut(&TableFinding),
+        progress: &dyn Progress,
+    ) -> Result<Self, ShotTableError> {
+        let profile = &with_fixed(profile, &request.fixed)?;
+        let mut log = TableLog {
+            known,
+            found,
+            progress,
+        };
         let mut table = match request.kind {
             TableKind::One(kind) => {
-                let shots = ShotsOfPlaces::default();
-                Self::of_kind((&profile, kind), request, shots, progress)?
+                Self::of_kind(request, TableSearch::new(profile, kind, &mut log))?
             }
             TableKind::Better if request.angles_rad.len() > 1 => {
                 return Err(ShotTableError::SeveralAngles);
             }
             TableKind::Better => {
-                let of_kind = |kind| -> Result<Self, ShotTableError> {
-                    let mut shots = ShotsOfPlaces::default();
-                    let ends = shots.ends((&profile, kind), request, progress)?;
+                let mut of_kind = |kind| -> Result<Self, ShotTableError> {
+                    let mut search = TableSearch::new(profile, kind, &mut log);
+                    let ends_m = search.ends_m(&request.distances_m, request.angles_rad[0])?;
                     let mut request = request.clone();
-                    request.distances_m.extend(ends);
+                    request.distances_m.extend(ends_m);
                     request.distances_m.sort_by(f64::total_cmp);
-                    Self::of_kind((&profile, kind), &request, shots, progress)
+                    Self::of_kind(&request, search)
                 };
                 let tables = [of_kind(ShotKind::Direct)?, of_kind(ShotKind::Bank)?];
-                merged(&profile, tables, request.max_loss)?
+                merged(profile, tables, request.max_loss)?
             }
         };
         if request.is_draft {
@@ -168,16 +111,13 @@ impl ShotTable {
         Ok(table)
     }
 
-    /// The table of one kind, with what is known of places already.
+    /// The table of the kind that is searched.
     fn of_kind(
-        (profile, kind): (&Profile, ShotKind),
         request: &ShotTableRequest,
-        mut shots: ShotsOfPlaces,
-        progress: &dyn Progress,
+        mut search: TableSearch<'_>,
     ) -> Result<Self, ShotTableError> {
-        let mut checks = ChecksOfCells::default();
         let mut table = Self {
-            kind: TableKind::One(kind),
+            kind: TableKind::One(search.kind),
             distances_m: request.distances_m.clone(),
             angles_rad: request.angles_rad.clone(),
             shots: Vec::new(),
@@ -186,23 +126,16 @@ impl ShotTable {
             checks: Vec::new(),
         };
         if request.is_draft {
-            let nodes = grid(&table.distances_m, &table.angles_rad);
-            shots.find((profile, kind), nodes.iter(), (progress, "finding shots"))?;
-            table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
+            table.find_nodes(&mut search, &[], "finding shots")?;
             return Ok(table);
         }
         for halving in 0..=MOST_HALVINGS {
             let [finding, checking] = stages_of_round(halving + 1);
-            let nodes = grid(&table.distances_m, &table.angles_rad);
             let cells = table.cells();
             let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-            let places = nodes.iter().chain(&middles);
-            shots.find((profile, kind), places, (progress, &finding))?;
-            table.shots = nodes.iter().map(|node| shots.at(node).cloned()).collect();
-            let stage = (progress, checking.as_str());
-            checks.find((profile, kind), &table, (&cells, &shots), stage)?;
-            table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
-            let [distances_m, angles_rad] = table.finer(&cells, &checks, &shots, request.max_loss);
+            table.find_nodes(&mut search, &middles, &finding)?;
+            table.find_checks(&mut search, &cells, &checking)?;
+            let [distances_m, angles_rad] = table.finer(&cells, &search, request.max_loss);
             let is_fine = distances_m.len() == table.distances_m.len()
                 && angles_rad.len() == table.angles_rad.len();
             let too_many = distances_m.len() * angles_rad.len() > MOST_NODES;
@@ -214,25 +147,48 @@ impl ShotTable {
         if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
             for split in 0..MOST_SPLITS {
                 let [finding, checking] = stages_of_round(MOST_HALVINGS + 2 + split);
-                let costly = |cell: &Cell| {
-                    checks
-                        .of(cell)
-                        .any(|check| check.worse() > MARGIN * request.max_loss)
-                };
-                let costly: Vec<bool> = table.cells().iter().map(costly).collect();
+                let costly: Vec<bool> = table
+                    .cells()
+                    .iter()
+                    .map(|cell| is_costly(&search, cell, request.max_loss))
+                    .collect();
                 if !costly.contains(&true) {
                     break;
                 }
-                table.split_at_jumps((profile, kind), &costly, request.max_loss, &shots)?;
+                table.split_at_jumps(&search, &costly, request.max_loss)?;
                 let cells = table.cells();
                 let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-                shots.find((profile, kind), middles.iter(), (progress, &finding))?;
-                let stage = (progress, checking.as_str());
-                checks.find((profile, kind), &table, (&cells, &shots), stage)?;
-                table.checks = cells.iter().flat_map(|cell| checks.of(cell)).collect();
+                search.find_shots(middles.iter(), &finding)?;
+                table.find_checks(&mut search, &cells, &checking)?;
             }
         }
         Ok(table)
+    }
+
+    /// Finds the shots of all nodes, and those of other places.
+    fn find_nodes(
+        &mut self,
+        search: &mut TableSearch<'_>,
+        others: &[Location],
+        stage: &str,
+    ) -> Result<(), ShotTableError> {
+        let nodes = grid(&self.distances_m, &self.angles_rad);
+        search.find_shots(nodes.iter().chain(others), stage)?;
+        let shots = nodes.iter().map(|node| search.shot_at(node).cloned());
+        self.shots = shots.collect();
+        Ok(())
+    }
+
+    fn find_checks(
+        &mut self,
+        search: &mut TableSearch<'_>,
+        cells: &[Cell],
+        stage: &str,
+    ) -> Result<(), ShotTableError> {
+        search.find_checks(self, cells, stage)?;
+        let checks = cells.iter().flat_map(|cell| search.checks_of(cell));
+        self.checks = checks.collect();
+        Ok(())
     }
 
     /// The cells between the nodes. One angle alone makes cells of no width, one distance alone
@@ -259,20 +215,11 @@ impl ShotTable {
     /// Distances and angles, with the middles of those cells where a check found more than
     /// [`MARGIN`] of `max_loss`. A middle without a shot is left out: nothing could be looked up
     /// beside it.
-    fn finer(
-        &self,
-        cells: &[Cell],
-        checks: &ChecksOfCells,
-        shots: &ShotsOfPlaces,
-        max_loss: f64,
-    ) -> [Vec<f64>; 2] {
+    fn finer(&self, cells: &[Cell], search: &TableSearch<'_>, max_loss: f64) -> [Vec<f64>; 2] {
         let mut distances = self.distances_m.clone();
         let mut angles = self.angles_rad.clone();
         for cell in cells {
-            let is_costly = checks
-                .of(cell)
-                .any(|check| check.worse() > MARGIN * max_loss);
-            if is_costly && shots.at(&cell.middle()).is_some() {
+            if is_costly(search, cell, max_loss) && search.shot_at(&cell.middle()).is_some() {
                 distances.push(cell.middle().distance_m);
                 angles.push(cell.middle().angle_rad);
             }
@@ -289,11 +236,11 @@ impl ShotTable {
     /// optima, a jump from one to the other is put in the middle; elsewhere one node.
     fn split_at_jumps(
         &mut self,
-        (profile, kind): (&Profile, ShotKind),
+        search: &TableSearch<'_>,
         costly: &[bool],
         max_loss: f64,
-        shots: &ShotsOfPlaces,
     ) -> Result<(), ShotTableError> {
+        let (profile, kind) = (search.profile, search.kind);
         // A jump of an earlier split has two nodes and no cell between them.
         let is_cell = |&node: &usize| self.distances_m[node] < self.distances_m[node + 1];
         let nodes: Vec<usize> = (0..self.distances_m.len() - 1).filter(is_cell).collect();
@@ -303,7 +250,7 @@ impl ShotTable {
                 continue;
             }
             let middle = cell.middle();
-            let Some(best) = shots.at(&middle) else {
+            let Some(best) = search.shot_at(&middle) else {
                 continue;
             };
             let mut branches = Vec::new();
@@ -344,10 +291,26 @@ impl ShotTable {
     }
 }
 
+/// Whether a check of a cell found more than [`MARGIN`] of `max_loss`.
+fn is_costly(search: &TableSearch<'_>, cell: &Cell, max_loss: f64) -> bool {
+    let mut checks = search.checks_of(cell);
+    checks.any(|check| check.worse() > MARGIN * max_loss)
+}
+
 /// What progress calls the two stages of a round.
 fn stages_of_round(round: usize) -> [String; 2] {
     let most = MOST_HALVINGS + 1 + MOST_SPLITS;
     ["shots", "checks"].map(|stage| format!("{stage}, round {round} of {most} at most"))
+}
+
+/// The best shot of a kind with values that the search leaves as they are; `None` if there is no
+/// clean one.
+pub(in crate::best_shot) fn best_with_fixed(
+    profile: &Profile,
+    kind: ShotKind,
+    fixed: &[(NominalVariable, f64)],
+) -> Result<Option<TableShot>, ShotTableError> {
+    Ok(best(&with_fixed(profile, fixed)?, kind)?)
 }
 
 /// The profile with values that the search leaves as they are.
@@ -367,56 +330,6 @@ fn with_fixed(
             settings.nominal.set(variable, value);
         }
     })
-}
-
-/// The checks of cells.
-#[derive(Default)]
-struct ChecksOfCells(HashMap<[u64; 4], Vec<InterpolationCheck>>);
-
-impl ChecksOfCells {
-    fn of(&self, cell: &Cell) -> impl Iterator<Item = InterpolationCheck> + '_ {
-        self.0.get(&cell.key()).into_iter().flatten().copied()
-    }
-
-    /// Checks those cells that have no check yet.
-    fn find(
-        &mut self,
-        (profile, kind): (&Profile, ShotKind),
-        table: &ShotTable,
-        (cells, shots): (&[Cell], &ShotsOfPlaces),
-        (progress, stage): (&dyn Progress, &str),
-    ) -> Result<(), ShotTableError> {
-        let is_new = |cell: &&Cell| !self.0.contains_key(&cell.key());
-        let new: Vec<&Cell> = cells.iter().filter(is_new).collect();
-        let places: usize = new.iter().map(|cell| cell.checked_places().len()).sum();
-        progress.begin(&format!("{}: {stage}", kind.name()), places as u64);
-        for cell in new {
-            let around: Vec<PlacedShot> = cell
-                .corners()
-                .into_iter()
-                .filter_map(|location| {
-                    let nominal = shots.at(&location)?.nominal;
-                    Some(PlacedShot { location, nominal })
-                })
-                .collect();
-            let mut checks = Vec::new();
-            for location in cell.checked_places() {
-                if let Some((nominal, looked_up)) = table.interpolated(location) {
-                    let best = if location == cell.middle() {
-                        BestKnown::Searched(shots.at(&location).map(|shot| shot.probability))
-                    } else {
-                        BestKnown::Climbed(&around)
-                    };
-                    let shot = PlacedShot { location, nominal };
-                    checks.push(check(profile, kind, (shot, looked_up), best)?);
-                }
-                progress.advance(1);
-            }
-            self.0.insert(cell.key(), checks);
-        }
-        progress.end();
-        Ok(())
-    }
 }
 
 /// The shot of a neighbour, moved to a place and climbed there; `None` if it leads to nothing that

@@ -5,13 +5,14 @@ use crate::best_shot::found_shots::BestShotError;
 use crate::best_shot::search::climb_from_shots;
 use crate::probability::{MAX_SHOTS, Sampler, Silent};
 use crate::shooter::{Location, Nominal, NominalVariable, Profile, ProfileError, ShotKind};
+use serde::{Deserialize, Serialize};
 
 /// Parts of a cell's width at which interpolation is checked.
 pub(super) const PARTS: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// P of the shot that is interpolated between four nodes (two where there is one angle), against
 /// the best shot there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InterpolationCheck {
     /// The place.
     pub location: Location,

@@ -3,9 +3,10 @@
 use super::interpolation_check::InterpolationCheck;
 use crate::dynamics::OutcomeKind;
 use crate::shooter::{Location, Nominal, NominalVariable, ShotKind};
+use serde::{Deserialize, Serialize};
 
 /// Which shots a table has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum TableKind {
     /// Those of one kind.
     One(ShotKind),
@@ -25,7 +26,7 @@ impl TableKind {
 }
 
 /// The best shot at one node.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TableShot {
     /// Its kind.
     pub kind: ShotKind,

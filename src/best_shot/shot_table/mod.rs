@@ -7,8 +7,11 @@ mod cells;
 mod interpolation_check;
 mod lookup;
 mod shot_at_place;
+mod table_search;
 
+pub(super) use build::best_with_fixed;
 pub use build::{MOST_HALVINGS, MOST_NODES, ShotTableRequest};
 pub use interpolation_check::InterpolationCheck;
 pub use lookup::{ShotTable, TableKind, TableShot};
 pub use shot_at_place::ShotTableError;
+pub use table_search::TableFinding;

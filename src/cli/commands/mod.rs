@@ -10,6 +10,7 @@ pub(super) mod figures;
 pub(super) mod fit;
 pub(super) mod new;
 pub(super) mod physics;
+pub(super) mod pitch_curve;
 pub(super) mod plan;
 mod plan_sweep_time_and_memory;
 pub(super) mod probability;

@@ -1,23 +1,27 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
 use crate::best_shot::{
-    MOST_NODES, ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableKind,
+    ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
 };
 use crate::cli::config_files::load_profile_with_fixed;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::signals;
 use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
 use crate::output::shot_table_files::csv_json::{table_csv, table_json};
 use crate::output::shot_table_files::notes;
 use crate::output::shot_table_files::source_code::{Language, source_code};
 use crate::output::shot_table_files::table_text::table_text;
+use crate::output::shot_table_files::unfinished::UnfinishedTable;
 use crate::shooter::{Location, NominalVariable, Profile};
-use crate::units::{self, Dimension};
+use crate::units::Dimension;
 use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
+use std::io;
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -28,6 +32,7 @@ interpolated P errs by more, nodes are added halfway. The table says what is lef
 The table is made in rounds: each looks at the places that the one before added. \
 Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes two to four minutes on two cores, with a free pitch more; \
 with --max-loss 1 no nodes are added, which takes half of the time or less; --draft leaves out the checks too.
+With --output a stopped table is not lost: what it found is kept beside the file, and the same command goes on with it.
 
 Examples:
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
@@ -98,7 +103,7 @@ pub(crate) enum TableFormat {
 
 impl TableFormat {
     /// The form that the end of a file's name asks for.
-    fn of_output(path: &Path) -> Result<Self, Failure> {
+    pub(super) fn of_output(path: &Path) -> Result<Self, Failure> {
         match path.extension().and_then(OsStr::to_str).unwrap_or("") {
             "csv" => Ok(Self::Csv),
             "json" => Ok(Self::Json),
@@ -120,9 +125,9 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
     let units = profile.output().units;
-    let distances_m = values("distances", &options.distances, Dimension::Length)?;
+    let distances_m = ascending_values("distances", &options.distances, Dimension::Length)?;
     let angles_rad = match &options.angles {
-        Some(text) => values("angles", text, Dimension::Angle)?,
+        Some(text) => ascending_values("angles", text, Dimension::Angle)?,
         None => vec![profile.location().angle_rad],
     };
     for (d, distance_m) in distances_m.iter().enumerate() {
@@ -154,16 +159,14 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         max_loss: options.max_loss,
         is_draft: options.draft,
     };
-    let table =
-        ShotTable::compute(&profile, &request, &ProgressBars::new(quiet)).map_err(|error| {
-            match error {
-                ShotTableError::Profile(error) => Failure::from(error),
-                ShotTableError::Search(error) => Failure::from(error),
-                error @ ShotTableError::SeveralAngles => Failure::usage(format!(
-                    "--kind best: {error}; give --angles one value, or make a table of each kind"
-                )),
-            }
-        })?;
+    let mut unfinished = match &outputs[0].file {
+        // A pipe or a device has no folder of its own.
+        Some(file) if !file.exists() || file.is_file() => {
+            Some(unfinished_table(file, &profile, &request, quiet)?)
+        }
+        _ => None,
+    };
+    let table = compute(&profile, &request, unfinished.as_mut(), quiet)?;
     let text_of = |output: &Output| {
         let source = |language| source_code(&table, (language, &output.class), (&profile, units));
         match output.format {
@@ -185,6 +188,10 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
                     .map_err(|error| Failure::io(file.display(), &error))?;
             }
         }
+    }
+    if let Some(unfinished) = unfinished {
+        // What stays is thrown away by the next table.
+        let _ = unfinished.remove();
     }
     if !quiet {
         for file in &options.output {
@@ -213,6 +220,74 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         code::DONE
     } else {
         code::INCOMPLETE
+    })
+}
+
+/// Opens the file beside `output` that keeps what is found, and says that it does.
+fn unfinished_table(
+    output: &Path,
+    profile: &Profile,
+    request: &ShotTableRequest,
+    quiet: bool,
+) -> Result<UnfinishedTable, Failure> {
+    let path = UnfinishedTable::path_beside(output);
+    let failure = |error| Failure::io(path.display(), &error);
+    let identity = UnfinishedTable::identity(profile, request)
+        .map_err(|error| failure(io::Error::other(error)))?;
+    let unfinished = UnfinishedTable::open(&path, &identity).map_err(failure)?;
+    let places = places_of(unfinished.known());
+    if places > 0 && !quiet {
+        print_remark(&format!(
+            "goes on with the {places} places that were computed before ({})",
+            path.display()
+        ));
+    }
+    signals::set_exit_remark(move || {
+        format!(
+            "stopped: what was computed is kept in {}; the same command goes on with it",
+            path.display()
+        )
+    });
+    Ok(unfinished)
+}
+
+/// The number of places whose best shots are among some findings.
+fn places_of(findings: &[TableFinding]) -> usize {
+    let is_shot = |finding: &&TableFinding| matches!(finding, TableFinding::Shot { .. });
+    findings.iter().filter(is_shot).count()
+}
+
+/// Computes the table, and keeps what it finds on the way.
+fn compute(
+    profile: &Profile,
+    request: &ShotTableRequest,
+    mut unfinished: Option<&mut UnfinishedTable>,
+    quiet: bool,
+) -> Result<ShotTable, Failure> {
+    let known = match &mut unfinished {
+        Some(unfinished) => unfinished.take_known(),
+        None => Vec::new(),
+    };
+    let mut failed = false;
+    let mut keep = |finding: &TableFinding| {
+        if let Some(unfinished) = &mut unfinished
+            && !failed
+            && let Err(error) = unfinished.keep(finding)
+        {
+            failed = true;
+            print_remark(&format!(
+                "warning: what is computed cannot be kept ({error}); a stopped table begins anew"
+            ));
+        }
+    };
+    let progress = ProgressBars::new(quiet);
+    ShotTable::resume((profile, request), &known, &mut keep, &progress).map_err(|error| match error
+    {
+        ShotTableError::Profile(error) => Failure::from(error),
+        ShotTableError::Search(error) => Failure::from(error),
+        error @ ShotTableError::SeveralAngles => Failure::usage(format!(
+            "--kind best: {error}; give --angles one value, or make a table of each kind"
+        )),
     })
 }
 
@@ -325,49 +400,4 @@ fn great_loss_warning(profile: &Profile, request: &ShotTableRequest) -> String {
         "warning: between some places interpolation costs or errs by more than {} in P; take a smaller step{fix}",
         request.max_loss
     )
-}
-
-/// Ascending values: `6 ft, 8 ft` or `6 ft to 20 ft by 1 ft`.
-fn values(flag: &str, text: &str, dimension: Dimension) -> Result<Vec<f64>, Failure> {
-    let example = match dimension {
-        Dimension::Angle => "'0 deg, 30 deg' or '0 deg to 60 deg by 15 deg'",
-        _ => "'2 m, 3 m' or '6 ft to 20 ft by 1 ft'",
-    };
-    let refuse = |message: String| {
-        Failure::usage(format!("--{flag}: \"{text}\" {message}; write {example}"))
-    };
-    let parse = |text: &str| {
-        units::parse(text.trim(), dimension).map_err(|error| {
-            Failure::usage(format!(
-                "--{flag}: {error}; each value has its own unit, as in {example}"
-            ))
-        })
-    };
-    let values = match text.split_once(" to ") {
-        Some((from, rest)) => {
-            let (to, step) = rest
-                .split_once(" by ")
-                .ok_or_else(|| refuse("has no step".to_owned()))?;
-            let (from, to, step) = (parse(from)?, parse(to)?, parse(step)?);
-            if !(step > 0.0) || !(to >= from) {
-                return Err(refuse("must ascend, with a step above 0".to_owned()));
-            }
-            // The end belongs to the range, also where the steps do not add up exactly.
-            let steps = ((to - from) / step + 1e-9).floor();
-            if steps >= MOST_NODES as f64 {
-                return Err(refuse(format!("has more than {MOST_NODES} values")));
-            }
-            (0..=steps as usize)
-                .map(|k| from + step * k as f64)
-                .collect()
-        }
-        None => text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?,
-    };
-    if values.len() > MOST_NODES {
-        return Err(refuse(format!("has more than {MOST_NODES} values")));
-    }
-    if values.windows(2).any(|pair| !(pair[1] > pair[0])) {
-        return Err(refuse("does not ascend".to_owned()));
-    }
-    Ok(values)
 }

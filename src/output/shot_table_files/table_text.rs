@@ -154,7 +154,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
 }
 
 /// A number with these decimals; a dash if there is none.
-fn decimal(value: f64, decimals: usize) -> String {
+pub(super) fn decimal(value: f64, decimals: usize) -> String {
     if value.is_nan() {
         return "-".to_owned();
     }
@@ -165,7 +165,7 @@ fn decimal(value: f64, decimals: usize) -> String {
 }
 
 /// The margins below and above, such as `-0.24+0.31`.
-fn both_sides(sides: [f64; 2], decimals: usize) -> String {
+pub(super) fn both_sides(sides: [f64; 2], decimals: usize) -> String {
     let [below, above] = sides.map(|side| {
         let decimals = if side < 9.95 { decimals } else { 0 };
         format!("{side:.decimals$}")
@@ -174,7 +174,7 @@ fn both_sides(sides: [f64; 2], decimals: usize) -> String {
 }
 
 /// A line of cells, right-aligned; one of width 0, the last, is left-aligned.
-fn line<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {
+pub(super) fn line<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {
     let mut line = String::new();
     for (cell, width) in cells.zip(widths) {
         line += &format!("{cell:>width$} ");
@@ -184,6 +184,6 @@ fn line<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {
 }
 
 /// The lines of a text, each of at most 80 columns.
-fn wrapped(text: &str) -> String {
+pub(super) fn wrapped(text: &str) -> String {
     textwrap::fill(text, 80) + "\n"
 }

@@ -1,0 +1,160 @@
+//! `bankshot pitch-curve`: the best shot at each of several pitch angles.
+
+use super::table::TableFormat;
+use crate::best_shot::{ShotKind, ShotTableError, best_by_pitch};
+use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
+use crate::cli::failure::{Failure, code};
+use crate::cli::fixed_value_flags::FixedOptions;
+use crate::cli::nominal_shot_flags::PlaceOptions;
+use crate::cli::plot_files::{self, PlotType};
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::value_lists::ascending_values;
+use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
+use crate::output::atomic_file;
+use crate::output::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
+use crate::plots;
+use crate::shooter::NominalVariable;
+use crate::units::{DEGREE_RAD, Dimension};
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Each angle is a search of its own: about two seconds on two cores.
+
+Examples:
+  bankshot pitch-curve configs/free_throw.toml
+  bankshot pitch-curve player.toml --pitches '45 deg to 60 deg by 1 deg' \\
+    --plot pitch.svg -o pitch.csv
+  bankshot pitch-curve player.toml --kind bank --backspin '2 rev/s'")]
+pub(crate) struct PitchCurveOptions {
+    /// The shooter's profile.
+    pub(crate) profile: PathBuf,
+    #[command(flatten)]
+    pub(crate) physics: PhysicsArg,
+    #[command(flatten)]
+    pub(crate) place: PlaceOptions,
+    /// The pitch angles, ascending.
+    #[arg(
+        long,
+        value_name = "LIST|RANGE",
+        default_value = "40 deg to 65 deg by 2.5 deg"
+    )]
+    pub(crate) pitches: String,
+    /// The kind of the shots.
+    #[arg(long, value_enum, default_value_t = OneKindArg::Direct)]
+    pub(crate) kind: OneKindArg,
+    /// Fix the backspin.
+    #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
+    pub(crate) backspin: Option<String>,
+    /// Write the shots into a file (.csv, .json or .txt); may be repeated.
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) output: Vec<PathBuf>,
+    /// Draw P and the speed over the pitch angle (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Print one JSON object instead of the table.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Units of the output [default: the profile's, else imperial].
+    #[arg(long)]
+    pub(crate) units: Option<UnitsArg>,
+}
+
+/// One kind of shots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OneKindArg {
+    Direct,
+    Bank,
+}
+
+impl From<OneKindArg> for ShotKind {
+    fn from(kind: OneKindArg) -> Self {
+        match kind {
+            OneKindArg::Direct => Self::Direct,
+            OneKindArg::Bank => Self::Bank,
+        }
+    }
+}
+
+pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failure> {
+    let pitches_rad = pitches_rad(&options.pitches)?;
+    if let Some(path) = &options.plot {
+        PlotType::of(path)?;
+    }
+    let forms = options.output.iter().map(|path| form_of(path));
+    let forms = forms.collect::<Result<Vec<_>, _>>()?;
+    let fixed = FixedOptions::of_backspin(options.backspin.clone());
+    // The pitch angle is given too.
+    let mut given = fixed.variables();
+    given.push(NominalVariable::Pitch);
+    let loaded = load_profile_with_text(&options.profile, &options.physics, (&given, quiet))?;
+    let loaded = with_fixed(loaded, &fixed, &options.profile)?;
+    let (mut profile, _) = moved(loaded, &options.place)?;
+    if let Some(units) = options.units {
+        profile = profile.with(|settings| settings.output.units = units.into())?;
+    }
+    let units = profile.output().units;
+    let kind = options.kind.into();
+    let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet)).map_err(
+        |error| match error {
+            ShotTableError::Profile(error) => Failure::from(error),
+            ShotTableError::Search(error) => Failure::from(error),
+            error @ ShotTableError::SeveralAngles => Failure::bug(error.to_string()),
+        },
+    )?;
+    let text = || by_pitch_text(&rows, kind, &profile, units);
+    let json = || format!("{:#}\n", by_pitch_json(&rows, kind, &profile, units));
+    for (path, form) in options.output.iter().zip(forms) {
+        let content = match form {
+            TableFormat::Csv => by_pitch_csv(&rows, kind, units),
+            TableFormat::Json => json(),
+            _ => text(),
+        };
+        atomic_file::write(path, content.as_bytes())
+            .map_err(|error| Failure::io(path.display(), &error))?;
+    }
+    if let Some(path) = &options.plot
+        && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, &rows, units)
+    {
+        plot_files::write_one(path, &plot)?;
+    }
+    print_answer(&if options.json { json() } else { text() })?;
+    if !quiet {
+        for path in options.output.iter().chain(&options.plot) {
+            if path.exists() {
+                print_remark(&format!("written: {}", path.display()));
+            }
+        }
+    }
+    Ok(if rows.iter().any(|row| row.shot.is_some()) {
+        code::DONE
+    } else {
+        code::INCOMPLETE
+    })
+}
+
+/// The pitch angles, rad, between 1 and 89 deg.
+fn pitches_rad(text: &str) -> Result<Vec<f64>, Failure> {
+    let pitches_rad = ascending_values("pitches", text, Dimension::Angle)?;
+    let range = DEGREE_RAD..=89.0 * DEGREE_RAD;
+    match pitches_rad.iter().find(|pitch| !range.contains(pitch)) {
+        None => Ok(pitches_rad),
+        Some(pitch_rad) => Err(Failure::usage(format!(
+            "--pitches: {} deg is not allowed; give angles from 1 to 89 deg",
+            (pitch_rad / DEGREE_RAD * 1e6).round() / 1e6
+        ))),
+    }
+}
+
+/// The form that a file's name asks for.
+fn form_of(path: &Path) -> Result<TableFormat, Failure> {
+    match TableFormat::of_output(path) {
+        Ok(form @ (TableFormat::Csv | TableFormat::Json | TableFormat::Text)) => Ok(form),
+        _ => Err(Failure::usage(format!(
+            "--output: {}: the name must end in .csv, .json or .txt",
+            path.display()
+        ))),
+    }
+}

@@ -1,0 +1,233 @@
+//! The best shots at several pitch angles: for people, as CSV and JSON.
+
+use super::columns::columns;
+use super::notes::physics_note;
+use super::table_text::{both_sides, decimal, line, wrapped};
+use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
+use crate::output::json_object::{number, object, provenance};
+use crate::shooter::{Profile, ShotKind};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use serde_json::Value;
+
+/// A loss of P that the sentence about the angles counts as none.
+const LEVEL: f64 = 0.01;
+
+/// Name, unit and width of the columns after the pitch angle.
+fn titles(speed_unit: &str) -> [(&'static str, &str, usize); 9] {
+    [
+        ("speed", speed_unit, 6),
+        ("aim", "deg", 6),
+        ("spin", "rev/s", 5),
+        ("entry", "deg", 5),
+        ("P", "", 6),
+        ("+-", "", 6),
+        ("less", "", 6),
+        ("margin", speed_unit, 10),
+        ("margin", "deg", 8),
+    ]
+}
+
+/// The shots with their angles, those that exist.
+fn found(rows: &[ShotAtPitch]) -> impl Iterator<Item = (f64, &TableShot)> {
+    rows.iter()
+        .filter_map(|row| Some((row.pitch_rad, row.shot.as_ref()?)))
+}
+
+/// The row with the highest P.
+fn best_row(rows: &[ShotAtPitch]) -> Option<(usize, &TableShot)> {
+    let shots = rows.iter().enumerate();
+    shots
+        .filter_map(|(i, row)| Some((i, row.shot.as_ref()?)))
+        .max_by(|a, b| a.1.probability.total_cmp(&b.1.probability))
+}
+
+/// The shots for people, at most 80 columns wide: what the angle is worth, then a line for each.
+#[must_use]
+pub fn by_pitch_text(
+    rows: &[ShotAtPitch],
+    kind: ShotKind,
+    profile: &Profile,
+    units: UnitSystem,
+) -> String {
+    let (long, metre) = units.length();
+    let name = &profile.shooter().name;
+    let of = if name.is_empty() {
+        String::new()
+    } else {
+        format!("{name}, ")
+    };
+    let mut text = wrapped(&format!("{of}{}.", profile.location().in_words(units)));
+    let Some((best_row, best)) = best_row(rows) else {
+        return text + &wrapped("No shot at these pitch angles goes in.");
+    };
+    text += &wrapped(&in_words(rows, (best_row, best), kind, units));
+    text += &wrapped(&physics_note(profile, units));
+    text += &wrapped(
+        "At each pitch angle the speed, the aim and the spin are the best ones. aim: positive to the \
+         left. +-: numerical standard error of P. less: than the highest P. margin: by how much \
+         speed and pitch can be off, down and up, one at a time and with all else exact, until the \
+         shot first misses.",
+    );
+    let speed_unit = format!("{long}/s");
+    let titles = titles(&speed_unit);
+    let widths: Vec<usize> = std::iter::once(5)
+        .chain(titles.iter().map(|(.., width)| *width))
+        .collect();
+    let names = std::iter::once("pitch").chain(titles.iter().map(|(name, ..)| *name));
+    text += &line(names, &widths);
+    let unit_names = std::iter::once("deg").chain(titles.iter().map(|(_, unit, _)| *unit));
+    text += &line(unit_names, &widths);
+    for row in rows {
+        let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
+        let Some(shot) = &row.shot else {
+            text += &format!("{pitch:>5} no shot within the limits goes in\n");
+            continue;
+        };
+        let [speed_sides, pitch_sides] = shot.tolerances;
+        let cells = [
+            pitch,
+            decimal(shot.nominal.speed_m_s / metre, 2),
+            decimal(shot.aim_rad / DEGREE_RAD, 2),
+            decimal(shot.nominal.backspin_rad_s / REV_RAD, 2),
+            decimal(shot.entry_rad.map_or(f64::NAN, |rad| rad / DEGREE_RAD), 1),
+            decimal(shot.probability, 4),
+            decimal(shot.standard_error, 4),
+            decimal(best.probability - shot.probability, 4),
+            both_sides(speed_sides.map(|side| side / metre), 2),
+            both_sides(pitch_sides.map(|side| side / DEGREE_RAD), 1),
+        ];
+        text += &line(cells.iter().map(String::as_str), &widths);
+    }
+    text
+}
+
+/// How much the angle matters, in two sentences.
+fn in_words(
+    rows: &[ShotAtPitch],
+    (best_row, best): (usize, &TableShot),
+    kind: ShotKind,
+    units: UnitSystem,
+) -> String {
+    let (long, metre) = units.length();
+    let best_rad = rows[best_row].pitch_rad;
+    let degrees = |rad: f64| {
+        let text = format!("{:.1}", rad / DEGREE_RAD);
+        text.trim_end_matches(".0").to_owned()
+    };
+    let is_level = |row: &ShotAtPitch| {
+        row.shot
+            .as_ref()
+            .is_some_and(|shot| best.probability - shot.probability <= LEVEL)
+    };
+    // The angles around the best one without a gap.
+    let low = (0..best_row)
+        .rev()
+        .take_while(|&i| is_level(&rows[i]))
+        .last();
+    let high = (best_row + 1..rows.len())
+        .take_while(|&i| is_level(&rows[i]))
+        .last();
+    let (low, high) = (low.unwrap_or(best_row), high.unwrap_or(best_row));
+    let mut text = format!(
+        "The best {} shot of these makes {:.1} of 100, at {} deg.",
+        kind.name(),
+        100.0 * best.probability,
+        degrees(best_rad)
+    );
+    if low < high {
+        text += &format!(
+            " From {} to {} deg the best speed of each makes at most one of 100 less.",
+            degrees(rows[low].pitch_rad),
+            degrees(rows[high].pitch_rad)
+        );
+    }
+    let slowest =
+        found(rows).min_by(|a, b| a.1.nominal.speed_m_s.total_cmp(&b.1.nominal.speed_m_s));
+    if let Some((slowest_rad, slowest)) = slowest {
+        text += &format!(
+            " The least speed, {:.2} {long}/s, is that of {} deg",
+            slowest.nominal.speed_m_s / metre,
+            degrees(slowest_rad)
+        );
+        let steeper = best_rad - slowest_rad;
+        text += &match steeper {
+            _ if steeper > 1e-9 => format!(": the best is {} deg steeper.", degrees(steeper)),
+            _ if steeper < -1e-9 => format!(": the best is {} deg flatter.", degrees(-steeper)),
+            _ => ".".to_owned(),
+        };
+    }
+    text
+}
+
+/// The shots as CSV; empty values where no shot goes in.
+#[must_use]
+pub fn by_pitch_csv(rows: &[ShotAtPitch], kind: ShotKind, units: UnitSystem) -> String {
+    let columns = columns(TableKind::One(kind), units);
+    // The pitch angle comes first, also where there is no shot.
+    let is_other = |name: &str| name != "pitch_deg";
+    let names: Vec<&str> = columns
+        .iter()
+        .map(|(name, ..)| name.as_str())
+        .filter(|name| is_other(name))
+        .collect();
+    let mut text = format!("kind,pitch_deg,outcome,{}\n", names.join(","));
+    for row in rows {
+        let cells: Vec<String> = columns
+            .iter()
+            .filter(|(name, ..)| is_other(name))
+            .map(|(_, _, value, size)| match row.shot.as_ref().map(value) {
+                Some(value) if value.is_finite() => (value / size).to_string(),
+                _ => String::new(),
+            })
+            .collect();
+        text += &format!(
+            "{},{},{},{}\n",
+            kind.name(),
+            pitch_deg(row),
+            row.shot.as_ref().map_or("", |shot| shot.outcome.name()),
+            cells.join(",")
+        );
+    }
+    text
+}
+
+/// The shots as one JSON object.
+#[must_use]
+pub fn by_pitch_json(
+    rows: &[ShotAtPitch],
+    kind: ShotKind,
+    profile: &Profile,
+    units: UnitSystem,
+) -> Value {
+    let columns = columns(TableKind::One(kind), units);
+    let named = |name: &str, value: Value| (name.to_owned(), value);
+    let shots = rows.iter().map(|row| {
+        let mut record = vec![
+            named("has_shot", row.shot.is_some().into()),
+            named(
+                "outcome",
+                row.shot.as_ref().map(|shot| shot.outcome.name()).into(),
+            ),
+        ];
+        record.extend(columns.iter().map(|(name, _, value, size)| {
+            let value = row.shot.as_ref().map(value);
+            let value = value.map_or(Value::Null, |value| number(value / size));
+            (name.clone(), value)
+        }));
+        record.retain(|(name, _)| name != "pitch_deg");
+        record.insert(0, named("pitch_deg", number(pitch_deg(row))));
+        object(record)
+    });
+    let mut record = provenance(profile.hash());
+    record.extend([
+        named("physics", physics_note(profile, units).into()),
+        named("kind", kind.name().into()),
+        named("shots", shots.collect()),
+    ]);
+    object(record)
+}
+
+/// The pitch angle without what its conversion cost in the last digits, deg.
+fn pitch_deg(row: &ShotAtPitch) -> f64 {
+    (row.pitch_rad / DEGREE_RAD * 1e9).round() / 1e9
+}

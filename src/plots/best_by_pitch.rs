@@ -1,0 +1,97 @@
+//! P and speed of the best shot at each of several pitch angles.
+
+use super::axes::Axes;
+use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
+use crate::best_shot::{ShotAtPitch, TableShot};
+use crate::shooter::{Profile, ShotKind};
+use crate::units::{DEGREE_RAD, UnitSystem};
+
+/// Width and height of a panel, px.
+const PANEL: (f64, f64) = (330.0, 230.0);
+/// Left edge of the first panel, and distance of the second one from it, px.
+const LEFT: f64 = 70.0;
+const APART: f64 = 430.0;
+/// Top of the panels, px.
+const TOP: f64 = 74.0;
+
+/// Draws both curves; `None` with fewer than two angles that have a shot.
+#[must_use]
+pub fn draw(
+    profile: &Profile,
+    kind: ShotKind,
+    rows: &[ShotAtPitch],
+    units: UnitSystem,
+) -> Option<Plot> {
+    let (long, metre) = units.length();
+    let angles = rows.iter().filter(|row| row.shot.is_some());
+    let angles: Vec<f64> = angles.map(|row| row.pitch_rad / DEGREE_RAD).collect();
+    let [first, .., last] = angles[..] else {
+        return None;
+    };
+    let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 56.0);
+    let name = shortened(&profile.shooter().name, 50);
+    let title = format!("The best {} shot at each pitch angle: {name}", kind.name());
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
+    let place = profile.location().in_words(units);
+    svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
+    let speed = move |shot: &TableShot| shot.nominal.speed_m_s / metre;
+    let probability = |shot: &TableShot| shot.probability;
+    let highest = rows
+        .iter()
+        .filter_map(|row| row.shot.as_ref())
+        .map(probability)
+        .fold(0.0, f64::max);
+    let speeds = rows.iter().filter_map(|row| row.shot.as_ref()).map(speed);
+    let (slowest, fastest) = speeds.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
+        (low.min(v), high.max(v))
+    });
+    let margin = (0.08 * (fastest - slowest)).max(0.05);
+    let panel = |i: usize, y| Axes {
+        corner: (LEFT + APART * i as f64, TOP),
+        size: PANEL,
+        x: (first, last),
+        y,
+    };
+    let of_p = panel(0, (0.0, (1.1 * highest).clamp(0.02, 1.0)));
+    let of_speed = panel(1, (slowest - margin, fastest + margin));
+    draw_curve(&mut svg, &of_p, rows, &probability);
+    of_p.draw(&mut svg, "", "pitch angle (deg)", "P");
+    draw_curve(&mut svg, &of_speed, rows, &speed);
+    let label = format!("best speed ({long}/s)");
+    of_speed.draw(&mut svg, "", "pitch angle (deg)", &label);
+    let caption =
+        "P of the best shot at each pitch angle, and its speed. Open circle: the highest P.";
+    Some(Plot {
+        name: "best_by_pitch".to_owned(),
+        caption: caption.to_owned(),
+        svg: svg.finish(caption),
+    })
+}
+
+/// Draws a value of the shots as a line with points; a gap where there is no shot.
+fn draw_curve(svg: &mut Svg, axes: &Axes, rows: &[ShotAtPitch], value: &dyn Fn(&TableShot) -> f64) {
+    axes.draw_grid(svg);
+    let style = format!("stroke=\"{INK}\" stroke-width=\"2\" fill=\"none\"");
+    let point =
+        |row: &ShotAtPitch, shot: &TableShot| axes.pixel((row.pitch_rad / DEGREE_RAD, value(shot)));
+    for stretch in rows.split(|row| row.shot.is_none()) {
+        let points = stretch
+            .iter()
+            .filter_map(|row| Some(point(row, row.shot.as_ref()?)));
+        svg.polyline(points, &style);
+    }
+    let shots = rows
+        .iter()
+        .filter_map(|row| Some((row, row.shot.as_ref()?)));
+    for (row, shot) in shots.clone() {
+        svg.circle(point(row, shot), 3.0, &format!("fill=\"{INK}\""));
+    }
+    let best = shots.max_by(|a, b| a.1.probability.total_cmp(&b.1.probability));
+    if let Some((row, shot)) = best {
+        let (x, y) = point(row, shot);
+        let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"2\"");
+        svg.circle((x, y), 7.0, &style);
+        let dashes = format!("stroke=\"{FAINT}\" stroke-dasharray=\"4 3\" fill=\"none\"");
+        svg.polyline([(x, y), (x, axes.corner.1 + axes.size.1)], &dashes);
+    }
+}
