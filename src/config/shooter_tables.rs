@@ -44,7 +44,16 @@ fn read_dispersion(
     let of_speed = grown_error(table, ["c10", "speed"], "c11", diagnostics);
     let of_backspin = grown_error(table, ["c40", "backspin"], "c41", diagnostics);
     let mut required = |keys, dimension| {
+        let before = diagnostics.len();
         let value = table.required_as(keys, dimension, diagnostics);
+        if matches!(dimension, Dimension::Speed | Dimension::Spin) {
+            let of_writing = |message: &str| message.contains("; write");
+            for diagnostic in &mut diagnostics[before..] {
+                if of_writing(&diagnostic.message) {
+                    diagnostic.message += ", or a share such as \"1.5 %\"";
+                }
+            }
+        }
         value.unwrap_or(0.0)
     };
     let c10_m_s = match of_speed {

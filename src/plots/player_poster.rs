@@ -76,7 +76,11 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
                 if others == 1 { "is" } else { "are" }
             ),
         },
-        bank_in_words(&bank, units),
+        if bank.is_empty() {
+            direct_in_words(results.chances())
+        } else {
+            bank_in_words(&bank, units)
+        },
         format!(
             "Your hardest place is {}: {} of 100 go in.",
             worst.1.in_words_with_mirror(&alike(worst.0), units),
@@ -143,6 +147,17 @@ fn pale(p: f64) -> Rgb {
     sequential(p).map(|part| 140 + (u16::from(part) * 115 / 255) as u8)
 }
 
+/// That the bank shot is better at no place, and at how many it is as good.
+fn direct_in_words(places: &[PlaceProbabilities]) -> String {
+    let is_level = |place: &&PlaceProbabilities| place.preference() == Some(Preference::Either);
+    let level = match places.iter().filter(is_level).count() {
+        0 => String::new(),
+        1 => "; at one place it is as good".to_owned(),
+        places => format!("; at {places} places it is as good"),
+    };
+    format!("Shoot direct: from no place does the bank shot make 1 of 100 more{level}.")
+}
+
 /// Where banking helps most, and how to.
 fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
     let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
@@ -150,7 +165,7 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         .iter()
         .reduce(|a, b| if gain(b) > gain(a) { b } else { a });
     let Some(most) = most else {
-        return "Shoot direct: from no place does the bank shot make 1 of 100 more.".to_owned();
+        return String::new();
     };
     let in_hundred = |p: Option<Difference>| p.map(|p| shown(p.value));
     let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));

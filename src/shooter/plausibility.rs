@@ -3,7 +3,7 @@
 use super::profile::Profile;
 use super::release_variable::NominalVariable;
 use crate::model::{Preset, SolidId};
-use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 
 /// The speed that the scatter of speeds is looked at, m/s: that of a free throw.
 const USUAL_SPEED_M_S: f64 = 7.4;
@@ -33,9 +33,15 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     let height = feet(shooter.release_height_m);
     say(
         !(1.5..=9.5).contains(&height),
-        format!(
-            "shooter.release_height: a release {height:.1} ft above the floor; players release at 5 to 9 ft"
-        ),
+        match profile.output().units {
+            UnitSystem::Imperial => format!(
+                "shooter.release_height: a release {height:.1} ft above the floor; players release at 5 to 9 ft"
+            ),
+            UnitSystem::Metric => format!(
+                "shooter.release_height: a release {:.3} m above the floor; players release at 1.5 to 2.7 m",
+                shooter.release_height_m
+            ),
+        },
     );
     say(
         feet(speed_sd) > 1.5,

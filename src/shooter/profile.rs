@@ -195,8 +195,8 @@ impl Shooter {
         }
         checks.require(
             "shooter.release_height",
-            self.release_height_m > 0.0 && self.release_height_m < 10.0,
-            "above 0 and below 10 m",
+            (0.05..10.0).contains(&self.release_height_m),
+            "0.05 m or more and below 10 m, of the ball's centre above the floor",
         );
         for (key, spin) in [
             ("shooter.max_backspin", self.max_backspin_rad_s),

@@ -225,6 +225,19 @@ int main() {
 }
 "#;
 
+const JAVA_MAIN: &str = r#"
+public class Main {
+    public static void main(String[] arguments) {
+        for (double distance : new double[] {11.5, 9.0}) {
+            double[] shot = Launcher.lookUp(distance);
+            if (!(shot[Launcher.SPEED_FT_S] == shot[0]) && distance > 10) throw new Error();
+            for (double value : shot) System.out.print(value + " ");
+            System.out.println();
+        }
+    }
+}
+"#;
+
 #[test]
 fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     let folder = TempDir::new().unwrap();
@@ -240,6 +253,7 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     .exits(2)
     .says("the name of no Java class");
     write_file(&folder, "t.cpp", CPP_MAIN);
+    write_file(&folder, "Main.java", JAVA_MAIN);
     let csv = fs::read_to_string(folder.path().join("t.csv")).unwrap();
     let speeds: Vec<f64> = csv
         .lines()
@@ -262,6 +276,11 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
             "python3",
         ),
         ("sh", vec!["-c", "c++ -std=c++11 -o t t.cpp && ./t"], "c++"),
+        (
+            "sh",
+            vec!["-c", "javac Main.java Launcher.java && java Main"],
+            "javac",
+        ),
     ] {
         if !is_installed(missing) {
             println!("skipped: {missing} is not installed");

@@ -305,7 +305,7 @@ fn stages_of_round(round: usize) -> [String; 2] {
 
 /// The best shot of a kind with values that the search leaves as they are; `None` if there is no
 /// clean one.
-pub(in crate::best_shot) fn best_with_fixed(
+pub(crate) fn best_with_fixed(
     profile: &Profile,
     kind: ShotKind,
     fixed: &[(NominalVariable, f64)],

@@ -11,6 +11,7 @@ use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
     let notes = [
         kinds_note(table, units),
+        range_note(table, units),
         Some(check_note(table, units)),
         added_note(table, units),
         jump_note(table, units),
@@ -80,6 +81,20 @@ pub(super) fn physics_note(profile: &Profile, units: UnitSystem) -> String {
         physics.restitution_on(SolidId::Board)
     )
 }
+
+/// From where P is high, for the levels of [`HIGH`] that some rows reach and others do not.
+fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let of_levels = HIGH.iter().filter_map(|level| {
+        let places = Places::of(table, |shot| shot.probability >= *level);
+        let is_some = !places.is_empty() && places.count() < table.shots.len();
+        is_some.then(|| format!("{level} or more at {}", places.text(table, units)))
+    });
+    let texts: Vec<String> = of_levels.collect();
+    (!texts.is_empty()).then(|| format!("P is {}.", texts.join("; ")))
+}
+
+/// Levels of P that are told from where to where they are reached.
+const HIGH: [f64; 3] = [0.9, 0.8, 0.5];
 
 /// What interpolation costs, and by how much the interpolated P errs.
 fn check_note(table: &ShotTable, units: UnitSystem) -> String {

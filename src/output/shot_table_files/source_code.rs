@@ -83,9 +83,9 @@ pub fn source_code(
         _ => ("{", "}"),
     };
     let indent = if language == Language::Java {
-        "    "
+        "            "
     } else {
-        ""
+        "    "
     };
     let values = values(units);
     let rows: Vec<String> = table
@@ -99,7 +99,7 @@ pub fn source_code(
                     _ => nan.to_owned(),
                 })
                 .collect();
-            format!("{indent}    {open}{}{close},\n", cells.join(", "))
+            format!("{indent}{open}{}{close},\n", cells.join(", "))
         })
         .collect();
     let names: Vec<&str> = values.iter().map(|(name, ..)| name.as_str()).collect();
@@ -135,6 +135,7 @@ pub fn source_code(
             .to_owned(),
         "NaN outside the table, and beside a place without a shot.".to_owned(),
     ];
+    about.push(example(language, class, names[0]));
     about.extend(notes(table, units));
     let comment = |prefix: &str| {
         let options = textwrap::Options::new(100 - prefix.len() - 1);
@@ -158,18 +159,77 @@ pub fn source_code(
         .replace("@CLASS@", class)
         .replace("@DISTANCES@", &list(&table.distances_m, metre))
         .replace("@ANGLES@", &list(&table.angles_rad, DEGREE_RAD))
-        .replace("@ROWS@", &rows.concat())
+        .replace("@NAMES@", &constants(language, &names))
+        .replace(
+            "@ROWS@",
+            &match language {
+                Language::Java => java_blocks(&rows),
+                _ => rows.concat(),
+            },
+        )
+        .replace("@JAVA_ROWS@", &JAVA_ROWS.to_string())
         .replace("@VALUES@", &values.len().to_string())
         .replace("@LINEAR@", &(values.len() - NOT_INTERPOLATED).to_string())
 }
 
+/// How the source is used.
+fn example(language: Language, class: &str, first: &str) -> String {
+    let index = first.to_uppercase();
+    match language {
+        Language::Java => format!(
+            "Example: double[] shot = {class}.lookUp(12.5); double speed = shot[{class}.{index}]; \
+             if (!Double.isNaN(speed)) ..."
+        ),
+        Language::Cpp => format!(
+            "Example: const auto shot = shot_table::look_up(12.5); const double speed = \
+             shot[shot_table::{index}]; if (!std::isnan(speed)) ..."
+        ),
+        Language::Python => format!(
+            "Example: shot = look_up(12.5); speed = shot[{index}]; if not math.isnan(speed): ..."
+        ),
+    }
+}
+
+/// The indices of the values by name.
+fn constants(language: Language, names: &[&str]) -> String {
+    let constant = |(k, name): (usize, &&str)| {
+        let name = name.to_uppercase();
+        match language {
+            Language::Java => format!("    public static final int {name} = {k};\n"),
+            Language::Cpp => format!("constexpr std::size_t {name} = {k};\n"),
+            Language::Python => format!("{name} = {k}\n"),
+        }
+    };
+    names.iter().enumerate().map(constant).collect()
+}
+
+/// Rows of a block of a Java source: a method may have 64 KiB of code, about 700 rows.
+const JAVA_ROWS: usize = 200;
+
+/// Methods that each give a block of rows, and the table of all blocks.
+fn java_blocks(rows: &[String]) -> String {
+    let mut text = String::new();
+    let mut calls = Vec::new();
+    for (k, block) in rows.chunks(JAVA_ROWS).enumerate() {
+        calls.push(format!("shots{k}()"));
+        text += &format!(
+            "    private static double[][] shots{k}() {{\n        return new double[][] {{\n{}        }};\n    }}\n\n",
+            block.concat()
+        );
+    }
+    text + &format!(
+        "    private static final double[][][] BLOCKS = {{{}}};\n",
+        calls.join(", ")
+    )
+}
+
 const JAVA: &str = "\
 @ABOUT@public final class @CLASS@ {
+@NAMES@
     private static final double[] DISTANCES = {@DISTANCES@};
     private static final double[] ANGLES = {@ANGLES@};
-    private static final double[][] SHOTS = {
-@ROWS@    };
 
+@ROWS@
     private @CLASS@() {}
 
     public static double[] lookUp(double distance, double angle) {
@@ -187,7 +247,8 @@ const JAVA: &str = "\
             for (int j = 0; j < 2; j++) {
                 double weight = (i == 0 ? 1 - y : y) * (j == 0 ? 1 - x : x);
                 if (weight == 0) continue;
-                double[] shot = SHOTS[(a + i) * DISTANCES.length + d + j];
+                int row = (a + i) * DISTANCES.length + d + j;
+                double[] shot = BLOCKS[row / @JAVA_ROWS@][row % @JAVA_ROWS@];
                 for (int k = 0; k < @LINEAR@; k++) result[k] += weight * shot[k];
                 for (int k = @LINEAR@; k < result.length; k++) result[k] = Math.min(result[k], shot[k]);
             }
@@ -220,6 +281,7 @@ const CPP: &str = "\
 
 namespace shot_table {
 
+@NAMES@
 constexpr double distances[] = {@DISTANCES@};
 constexpr double angles[] = {@ANGLES@};
 constexpr double shots[][@VALUES@] = {
@@ -271,6 +333,7 @@ const PYTHON: &str = "\
 @ABOUT@import bisect
 import math
 
+@NAMES@
 DISTANCES = [@DISTANCES@]
 ANGLES = [@ANGLES@]
 SHOTS = [
@@ -299,3 +362,21 @@ def look_up(distance, angle=ANGLES[0]):
                         result[k] = value
     return result
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A class of a large table compiles: no method has more rows than fit.
+    #[test]
+    fn contract_a_large_java_table_is_divided() {
+        let rows: Vec<String> = (0..2 * JAVA_ROWS + 1)
+            .map(|k| format!("{{{k}.0}},\n"))
+            .collect();
+        let text = java_blocks(&rows);
+        assert!(text.contains("BLOCKS = {shots0(), shots1(), shots2()};"));
+        let last = text.split("shots2() {").nth(1).unwrap();
+        assert_eq!(last.matches(".0}").count(), 1);
+        assert_eq!(text.matches(".0}").count(), rows.len());
+    }
+}
