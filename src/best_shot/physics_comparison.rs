@@ -204,10 +204,10 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         ("hoop_restitution 0.70", true, |physics| {
             set_restitution(physics, 0.70);
         }),
-        ("release_height 0.1 ft lower", true, |physics| {
+        ("release 0.1 ft lower", true, |physics| {
             physics.hoop_height_m += 0.1 * FOOT_M;
         }),
-        ("release_height 0.1 ft higher", true, |physics| {
+        ("release 0.1 ft higher", true, |physics| {
             physics.hoop_height_m -= 0.1 * FOOT_M;
         }),
         ("friction 0.8", true, |physics| {

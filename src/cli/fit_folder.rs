@@ -6,7 +6,7 @@ use super::measured_shots_flags::MeasuredShotsOptions;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::fitting::{
-    Draw, DrawProbabilities, Place, Posterior, SpinSource, WeightedShots, fitted_profile,
+    Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, WeightedShots, fitted_profile,
     usual_probabilities, values_of,
 };
 use crate::output::fit_files::draws_table::read_draws;
@@ -406,6 +406,44 @@ pub(crate) fn kinds_over_draws(
         );
     }
     Ok(text)
+}
+
+/// P of the best shot at each pitch angle over the draws of a fit, and by how much it is less than
+/// at the best of these angles, in words.
+pub(crate) fn angles_over_draws(
+    (folder, fit): (&Path, &FitFolder),
+    profile: &Profile,
+    nominals: &[(f64, &Nominal)],
+) -> Result<String, Failure> {
+    let mut angles = Vec::new();
+    for (pitch_rad, nominal) in nominals {
+        let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
+        angles.push((pitch_rad / DEGREE_RAD, p));
+    }
+    let mean = |(_, p): &(f64, DrawProbabilities)| p.interval().mean;
+    let best = angles
+        .iter()
+        .reduce(|a, b| if mean(b) > mean(a) { b } else { a });
+    let Some((best_deg, best)) = best else {
+        return Ok(String::new());
+    };
+    let mut text = format!(
+        "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, draw by draw (95 %)\n",
+        which_draws(folder, fit)
+    );
+    for (pitch_deg, p) in &angles {
+        let [mean, low, high] = percents(&p.interval());
+        let [less, least, most] = percents(&best.minus(p).interval());
+        text += &format!(
+            "{pitch_deg:>5.1}  {mean:>5.1} ({low:>4.1} to {high:>4.1})  {less:>5.1} ({least:>+5.1} to {most:>+5.1})\n"
+        );
+    }
+    Ok(text)
+}
+
+/// Mean and ends in percent. Rounded first, and 0 added: no negative zero.
+fn percents(interval: &Interval) -> [f64; 3] {
+    [interval.mean, interval.low, interval.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0)
 }
 
 /// Which draws an interval is over, and what it leaves out.

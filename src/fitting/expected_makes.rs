@@ -123,6 +123,22 @@ pub struct ExpectedMakes {
     pub bins: Vec<ReliabilityBin>,
 }
 
+impl ExpectedMakes {
+    /// The three shots with the least chance of what became of them: line, chance of a make, and
+    /// whether it went in.
+    pub(super) fn most_surprising(&self) -> Vec<(u64, f64, bool)> {
+        let known = self.shots.iter();
+        let known = known.filter_map(|shot| Some((shot.row, shot.chance, shot.made?)));
+        let mut shots: Vec<(u64, f64, bool)> = known.collect();
+        let of_result = |(_, chance, made): &(u64, f64, bool)| {
+            if *made { *chance } else { 1.0 - chance }
+        };
+        shots.sort_by(|a, b| of_result(a).total_cmp(&of_result(b)));
+        shots.truncate(3);
+        shots
+    }
+}
+
 /// The release of a measured shot, given the shooter: mean and covariance.
 pub(super) fn release_given(
     shot: &MeasuredRelease,
@@ -378,6 +394,8 @@ mod tests {
         // Each adds 0.8 * 0.6 with a variance of 0.36 * 0.16.
         let expected = 50.0 * 0.48 / (50.0 * 0.36 * 0.16_f64).sqrt();
         let found = summary(wrong.collect());
+        assert_eq!(found.most_surprising()[0].1, 0.8);
+        assert!(!found.most_surprising()[0].2);
         assert!(
             (found.calibration_z.unwrap() - expected).abs() < 1e-9,
             "{found:?}"

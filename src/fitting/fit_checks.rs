@@ -81,8 +81,9 @@ pub enum FitWarning {
     MostlyPopulation(&'static str, f64),
     /// The tracker seems to err more, or less, than stated: the ratio of seen to stated variance.
     OtherNoise(f64),
-    /// The shots are not normal: the p-values of Mardia's skewness and kurtosis.
-    NotNormal(f64, f64),
+    /// The shots are not normal: the p-values of Mardia's skewness and kurtosis, and whether the
+    /// means of the sessions differ, which alone can cause it.
+    NotNormal([f64; 2], bool),
     /// The tails are heavier than normal ones, and were fitted: one over the degrees of freedom.
     HeavyTails(f64),
     /// The aim drifts within the sessions: value, p-value.
@@ -91,8 +92,9 @@ pub enum FitWarning {
     SessionsDiffer(&'static str, f64),
     /// The number of makes is not what these shots give: seen, expected, its standard deviation.
     OtherMakes(usize, f64, f64),
-    /// The chances are too sure: see [`ExpectedMakes::calibration_z`](super::ExpectedMakes).
-    TooSure(f64),
+    /// The chances are too sure: see [`ExpectedMakes::calibration_z`](super::ExpectedMakes). With
+    /// the most surprising shots: line, chance and result.
+    TooSure(f64, Vec<(u64, f64, bool)>),
     /// Neighbouring shots are alike: value, p-value.
     SerialCorrelation(&'static str, f64),
 }
@@ -115,9 +117,14 @@ impl std::fmt::Display for FitWarning {
                 "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE",
                 ratio.sqrt()
             ),
-            Self::NotNormal(skewness, kurtosis) => write!(
+            Self::NotNormal([skewness, kurtosis], sessions_differ) => write!(
                 out,
-                "the releases are not normal (Mardia: skewness p = {skewness:.4}, kurtosis p = {kurtosis:.4}); look for outliers, or for shots of two kinds"
+                "the releases are not normal (Mardia: skewness p = {skewness:.4}, kurtosis p = {kurtosis:.4}); {}",
+                if *sessions_differ {
+                    "the sessions differ (see there), which alone can be the reason: fit each with --session"
+                } else {
+                    "look for outliers, or for shots of two kinds"
+                }
             ),
             Self::HeavyTails(weight) => write!(
                 out,
@@ -128,10 +135,17 @@ impl std::fmt::Display for FitWarning {
                 out,
                 "{made} shots went in where {expected:.1} \u{b1} {sd:.1} were expected of the measured releases; {LOOK_AT}"
             ),
-            Self::TooSure(z) => write!(
-                out,
-                "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right): shots that were called sure missed, or hopeless ones went in. First suspect the tracker's noise (--tracker FILE with a greater one); then {LOOK_AT}"
-            ),
+            Self::TooSure(z, shots) => {
+                let shown = shots.iter().map(|(line, chance, made)| {
+                    let result = if *made { "went in" } else { "missed" };
+                    format!("line {line} (chance {chance:.2}) {result}")
+                });
+                write!(
+                    out,
+                    "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right). The most surprising: {}. First suspect the tracker's noise (--tracker FILE with a greater one) and these rows; then look at the place, the height of the release, the columns and the physics",
+                    shown.collect::<Vec<_>>().join(", ")
+                )
+            }
             Self::Drift(name, p) => write!(
                 out,
                 "{name} drifts from the first shot to the last ({})",
@@ -411,7 +425,12 @@ pub fn warnings(
     if typical.tail_weight > 0.0 {
         warnings.push(FitWarning::HeavyTails(typical.tail_weight));
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
-        warnings.push(FitWarning::NotNormal(shape.skewness_p, shape.kurtosis_p));
+        let sessions_differ =
+            |trend: &SessionTrend| trend.sessions_p.is_some_and(|p| p < WARNING_LEVEL);
+        warnings.push(FitWarning::NotNormal(
+            [shape.skewness_p, shape.kurtosis_p],
+            trends.iter().any(sessions_differ),
+        ));
     }
     for trend in trends {
         if let Some(p) = trend.sessions_p.filter(|p| *p < WARNING_LEVEL) {

@@ -128,7 +128,7 @@ pub fn fit_shooter(
             makes.expected_sd,
         ));
     } else if let Some(z) = makes.calibration_z.filter(|z| *z > FAR_CALIBRATION) {
-        warnings.push(FitWarning::TooSure(z));
+        warnings.push(FitWarning::TooSure(z, makes.most_surprising()));
     }
     Ok(ShooterFit {
         name: test.name.to_owned(),

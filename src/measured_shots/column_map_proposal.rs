@@ -13,6 +13,7 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "releaseht",
             "heightofrelease",
             "relheight",
+            "relht",
             "releasez",
             "releasein",
             "releasecm",
@@ -309,6 +310,10 @@ fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static st
                 .find(|(target, _)| short.is_some_and(|(short, _)| short == target))
         })?;
     let target = match found.0 {
+        // `Angle` beside `Arc`.
+        "pitch" if is_landing && letters == "angle" && taken.contains(&"entry_angle") => {
+            "court_angle"
+        }
         "pitch" if is_landing && (letters.starts_with("arc") || letters.starts_with("angle")) => {
             "entry_angle"
         }
@@ -512,6 +517,12 @@ mod tests {
         assert_eq!(unit_of("margin", Quantity::Depth), None);
         assert_eq!(unit_of("Spin", Quantity::Backspin), None);
         assert_eq!(unit_of("spin_hz", Quantity::Backspin), Some("rev_s"));
+        assert_eq!(target_of("RelHt", true, &[]), Some("release_height"));
+        assert_eq!(
+            target_of("Angle", true, &["entry_angle"]),
+            Some("court_angle")
+        );
+        assert_eq!(target_of("Angle", true, &[]), Some("entry_angle"));
         assert_eq!(
             target_of("rel_height_m", false, &[]),
             Some("release_height")

@@ -36,11 +36,14 @@ pub fn draw(
     svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
     let speed = move |shot: &TableShot| shot.nominal.speed_m_s / metre;
     let probability = |shot: &TableShot| shot.probability;
-    let highest = rows
+    let chances = rows
         .iter()
         .filter_map(|row| row.shot.as_ref())
-        .map(probability)
-        .fold(0.0, f64::max);
+        .map(probability);
+    let (lowest, highest) = chances.fold((1.0_f64, 0.0_f64), |(low, high), p| {
+        (low.min(p), high.max(p))
+    });
+    let p_margin = (0.08 * (highest - lowest)).max(0.005);
     let speeds = rows.iter().filter_map(|row| row.shot.as_ref()).map(speed);
     let (slowest, fastest) = speeds.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
         (low.min(v), high.max(v))
@@ -52,7 +55,10 @@ pub fn draw(
         x: (first, last),
         y,
     };
-    let of_p = panel(0, (0.0, (1.1 * highest).clamp(0.02, 1.0)));
+    let of_p = panel(
+        0,
+        ((lowest - p_margin).max(0.0), (highest + p_margin).min(1.0)),
+    );
     let of_speed = panel(1, (slowest - margin, fastest + margin));
     draw_curve(&mut svg, &of_p, rows, &probability);
     of_p.draw(&mut svg, "", "pitch angle (deg)", "P");

@@ -45,7 +45,9 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let best = best.fold(first, |a, b| if b.0 > a.0 { b } else { a });
     let worst = found.iter().copied();
     let worst = worst.fold(first, |a, b| if b.0 < a.0 { b } else { a });
-    let is_bank = |place: &PlaceProbabilities| place.preference() == Some(Preference::Bank);
+    let is_bank = |place: &PlaceProbabilities| {
+        place.preference() == Some(Preference::Bank) && place.is_sure()
+    };
     let at = |place: &PlaceProbabilities| (place.place.x_m, place.place.y_m);
     let bank = results.chances().iter().filter(|place| is_bank(place));
     let bank: Vec<&PlaceProbabilities> = bank.collect();
@@ -80,7 +82,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
             direct_in_words(results.chances())
         } else {
             bank_in_words(&bank, units)
-        },
+        } + &doubt_in_words(results.chances()),
         format!(
             "Your hardest place is {}: {} of 100 go in.",
             worst.1.in_words_with_mirror(&alike(worst.0), units),
@@ -128,9 +130,13 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
 /// Places whose P is less than this below the greatest are as sure.
 const AS_SURE: f64 = 0.01;
 
-/// A chance as the map shows it.
+/// A chance as the map shows it: nobody makes all shots.
 fn shown(p: f64) -> String {
-    format!("{:.0}", 100.0 * p)
+    if p >= 0.995 {
+        ">99".to_owned()
+    } else {
+        format!("{:.0}", 100.0 * p)
+    }
 }
 
 /// A chance in a sentence: nobody makes all shots.
@@ -155,7 +161,21 @@ fn direct_in_words(places: &[PlaceProbabilities]) -> String {
         1 => "; at one place it is as good".to_owned(),
         places => format!("; at {places} places it is as good"),
     };
-    format!("Shoot direct: from no place does the bank shot make 1 of 100 more{level}.")
+    let surely = if places.iter().all(PlaceProbabilities::is_sure) {
+        ""
+    } else {
+        " surely"
+    };
+    format!("Shoot direct: from no place does the bank shot{surely} make 1 of 100 more{level}.")
+}
+
+/// At how many places the measured shots leave the kind of shot open; empty if at none.
+fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
+    match places.iter().filter(|place| !place.is_sure()).count() {
+        0 => String::new(),
+        1 => " At one place your measured shots do not tell yet which is better.".to_owned(),
+        open => format!(" At {open} places your measured shots do not tell yet which is better."),
+    }
 }
 
 /// Where banking helps most, and how to.

@@ -79,6 +79,12 @@ impl<'a> SweepResults<'a> {
         }
     }
 
+    /// The same with chances that are known to be sure or not.
+    #[must_use]
+    pub fn with_chances(self, chances: Vec<PlaceProbabilities>) -> Self {
+        Self { chances, ..self }
+    }
+
     pub(super) fn places(&self) -> &[PlaceResults] {
         &self.places
     }

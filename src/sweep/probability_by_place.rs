@@ -8,7 +8,7 @@ use super::job_list::Jobs;
 use super::result_row::ResultRow;
 use super::sweep_toml::SweepConfig;
 use crate::analysis::sensitivity::Difference;
-use crate::shooter::ShotKind;
+use crate::shooter::{Nominal, ShotKind};
 use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 
@@ -53,6 +53,9 @@ impl Preference {
     }
 }
 
+/// The kind of shot that is better in this share of the draws of a fit is surely so.
+pub const SURE: f64 = 0.9;
+
 /// Places nearer than this are the same, m.
 const SAME_PLACE_M: f64 = 0.01;
 
@@ -67,6 +70,11 @@ pub struct PlaceProbabilities {
     pub direct: Option<Difference>,
     /// P of the best bank shot.
     pub bank: Option<Difference>,
+    /// The best direct and the best bank shot.
+    pub nominals: [Option<Nominal>; 2],
+    /// The share of the draws of the player's fit in which the bank shot is the better one; `None`
+    /// without a fit, or where it was not computed.
+    pub bank_is_better: Option<f64>,
     /// Where on the board the best bank shot hits it: to the right of its middle line and above the
     /// hoop, m.
     pub board_aim_m: Option<(f64, f64)>,
@@ -90,14 +98,18 @@ impl PlaceProbabilities {
         (0..jobs.sources.len())
             .map(|place| {
                 let bank = row_of(place, ShotKind::Bank);
+                let direct = row_of(place, ShotKind::Direct);
+                let nominal = |row: &Option<ResultRow>| row.as_ref().and_then(ResultRow::nominal);
                 Self {
+                    nominals: [nominal(&direct), nominal(&bank)],
+                    bank_is_better: None,
                     place: jobs.sources[place].place,
                     name: config
                         .place_names
                         .get(place)
                         .filter(|name| !name.is_empty())
                         .cloned(),
-                    direct: row_of(place, ShotKind::Direct).and_then(|row| row.probability()),
+                    direct: direct.as_ref().and_then(ResultRow::probability),
                     bank: bank.as_ref().and_then(ResultRow::probability),
                     board_aim_m: bank.and_then(|row| {
                         Some((
@@ -121,6 +133,24 @@ impl PlaceProbabilities {
     #[must_use]
     pub fn preference(&self) -> Option<Preference> {
         Preference::of(self.direct, self.bank)
+    }
+
+    /// The share of the draws in which the preferred kind is the better one; `None` where neither
+    /// is preferred, or without draws.
+    #[must_use]
+    pub fn share_of_preferred(&self) -> Option<f64> {
+        match (self.preference()?, self.bank_is_better?) {
+            (Preference::Bank, share) => Some(share),
+            (Preference::Direct, share) => Some(1.0 - share),
+            (Preference::Either, _) => None,
+        }
+    }
+
+    /// Whether the draws of the player's fit, if there are any, leave no doubt about the preferred
+    /// kind.
+    #[must_use]
+    pub fn is_sure(&self) -> bool {
+        self.share_of_preferred().is_none_or(|share| share >= SURE)
     }
 
     /// P of the bank shot minus that of the direct one; `None` where one of them is missing.

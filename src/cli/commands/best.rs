@@ -30,7 +30,7 @@ Examples:
 Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
 best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
 pub(crate) struct BestOptions {
-    /// The shooter's profile.
+    /// The shooter's profile, or the folder of a fit.
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,

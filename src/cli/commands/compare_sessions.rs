@@ -391,7 +391,7 @@ fn only_session(shots: &ShooterShots, session: &str, other: &str) -> ShooterShot
     }
 }
 
-/// P, and mean and standard deviation of each value.
+/// P, mean and standard deviation of each value, and the correlations.
 fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<SessionChange> {
     let [before, after] = sessions;
     let posteriors = [&before.posterior, &after.posterior];
@@ -425,6 +425,14 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
             compare_sessions(posteriors, |draw| draw.means[before.place][i]),
         );
         add("sd", compare_sessions(posteriors, |draw| draw.sds[i]));
+    }
+    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+        changes.push(SessionChange {
+            name: format!("corr_{}_{}", VALUE_NAMES[a], VALUE_NAMES[b]),
+            unit: "",
+            size: 1.0,
+            comparison: compare_sessions(posteriors, |draw| draw.correlation[(a, b)]),
+        });
     }
     changes
 }

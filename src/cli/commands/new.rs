@@ -65,7 +65,9 @@ impl Template {
             Self::Player => format!("bankshot best {file}"),
             Self::Sweep => format!("bankshot plan {file}"),
             Self::Robot => {
-                format!("bankshot table {file} --kind best --distances '6 ft to 20 ft by 2 ft'")
+                format!(
+                    "bankshot table {file} --draft --kind best --pitch '60 deg' --distances '6 ft to 20 ft by 2 ft'"
+                )
             }
             Self::Physics => format!("bankshot check PROFILE.toml --physics {file} --verbose"),
         }

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Searches the best shots under nearly twenty physics: one to four minutes on two cores. What nobody measured in this gym (how soft the \
-ring is, the friction, the drag) is changed to both ends of what is likely; \"together\" is, for \
+ring is, the friction, the drag) is changed to other likely values; \"together\" is, for \
 the changes that lower P and for those that raise it, the root of the sum of squares, of each quantity the change that does most.
 
 Examples:

@@ -4,11 +4,12 @@ use super::table::TableFormat;
 use crate::best_shot::{ShotKind, ShotTableError, best_by_pitch};
 use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder;
 use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
@@ -27,9 +28,10 @@ Examples:
   bankshot pitch-curve configs/free_throw.toml
   bankshot pitch-curve player.toml --pitches '45 deg to 60 deg by 1 deg' \\
     --plot pitch.svg -o pitch.csv
-  bankshot pitch-curve player.toml --kind bank --backspin '2 rev/s'")]
+  bankshot pitch-curve player.toml --kind bank --backspin '2 rev/s'
+  bankshot pitch-curve results/season-fit --draws results/season-fit")]
 pub(crate) struct PitchCurveOptions {
-    /// The shooter's profile.
+    /// The shooter's profile, or the folder of a fit.
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
@@ -48,6 +50,10 @@ pub(crate) struct PitchCurveOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
+    /// The folder of a fit: also say how uncertain P at each angle is, and its difference from the
+    /// best angle, by what the shots do not tell about the scatter.
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Vec<PathBuf>,
@@ -96,6 +102,8 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
     let units = profile.output().units;
+    // A folder that is no fit is refused before the search.
+    let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     let kind = options.kind.into();
     let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet)).map_err(
         |error| match error {
@@ -121,6 +129,17 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         plot_files::write_one(path, &plot)?;
     }
     print_answer(&if options.json { json() } else { text() })?;
+    if let Some((folder, fit)) = &draws {
+        let nominals = rows.iter().filter_map(|row| {
+            let shot = row.shot.as_ref()?;
+            Some((row.pitch_rad, &shot.nominal))
+        });
+        let nominals: Vec<_> = nominals.collect();
+        print_prose(&format!(
+            "\n{}",
+            fit_folder::angles_over_draws((folder, fit), &profile, &nominals)?
+        ))?;
+    }
     if !quiet {
         for path in options.output.iter().chain(&options.plot) {
             if path.exists() {

@@ -29,9 +29,10 @@ use std::path::{Path, PathBuf};
 Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
 interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
 interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
+Begin with --draft, which leaves out the checks: a second or two for each place. \
 The table is made in rounds: each looks at the places that the one before added. \
 Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes two to four minutes on two cores, with a free pitch more; \
-with --max-loss 1 no nodes are added, which takes half of the time or less; --draft leaves out the checks too.
+--kind best makes a table of each kind, which takes twice as long or more; with --max-loss 1 no nodes are added, which takes half of the time or less.
 With --output a stopped table is not lost: what it found is kept beside the file, and the same command goes on with it.
 
 Examples:
@@ -234,7 +235,19 @@ fn unfinished_table(
     let failure = |error| Failure::io(path.display(), &error);
     let identity = UnfinishedTable::identity(profile, request)
         .map_err(|error| failure(io::Error::other(error)))?;
-    let unfinished = UnfinishedTable::open(&path, &identity).map_err(failure)?;
+    let unfinished = UnfinishedTable::open(&path, &identity).map_err(|error| {
+        if error.kind() == io::ErrorKind::NotFound {
+            Failure::io(output.display(), &error)
+        } else {
+            failure(error)
+        }
+    })?;
+    if unfinished.has_replaced() && !quiet {
+        print_remark(&format!(
+            "begins anew: what {} had kept was of another table (profile, request or program)",
+            path.display()
+        ));
+    }
     let places = places_of(unfinished.known());
     if places > 0 && !quiet {
         print_remark(&format!(

@@ -190,6 +190,43 @@ pub fn other_kind_not_advised(advice: &Advice) -> String {
     )
 }
 
+/// Where the advised release should land, against the usual one, in a sentence: what a player sees.
+/// Empty where that is the same.
+#[must_use]
+pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> String {
+    /// Less than this cannot be seen, m.
+    const SEEN_M: f64 = 0.012;
+    let Some([usual, advised]) = &advice.landings else {
+        return String::new();
+    };
+    let (unit, size) = units.short_length();
+    let deeper_m = advised.depth_m - usual.depth_m;
+    let right_m = advised.right_m - usual.right_m;
+    let moved = |by_m: f64, [more, less]: [&str; 2]| {
+        let way = if by_m > 0.0 { more } else { less };
+        (by_m.abs() > SEEN_M).then(|| format!("{:.1} {unit} {way}", by_m.abs() / size))
+    };
+    let moves = [
+        moved(deeper_m, ["deeper", "shorter"]),
+        moved(right_m, ["further right", "further left"]),
+    ];
+    let moves: Vec<String> = moves.into_iter().flatten().collect();
+    if moves.is_empty() {
+        return String::new();
+    }
+    let [now, then] =
+        [usual, advised].map(|landing| format!("{:.0}", landing.entry_angle_rad / DEGREE_RAD));
+    let now = if now == then {
+        "as now".to_owned()
+    } else {
+        format!("now {now}")
+    };
+    format!(
+        "It should then come down {} (entry angle {then} deg, {now}).\n",
+        moves.join(" and ")
+    )
+}
+
 /// What to train, in a sentence: the scatter that costs most, and what costs about as much.
 fn training_in_words(training: &[TrainingGain]) -> String {
     /// What gains this fraction of the largest gain is about as good.
@@ -338,7 +375,7 @@ pub fn advice_text(
         }
         text += &words.release("best shot", &values_of(&best.nominal));
         if let Some([usual, advised]) = &advice.landings {
-            text += "at the height of the hoop; depth from the front of the ring\n";
+            text += "at the height of the hoop; depth from the front of the ring; of the release alone: the mean depth of all shots is less, as scatter in the angle shortens them\n";
             text += &words.landing("usual shot", usual);
             text += &words.landing("advised shot", advised);
         }

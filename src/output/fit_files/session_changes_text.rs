@@ -18,6 +18,14 @@ pub struct SessionChange {
 }
 
 impl SessionChange {
+    /// The name in the table; of a correlation `r speed-pitch`.
+    fn label(&self) -> String {
+        match self.name.strip_prefix("corr_") {
+            Some(pair) => format!("r {}", pair.replace('_', "-")),
+            None => self.name.clone(),
+        }
+    }
+
     /// The words for a growing and a falling value.
     fn directions(&self) -> [&'static str; 2] {
         match self.name.as_str() {
@@ -155,7 +163,7 @@ pub fn session_changes_text(
         let change = change_of_share(first, second);
         let [by, low, high] = [change.share, change.low, change.high].map(in_points);
         text += &format!(
-            "The chance is that of the releases as measured; the makes themselves went from {:.0} to {:.0} %, {by:+.0} points (95 %: {low:+.0} to {high:+.0}).\n",
+            "Luck at the ring is not in this chance; the makes themselves went from {:.0} to {:.0} %, {by:+.0} points (95 %: {low:+.0} to {high:+.0}).\n",
             percent(made, first.1),
             percent(made_then, second.1)
         );
@@ -168,6 +176,7 @@ pub fn session_changes_text(
         text += &line(change, changes.len() - 1);
     }
     text += "\n\
+        r          a correlation\n\
         direction  the chance that it changed this way at all; 50 % says nothing\n\
         decide     about how many shots a session would decide a change of this size; for the values below P with room for chance, as several are looked at. yes: decided now. -: less than its own uncertainty, so its size says nothing (`bankshot design` says what a change of 5 or 10 points takes)\n";
     text
@@ -212,6 +221,7 @@ fn values_in_words(changes: &[SessionChange]) -> String {
         let (direction, _) = change.direction();
         let decimals = change.decimals();
         let amount = format!("{:.decimals$} {}", by.mean.abs(), change.unit);
+        let amount = amount.trim_end();
         match change.name.as_str() {
             "polar_mean" => format!("the aim moved {amount} to the {direction}"),
             name => format!("{} {direction} by {amount}", quantity_in_words(name)),
@@ -253,6 +263,9 @@ fn quantity_in_words(name: &str) -> &str {
         "pitch_sd" => "the scatter in the release angle",
         "polar_sd" => "the scatter to left and right",
         "backspin_sd" => "the scatter in backspin",
+        "corr_speed_pitch" => "the correlation of speed and angle",
+        "corr_speed_polar" => "the correlation of speed and direction",
+        "corr_pitch_polar" => "the correlation of angle and direction",
         other => other,
     }
 }
@@ -270,7 +283,7 @@ fn line(change: &SessionChange, tested: usize) -> String {
     let by = comparison.change.scaled(1.0 / change.size);
     let line = format!(
         "{:<13} {:>7.decimals$} {:>7.decimals$} {:>+7.decimals$} {:>7.decimals$} to {:>6.decimals$} {:<5} {direction:<5} {:>3} % {decide:>6}",
-        change.name,
+        change.label(),
         comparison.before.mean / change.size,
         comparison.after.mean / change.size,
         by.mean,

@@ -13,15 +13,15 @@ use serde_json::Value;
 const LEVEL: f64 = 0.01;
 
 /// Name, unit and width of the columns after the pitch angle.
-fn titles(speed_unit: &str) -> [(&'static str, &str, usize); 9] {
+fn titles<'a>(speed_unit: &'a str, other_kind: &'a str) -> [(&'a str, &'a str, usize); 9] {
     [
         ("speed", speed_unit, 6),
         ("aim", "deg", 6),
         ("spin", "rev/s", 5),
         ("entry", "deg", 5),
         ("P", "", 6),
-        ("+-", "", 6),
         ("less", "", 6),
+        (other_kind, "P", 6),
         ("margin", speed_unit, 10),
         ("margin", "deg", 8),
     ]
@@ -63,13 +63,14 @@ pub fn by_pitch_text(
     text += &wrapped(&in_words(rows, (best_row, best), kind, units));
     text += &wrapped(&physics_note(profile, units));
     text += &wrapped(
-        "At each pitch angle the speed, the aim and the spin are the best ones. aim: positive to the \
-         left. +-: numerical standard error of P. less: than the highest P. margin: by how much \
-         speed and pitch can be off, down and up, one at a time and with all else exact, until the \
-         shot first misses.",
+        "At each pitch angle the speed, the aim and the spin are the best ones (--backspin keeps \
+         one); the errors are taken to be the same at all angles. aim: positive to the left. entry: \
+         -, if it hits the ring from below first. less: than the highest P. margin: by how much speed \
+         and pitch can be off, down and up, one at a time and with all else exact, until the shot \
+         first misses.",
     );
     let speed_unit = format!("{long}/s");
-    let titles = titles(&speed_unit);
+    let titles = titles(&speed_unit, kind.other().name());
     let widths: Vec<usize> = std::iter::once(5)
         .chain(titles.iter().map(|(.., width)| *width))
         .collect();
@@ -86,19 +87,24 @@ pub fn by_pitch_text(
         let [speed_sides, pitch_sides] = shot.tolerances;
         let cells = [
             pitch,
-            decimal(shot.nominal.speed_m_s / metre, 2),
+            decimal(shot.nominal.speed_m_s / metre, 3),
             decimal(shot.aim_rad / DEGREE_RAD, 2),
             decimal(shot.nominal.backspin_rad_s / REV_RAD, 2),
             decimal(shot.entry_rad.map_or(f64::NAN, |rad| rad / DEGREE_RAD), 1),
             decimal(shot.probability, 4),
-            decimal(shot.standard_error, 4),
             decimal(best.probability - shot.probability, 4),
+            decimal(shot.other_kind.unwrap_or(f64::NAN), 3),
             both_sides(speed_sides.map(|side| side / metre), 2),
             both_sides(pitch_sides.map(|side| side / DEGREE_RAD), 1),
         ];
         text += &line(cells.iter().map(String::as_str), &widths);
     }
-    text
+    let error = found(rows).map(|(_, shot)| shot.standard_error);
+    let error = error.fold(0.0, f64::max);
+    text + &wrapped(&format!(
+        "P has a numerical standard error of at most {error:.4}; P of the {} shot at that angle is from a short search.",
+        kind.other().name()
+    ))
 }
 
 /// How much the angle matters, in two sentences.

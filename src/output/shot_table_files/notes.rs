@@ -15,7 +15,7 @@ pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
         Some(check_note(table, units)),
         added_note(table, units),
         jump_note(table, units),
-        bounce_note(table),
+        bounce_note(table, units),
         nearly_other_kind_note(table, units),
         unlikely_note(table, units),
         other_kind_note(table, units),
@@ -82,15 +82,52 @@ pub(super) fn physics_note(profile: &Profile, units: UnitSystem) -> String {
     )
 }
 
-/// From where P is high, for the levels of [`HIGH`] that some rows reach and others do not.
+/// From where to where P is high, for the levels of [`HIGH`] that some rows of a table with one
+/// angle reach and others do not.
 fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    if table.angles_rad.len() > 1 {
+        return None;
+    }
+    let (long, metre) = units.length();
     let of_levels = HIGH.iter().filter_map(|level| {
         let places = Places::of(table, |shot| shot.probability >= *level);
         let is_some = !places.is_empty() && places.count() < table.shots.len();
-        is_some.then(|| format!("{level} or more at {}", places.text(table, units)))
+        let ranges = places.0.iter().map(|stretch| {
+            let ends = [(stretch.first(), -1), (stretch.last(), 1)];
+            let [from, to] = ends.map(|(row, step)| {
+                let at_m = row.map_or(f64::NAN, |(_, d)| crossing_m(table, *d, step, *level));
+                format!("{:.2}", at_m / metre)
+            });
+            if from == to {
+                format!("at {from} {long}")
+            } else {
+                format!("from {from} to {to} {long}")
+            }
+        });
+        let ranges: Vec<String> = ranges.collect();
+        is_some.then(|| format!("{level} or more {}", ranges.join(" and ")))
     });
     let texts: Vec<String> = of_levels.collect();
     (!texts.is_empty()).then(|| format!("P is {}.", texts.join("; ")))
+}
+
+/// Where the interpolated P falls to a level beyond a row that is above it, towards the row before
+/// (-1) or after (1), m; at the row itself where there is none, or none with a shot.
+fn crossing_m(table: &ShotTable, row: usize, step: isize, level: f64) -> f64 {
+    let inside_m = table.distances_m[row];
+    let Some(outside) = row
+        .checked_add_signed(step)
+        .filter(|i| *i < table.distances_m.len())
+    else {
+        return inside_m;
+    };
+    match (table.at(0, row), table.at(0, outside)) {
+        (Some(shot), Some(other)) if other.probability < level => {
+            let part = (shot.probability - level) / (shot.probability - other.probability);
+            inside_m + part * (table.distances_m[outside] - inside_m)
+        }
+        _ => inside_m,
+    }
 }
 
 /// Levels of P that are told from where to where they are reached.
@@ -152,10 +189,7 @@ impl Places {
     }
 
     fn count_text(&self) -> String {
-        match self.count() {
-            1 => "one row".to_owned(),
-            count => format!("{count} rows"),
-        }
+        count_text(self.count())
     }
 
     /// The stretches; the longest of them if there are many.
@@ -184,6 +218,13 @@ impl Places {
             1 => named + " and one shorter stretch",
             more => format!("{named} and {more} shorter stretches"),
         }
+    }
+}
+
+fn count_text(rows: usize) -> String {
+    match rows {
+        1 => "one row".to_owned(),
+        rows => format!("{rows} rows"),
     }
 }
 
@@ -271,18 +312,19 @@ fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
 }
 
 /// How many shots touch more than they should.
-fn bounce_note(table: &ShotTable) -> Option<String> {
-    let shots = table.shots.iter().flatten();
-    let bouncing = shots.filter(|shot| !table.is_clean(shot)).count();
-    let off = match table.kind {
-        TableKind::One(ShotKind::Direct) => "off the ring or the board",
-        TableKind::One(ShotKind::Bank) => "off the ring too",
-        TableKind::Better => "off the ring too (a direct one off the ring or the board)",
+fn bounce_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    let bouncing = Places::of(table, |shot| !table.is_clean(shot));
+    let touches = match table.kind {
+        TableKind::One(ShotKind::Direct) => "touches ring or board",
+        TableKind::One(ShotKind::Bank) => "touches the ring after the board",
+        TableKind::Better => "touches the ring (or, a direct one, the board)",
     };
-    (bouncing > 0).then(|| {
+    (!bouncing.is_empty()).then(|| {
         format!(
-            "In {bouncing} of {} rows the best shot goes in {off} even without an error.",
-            table.shots.len()
+            "Not clean: in {} of {} even the best shot without an error {touches} before it goes in: {}.",
+            bouncing.count(),
+            count_text(table.shots.len()),
+            bouncing.text(table, units)
         )
     })
 }
@@ -311,7 +353,7 @@ fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String
     };
     (!places.is_empty()).then(|| {
         format!(
-            "Nearly the other kind: more than a quarter, up to {:.0} %, of the makes of the {touch} at {}.",
+            "Nearly the other kind: more than a quarter, up to {:.0} %, of the makes of the {touch} at {}. What is set stays right; only the name of the kind is open.",
             100.0 * most,
             places.text(table, units)
         )

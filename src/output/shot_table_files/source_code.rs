@@ -135,7 +135,8 @@ pub fn source_code(
             .to_owned(),
         "NaN outside the table, and beside a place without a shot.".to_owned(),
     ];
-    about.push(example(language, class, names[0]));
+    let inside = example_distance(&table.distances_m, metre);
+    about.push(example(language, class, (names[0], &inside)));
     about.extend(notes(table, units));
     let comment = |prefix: &str| {
         let options = textwrap::Options::new(100 - prefix.len() - 1);
@@ -172,20 +173,28 @@ pub fn source_code(
         .replace("@LINEAR@", &(values.len() - NOT_INTERPOLATED).to_string())
 }
 
-/// How the source is used.
-fn example(language: Language, class: &str, first: &str) -> String {
+/// A distance inside the table, with few digits.
+fn example_distance(distances_m: &[f64], metre: f64) -> String {
+    let [first, .., last] = distances_m else {
+        return format!("{:.6}", distances_m[0] / metre);
+    };
+    format!("{:.1}", 0.5 * (first + last) / metre)
+}
+
+/// How the source is used: `first` is the name of the first value, `at` a distance.
+fn example(language: Language, class: &str, (first, at): (&str, &str)) -> String {
     let index = first.to_uppercase();
     match language {
         Language::Java => format!(
-            "Example: double[] shot = {class}.lookUp(12.5); double speed = shot[{class}.{index}]; \
+            "Example: double[] shot = {class}.lookUp({at}); double speed = shot[{class}.{index}]; \
              if (!Double.isNaN(speed)) ..."
         ),
         Language::Cpp => format!(
-            "Example: const auto shot = shot_table::look_up(12.5); const double speed = \
+            "Example: const auto shot = shot_table::look_up({at}); const double speed = \
              shot[shot_table::{index}]; if (!std::isnan(speed)) ..."
         ),
         Language::Python => format!(
-            "Example: shot = look_up(12.5); speed = shot[{index}]; if not math.isnan(speed): ..."
+            "Example: shot = look_up({at}); speed = shot[{index}]; if not math.isnan(speed): ..."
         ),
     }
 }

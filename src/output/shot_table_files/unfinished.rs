@@ -25,6 +25,8 @@ pub struct UnfinishedTable {
     path: PathBuf,
     /// What was found before.
     known: Vec<TableFinding>,
+    /// Whether findings of another table were thrown away.
+    has_replaced: bool,
 }
 
 impl UnfinishedTable {
@@ -71,7 +73,7 @@ impl UnfinishedTable {
         let mut lines = text.split_inclusive('\n');
         let header = lines.next().map(serde_json::from_str::<Header>);
         let mut known = Vec::new();
-        let mut kept = 0;
+        let (mut kept, mut has_replaced) = (0, false);
         match header {
             Some(Ok(header)) if header.unfinished_table == identity => {
                 kept = text.find('\n').map_or(0, |end| end + 1);
@@ -84,7 +86,8 @@ impl UnfinishedTable {
                     kept += line.len();
                 }
             }
-            None | Some(Ok(_)) => {}
+            None => {}
+            Some(Ok(_)) => has_replaced = true,
             Some(Err(_)) => {
                 return Err(io::Error::other(
                     "it is in the way of what an unfinished table keeps; move it",
@@ -97,6 +100,7 @@ impl UnfinishedTable {
             file,
             path: path.to_owned(),
             known,
+            has_replaced,
         };
         if kept == 0 {
             let unfinished_table = identity.to_owned();
@@ -109,6 +113,12 @@ impl UnfinishedTable {
     #[must_use]
     pub fn known(&self) -> &[TableFinding] {
         &self.known
+    }
+
+    /// Whether findings of another table were thrown away when it was opened.
+    #[must_use]
+    pub fn has_replaced(&self) -> bool {
+        self.has_replaced
     }
 
     /// Takes what was found before.
@@ -177,12 +187,9 @@ mod tests {
         table.keep(&finding(1.0)).unwrap();
         drop(table);
         assert_eq!(UnfinishedTable::open(&path, "a").unwrap().known().len(), 3);
-        assert!(
-            UnfinishedTable::open(&path, "b")
-                .unwrap()
-                .known()
-                .is_empty()
-        );
+        let other = UnfinishedTable::open(&path, "b").unwrap();
+        assert!(other.known().is_empty() && other.has_replaced());
+        drop(other);
         let table = UnfinishedTable::open(&path, "a").unwrap();
         assert!(table.known().is_empty(), "thrown away by the other table");
         table.remove().unwrap();

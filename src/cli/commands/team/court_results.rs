@@ -77,7 +77,14 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
     let mut text =
         format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_players");
     for player in players {
-        for column in ["direct", "direct error", "bank", "bank error", "shoot"] {
+        for column in [
+            "direct",
+            "direct error",
+            "bank",
+            "bank error",
+            "shoot",
+            "sure %",
+        ] {
             text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
         }
     }
@@ -111,6 +118,8 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
                 );
             }
             text += &format!(",{}", chances.preference().map_or("", Preference::name));
+            let share = chances.share_of_preferred();
+            text += &share.map_or(",".to_owned(), |share| format!(",{:.0}", 100.0 * share));
         }
         text.push('\n');
     }
@@ -192,7 +201,7 @@ const PLAYER_COLUMNS: [&str; 4] = [
 ];
 
 /// What is to be said of places where players are level, and of what is taken as exact.
-fn remarks(best: &[Vec<usize>]) -> (String, &'static str) {
+fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static str) {
     let level = best.iter().filter(|of| of.len() > 1).count();
     let of_level = if level > 0 {
         format!(
@@ -202,10 +211,16 @@ fn remarks(best: &[Vec<usize>]) -> (String, &'static str) {
     } else {
         String::new()
     };
-    (
-        of_level,
-        "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n",
-    )
+    let has_draws = |player: &PlayerSweep| {
+        let mut places = player.places.iter();
+        places.any(|place| place.bank_is_better.is_some())
+    };
+    let of_profiles = if players.iter().any(has_draws) {
+        "Not sure yet: the kind is the better one in fewer than 90 of 100 draws of the fit (team.csv has the share). P itself takes each profile as exact.\n"
+    } else {
+        "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n"
+    };
+    (of_level, of_profiles)
 }
 
 /// From where a player should bank.
@@ -228,10 +243,15 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
         }
         let points = |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
         text += &format!(
-            "  {}: {} (direct {})\n",
-            shortened(&words(chances), 54),
+            "  {}: {} (direct {}){}\n",
+            shortened(&words(chances), 46),
             points(chances.bank),
-            points(chances.direct)
+            points(chances.direct),
+            if chances.is_sure() {
+                ""
+            } else {
+                ", not sure yet"
+            }
         );
     }
     if listed.len() > MOST_BANK_PLACES {
@@ -256,7 +276,7 @@ pub(super) fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
     for row in player_rows(players, &best) {
         table.add_row(row);
     }
-    let (of_level, of_profiles) = remarks(&best);
+    let (of_level, of_profiles) = remarks(players, &best);
     let mut text = format!(
         "makes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n{of_level}",
         table.trim_fmt()
@@ -282,7 +302,7 @@ pub(super) fn team_page(
     units: UnitSystem,
 ) -> TeamPage {
     let best = best_players(players);
-    let (of_level, of_profiles) = remarks(&best);
+    let (of_level, of_profiles) = remarks(players, &best);
     let mut tables = vec![PageTable {
         caption:
             "Makes in 100 of each one's best shot (not of the usual one), the best player first"

@@ -10,7 +10,7 @@ use crate::cli::config_files::{
     load_profile, read_sweep_without_shooter, read_text, warnings_of_fit,
 };
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder;
+use crate::cli::fit_folder::{self, FitFolder};
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
@@ -21,11 +21,12 @@ use crate::output::atomic_file;
 use crate::plots::svg::shortened;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
+use crate::probability::Progress;
 use crate::report::poster_page::poster_page;
 use crate::shooter::{Profile, ReleaseVariable, implausible_values};
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
-use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
+use crate::sweep::probability_by_place::{PlaceProbabilities, Preference, SURE};
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::sweep_toml::{is_sweep, parse_sweep};
 use crate::units::DEGREE_RAD;
@@ -41,7 +42,8 @@ use court_results::{
 #[command(after_help = "\
 Without --sweep each player shoots from the location of their profile, or all from --distance and --angle, and one table is printed.
 
-With --sweep each player shoots from every place of the sweep; its own shooter is left out. OUT/team.html is a page to look at, OUT/team.csv has \
+With --sweep each player shoots from every place of the sweep; it needs no shooter of its own, and one that it has is left out. \
+A region \"places\" takes a list of places with names, from a CSV file. OUT/team.html is a page to look at, OUT/team.csv has \
 every place and player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
 the same command continues.
 
@@ -174,9 +176,6 @@ impl Verdict {
     }
 }
 
-/// The kind of shot that is better in this share of the draws of a fit is surely so.
-const SURE: f64 = 0.9;
-
 fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
     let profiles = load_players((&options.players, options.place), quiet)?;
     let has_further_places = |(path, _): &(PathBuf, Profile)| {
@@ -301,23 +300,26 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         let config = parse_sweep(&texts, &sweep.display().to_string())?;
         let name = player.shooter().name.clone();
         folders.push(options.out.join(run_folder::safe_name(&name)));
-        sweeps.push((name, config, texts));
+        let fit = fit_folder::of_profile(&path)?;
+        sweeps.push((name, fit, config, texts));
     }
     if options.plan {
-        return print_answer(&match forecast_in_words(sweeps.len(), &sweeps[0].1) {
+        return print_answer(&match forecast_in_words(sweeps.len(), &sweeps[0].2) {
             Some(words) => format!("{words}\n"),
             None => "nothing can be made from any place\n".to_owned(),
         });
     }
-    let units = sweeps[0].1.settings.output.units;
+    let units = sweeps[0].2.settings.output.units;
     let (mut players, mut finished) = (Vec::new(), Vec::new());
     let count = sweeps.len();
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
-        forecast_in_words(count, &sweeps[0].1)
+        forecast_in_words(count, &sweeps[0].2)
             .iter()
             .for_each(|words| print_remark(words));
     }
-    for (number, ((name, config, texts), folder)) in sweeps.into_iter().zip(&folders).enumerate() {
+    for (number, ((name, fit, config, texts), folder)) in
+        sweeps.into_iter().zip(&folders).enumerate()
+    {
         if !quiet {
             print_remark(&format!(
                 "player {} of {count}, {name}: {}",
@@ -327,11 +329,12 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         }
         let (swept, _) = compute(folder, &config, &texts, run_options(Shard::WHOLE), quiet)?;
         let (rows, _) = swept.union()?;
-        write_pictures(folder, &name, &config, &rows)?;
-        players.push(PlayerSweep {
-            name,
-            places: PlaceProbabilities::of_sweep(&config, &rows),
-        });
+        let mut places = PlaceProbabilities::of_sweep(&config, &rows);
+        if let Some(fit) = &fit {
+            find_sureness(&mut places, &config, fit, &ProgressBars::new(quiet))?;
+        }
+        write_pictures(folder, &name, (&config, &rows), &places)?;
+        players.push(PlayerSweep { name, places });
         finished.push((config, rows));
     }
     let results: Vec<SweepResults<'_>> = finished
@@ -381,6 +384,35 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     Ok(code::DONE)
 }
 
+/// Kinds that differ by more than this in P are compared by no draws: the better one is.
+const FAR_APART: f64 = 0.1;
+
+/// Finds in how many draws of a player's fit the bank shot is the better one, at each place where
+/// one kind is preferred to the other.
+fn find_sureness(
+    places: &mut [PlaceProbabilities],
+    config: &SweepConfig,
+    fit: &FitFolder,
+    progress: &dyn Progress,
+) -> Result<(), Failure> {
+    let is_open = |place: &&mut PlaceProbabilities| {
+        let is_near = |gain: Difference| gain.value.abs() <= FAR_APART;
+        place.preference() != Some(Preference::Either) && place.bank_gain().is_some_and(is_near)
+    };
+    let open: Vec<&mut PlaceProbabilities> = places.iter_mut().filter(is_open).collect();
+    progress.begin("bank or direct, over the draws", open.len() as u64);
+    for place in open {
+        if let [Some(direct), Some(bank)] = &place.nominals {
+            let profile = config.settings.at(place.place.location())?;
+            let share = fit_folder::bank_is_better(fit, &profile, [direct, bank])?;
+            place.bank_is_better = Some(share);
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    Ok(())
+}
+
 /// What all players take, from the first one's sweep.
 fn forecast_in_words(players: usize, first: &SweepConfig) -> Option<String> {
     let seconds = forecast_s(first, true)? * players as f64;
@@ -396,10 +428,10 @@ fn forecast_in_words(players: usize, first: &SweepConfig) -> Option<String> {
 fn write_pictures(
     folder: &Path,
     name: &str,
-    config: &SweepConfig,
-    rows: &BTreeMap<u64, ResultRow>,
+    (config, rows): (&SweepConfig, &BTreeMap<u64, ResultRow>),
+    places: &[PlaceProbabilities],
 ) -> Result<(), Failure> {
-    let results = SweepResults::new(config, rows);
+    let results = SweepResults::new(config, rows).with_chances(places.to_vec());
     let mut plots = Vec::new();
     plots.extend(sweep_bank_direct_map::draw(&results));
     if let Some(poster) = player_poster::draw(&results) {
