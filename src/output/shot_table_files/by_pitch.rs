@@ -151,7 +151,7 @@ fn in_words(
         found(rows).min_by(|a, b| a.1.nominal.speed_m_s.total_cmp(&b.1.nominal.speed_m_s));
     if let Some((slowest_rad, slowest)) = slowest {
         text += &format!(
-            " The least speed, {:.2} {long}/s, is that of {} deg",
+            " The least speed of these, {:.2} {long}/s, is that of {} deg",
             slowest.nominal.speed_m_s / metre,
             degrees(slowest_rad)
         );
