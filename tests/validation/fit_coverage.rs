@@ -473,21 +473,12 @@ fn campaign_shooters_test_covers() {
                     }
                     shooter((1, GOOD_AIMS), sds, [r, 0.0, 0.0], [0.0; 2], random)
                 };
-                let greatest_bias = |results: &[(f64, f64, f64)]| {
-                    results.iter().map(|r| r.2.abs()).fold(0.0, f64::max)
-                };
-                let mut results = cell_results(&cell, fewer, &truth, true);
-                // A bias is known to 0.02 only: one above the limit is measured again, with these
-                // shooters and three times as many others.
-                if shots >= 100 && greatest_bias(&results) > 0.1 {
-                    println!("again, with {} repetitions:", 4 * fewer);
-                    results = cell_results(&cell, 4 * fewer, &truth, true);
-                }
+                let results = cell_results(&cell, fewer, &truth, true);
                 let shown: Vec<String> = results
                     .iter()
                     .map(|r| format!("{:.1}", 100.0 * r.0))
                     .collect();
-                let bias = greatest_bias(&results);
+                let bias = results.iter().map(|r| r.2.abs()).fold(0.0, f64::max);
                 println!(
                     "| {label} | {shots} | {noise:?} | 1 | {} | bias {bias:.3} |",
                     shown.join(" | ")
