@@ -1,6 +1,6 @@
 //! Why a command failed, with its exit code.
 
-use crate::best_shot::BestShotError;
+use crate::best_shot::{BestShotError, ShotTableError};
 use crate::config::ConfigError;
 use crate::dynamics::StateError;
 use crate::search_space::PlanError;
@@ -141,6 +141,18 @@ impl From<StoreError> for Failure {
                 StoreError::Io { .. } => code::IO,
             },
             message: error.to_string(),
+        }
+    }
+}
+
+impl From<ShotTableError> for Failure {
+    fn from(error: ShotTableError) -> Self {
+        match error {
+            ShotTableError::Profile(error) => error.into(),
+            ShotTableError::Search(error) => error.into(),
+            ShotTableError::SeveralAngles => Self::usage(format!(
+                "--kind best: {error}; give --angles one value, or make a table of each kind"
+            )),
         }
     }
 }

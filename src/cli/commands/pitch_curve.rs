@@ -1,7 +1,7 @@
 //! `bankshot pitch-curve`: the best shot at each of several pitch angles.
 
 use super::table::TableFormat;
-use crate::best_shot::{ShotKind, ShotTableError, best_by_pitch};
+use crate::best_shot::{ShotKind, best_by_pitch};
 use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
@@ -105,13 +105,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     // A folder that is no fit is refused before the search.
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     let kind = options.kind.into();
-    let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet)).map_err(
-        |error| match error {
-            ShotTableError::Profile(error) => Failure::from(error),
-            ShotTableError::Search(error) => Failure::from(error),
-            error @ ShotTableError::SeveralAngles => Failure::bug(error.to_string()),
-        },
-    )?;
+    let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet))?;
     let text = || by_pitch_text(&rows, kind, &profile, units);
     let json = || format!("{:#}\n", by_pitch_json(&rows, kind, &profile, units));
     for (path, form) in options.output.iter().zip(forms) {

@@ -1,8 +1,6 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
-use crate::best_shot::{
-    ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
-};
+use crate::best_shot::{ShotKind, ShotTable, ShotTableRequest, TableFinding, TableKind};
 use crate::cli::config_files::load_profile_with_fixed;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fixed_value_flags::FixedOptions;
@@ -294,14 +292,8 @@ fn compute(
         }
     };
     let progress = ProgressBars::new(quiet);
-    ShotTable::resume((profile, request), &known, &mut keep, &progress).map_err(|error| match error
-    {
-        ShotTableError::Profile(error) => Failure::from(error),
-        ShotTableError::Search(error) => Failure::from(error),
-        error @ ShotTableError::SeveralAngles => Failure::usage(format!(
-            "--kind best: {error}; give --angles one value, or make a table of each kind"
-        )),
-    })
+    let table = ShotTable::resume((profile, request), &known, &mut keep, &progress)?;
+    Ok(table)
 }
 
 /// The number of places without a shot, of those that were asked for.
