@@ -7,7 +7,7 @@ use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, SolidId};
 use crate::probability::{Estimate, Progress, Sampler, Silent};
 use crate::shooter::{Profile, ShotKind};
-use crate::units::FOOT_M;
+use crate::units::{FOOT_M, UnitSystem};
 use std::collections::BTreeMap;
 
 /// A physics to compare with.
@@ -157,9 +157,9 @@ impl SameShot {
 }
 
 /// The physics of a profile, every preset, and single changes: of the profile's own physics if it
-/// has air, of `ncaa` otherwise.
+/// has air, of `ncaa` otherwise. Heights in their names are in `units`.
 #[must_use]
-pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
+pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant> {
     let variant = |name: &str, physics: &Physics| PhysicsVariant {
         name: name.to_owned(),
         physics: physics.clone(),
@@ -178,13 +178,23 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         _ => own.clone(),
     };
     let with = if has_air { "with" } else { "ncaa," };
+    let [altitude, lower, higher] = match units {
+        UnitSystem::Imperial => [
+            "air of 5280 ft",
+            "release 0.1 ft lower",
+            "release 0.1 ft higher",
+        ],
+        UnitSystem::Metric => [
+            "air of 1609 m",
+            "release 3.05 cm lower",
+            "release 3.05 cm higher",
+        ],
+    };
     // The altitude, the thickness of a ring and its bracket are known of every gym.
     // A release is measured from the floor, and only its height below the ring matters.
     let changes: [(&str, bool, fn(&mut Physics)); 12] = [
         ("no air", false, |physics| physics.air = Air::NONE),
-        ("air of 5280 ft", false, |physics| {
-            physics.air.density_kg_m3 = 0.98
-        }),
+        (altitude, false, |physics| physics.air.density_kg_m3 = 0.98),
         ("drag_coefficient 0.41", true, |physics| {
             physics.air.drag_coefficient = 0.41;
         }),
@@ -204,10 +214,10 @@ pub fn physics_variants(own: &Physics) -> Vec<PhysicsVariant> {
         ("hoop_restitution 0.70", true, |physics| {
             set_restitution(physics, 0.70);
         }),
-        ("release 0.1 ft lower", true, |physics| {
+        (lower, true, |physics| {
             physics.hoop_height_m += 0.1 * FOOT_M;
         }),
-        ("release 0.1 ft higher", true, |physics| {
+        (higher, true, |physics| {
             physics.hoop_height_m -= 0.1 * FOOT_M;
         }),
         ("friction 0.8", true, |physics| {

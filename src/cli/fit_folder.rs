@@ -405,6 +405,7 @@ pub(crate) fn kinds_over_draws(
             points.mean, points.low, points.high
         );
     }
+    text += "P above is that of the middle scatter. Draws scatter less and more, and P is not linear in that, so their mean may differ by some tenths of a point.\n";
     Ok(text)
 }
 

@@ -571,7 +571,10 @@ fn reliability(fit: &ShooterFit) -> Plot {
         let at = |share: f64| axes.pixel((100.0 * bin.predicted, 100.0 * share));
         let style = format!("stroke=\"{MADE}\" stroke-width=\"2\" fill=\"none\"");
         svg.polyline([at(bin.observed.low), at(bin.observed.high)], &style);
-        svg.circle(at(bin.observed.share), 5.0, &format!("fill=\"{MADE}\""));
+        let (x, y) = at(bin.observed.share);
+        svg.circle((x, y), 5.0, &format!("fill=\"{MADE}\""));
+        let shots = bin.shots.to_string();
+        svg.text((x + 9.0, y + 4.0), 11.0, Anchor::Start, &shots);
     }
     axes.draw(
         &mut svg,
@@ -581,7 +584,7 @@ fn reliability(fit: &ShooterFit) -> Plot {
     );
     svg.footnote(
         (80.0, 545.0),
-        "Each point: shots of similar chance. On the dashed line, predicted is observed.",
+        "Each point: as many shots of similar chance as it says. On the dashed line, predicted is observed.",
     );
     named(fit, "reliability", "predicted against observed", svg)
 }

@@ -164,19 +164,29 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     plots.extend(bank_direct_release_map::draw_probabilities(
         &profile, &shots,
     ));
-    let mut text = probabilities_text(&profile, &best);
+    let name = &profile.shooter().name;
+    // Two profiles of one name are told apart by their files.
+    let have_one_name = other
+        .as_ref()
+        .is_some_and(|(other, _)| other.shooter().name == *name);
+    let name_of = |profile: &Profile, path: &Path| match have_one_name {
+        true => format!("{} ({})", profile.shooter().name, path.display()),
+        false => profile.shooter().name.clone(),
+    };
+    let mut text = probabilities_text(&name_of(&profile, &options.what), &best);
     let mut exit = run_folder::exit_code(&profile, &best);
     let mut against = None;
-    if let Some((other, other_text)) = other {
-        let best = best_shot::find(&other, &bars)?;
-        let shots = PlottedShot::of_best(&best);
+    if let (Some((other, other_text)), Some(path)) = (other, &options.against) {
+        let other_best = best_shot::find(&other, &bars)?;
+        let shots = PlottedShot::of_best(&other_best);
         if let Some(mut plot) = bank_direct_release_map::draw_probabilities(&other, &shots) {
             plot.name.push_str("_against");
             plots.push(plot);
         }
-        text.push_str(&probabilities_text(&other, &best));
-        exit = exit.max(run_folder::exit_code(&other, &best));
-        against = Some((other_text, other, best));
+        text.push_str(&probabilities_text(&name_of(&other, path), &other_best));
+        text.push_str(&differences_text(&best, &other_best));
+        exit = exit.max(run_folder::exit_code(&other, &other_best));
+        against = Some((other_text, other, other_best));
     }
     let folder = match &options.out {
         Some(folder) => folder.clone(),
@@ -197,12 +207,32 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     Ok(exit)
 }
 
+/// By how much P of the best shots of the second profile is greater, with its numerical error.
+fn differences_text(first: &BestShots, second: &BestShots) -> String {
+    let pairs = first.by_kind().into_iter().zip(second.by_kind());
+    pairs
+        .filter_map(|((kind, first), (_, second))| {
+            let (first, second) = (
+                &first.as_ref().ok()?.estimate,
+                &second.as_ref().ok()?.estimate,
+            );
+            let error = libm::hypot(first.standard_error, second.standard_error);
+            Some(format!(
+                "{}: the second makes {:+.1} \u{b1} {:.1} more of 100 than the first\n",
+                kind.name(),
+                100.0 * (second.probability - first.probability),
+                100.0 * error
+            ))
+        })
+        .collect()
+}
+
 /// P of the best shots of a profile, or why there is none.
-fn probabilities_text(profile: &Profile, best: &BestShots) -> String {
+fn probabilities_text(name: &str, best: &BestShots) -> String {
     best.by_kind()
         .into_iter()
         .map(|(kind, shot)| {
-            let (name, kind) = (&profile.shooter().name, kind.name());
+            let kind = kind.name();
             match shot {
                 Ok(shot) => format!(
                     "{name}, {kind}: P {:.4} \u{b1} {:.4}\n",

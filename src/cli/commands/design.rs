@@ -156,11 +156,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
     let mut rows = simulate(&sizes)?;
     let mut needed = None;
+    let mut added = None;
     if let Some(points) = options.target {
         let shots = shots_for(&rows, points / 100.0);
         if (10..=MOST_SHOTS).contains(&shots) && !sizes.contains(&shots) {
             rows.extend(simulate(&[shots])?);
             rows.sort_by_key(|row| row.shots);
+            added = Some(shots);
         }
         needed = Some((points, shots));
     }
@@ -206,6 +208,9 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             MOST_SHOTS.. => format!("More than {MOST_SHOTS}"),
             shots => format!("About {}", two_digits(shots as f64)),
         };
+        if let Some(shots) = added {
+            text += &format!("\nThe row of {shots} shots checks what --target asks.\n");
+        }
         // First the interval that `fit` prints.
         text += &format!(
             "\n{} shots make the 95 % interval of P reach {points} points to each side; {} make its standard deviation {points} points.\n",

@@ -63,7 +63,7 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
-    let variants = physics_variants(profile.physics());
+    let variants = physics_variants(profile.physics(), profile.output().units);
     let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
     if let Some(path) = &options.plot {
         let plot = physics_probabilities::draw(&profile.shooter().name, &comparison);

@@ -132,10 +132,10 @@ fn report_best_shots(folder: &Path, with_physics: bool, quiet: bool) -> Result<u
     if with_physics {
         let path = folder.join(PROFILE_FILE);
         let profile = load_profile(&path, &PhysicsArg::default(), true)?;
-        let variants = physics_variants(profile.physics());
+        let units = profile.output().units;
+        let variants = physics_variants(profile.physics(), units);
         let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
-        page.tables
-            .push(physics_table(&comparison, profile.output().units));
+        page.tables.push(physics_table(&comparison, units));
         let name = &profile.shooter().name;
         page.plots
             .push(physics_probabilities::draw(name, &comparison));
