@@ -60,16 +60,28 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 return;
             }
             if block.occupied() != T::ALL && self.workspace.other_phase_fills(T::LANES, phase) {
-                for lane in lanes_in(block.occupied()) {
-                    let slot = block.slot(lane);
-                    block.remove(lane, &mut self.workspace.slots[slot as usize]);
-                    self.workspace.queue_mut(phase).push(slot);
-                }
+                self.suspend_contacts(&mut block);
                 return;
             }
             let given_up = block.count_step(self.limits.max_steps);
             let result = step_lanes(&contact, other, &mut block, self.simd, given_up);
             self.finish_contacts(&mut block, B::ID, &result);
+            let occupied = block.occupied().count_ones() as usize;
+            if self.workspace.others_go_first(phase, occupied, T::LANES) {
+                self.suspend_contacts(&mut block);
+                return;
+            }
+        }
+    }
+
+    /// Takes all shots of a block out of their lanes and queues them again.
+    #[inline(always)]
+    fn suspend_contacts<E: LaneElement>(&mut self, block: &mut ContactFrameBlock<E>) {
+        let phase = Phase::InFrame(block.part());
+        for lane in lanes_in(block.occupied()) {
+            let slot = block.slot(lane);
+            block.remove(lane, &mut self.workspace.slots[slot as usize]);
+            self.workspace.queue_mut(phase).push(slot);
         }
     }
 

@@ -6,6 +6,10 @@
 //! waiting. Rare events (from one contact to two, the board's edges, the time limit in flight, an
 //! unresolved search) are left to the scalar code; after them the shot waits in a queue again.
 //!
+//! When all shots have started, lanes begin to stay empty. A block that is not full then waits for
+//! the shots of other phases, so that they go on together; the last few shots are left to the
+//! scalar code.
+//!
 //! It is the same generic code as for one shot, with the same operations in the same order. So the
 //! verdicts are the same, bit for bit.
 
@@ -25,6 +29,11 @@ use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::FramedPart;
 use fearless_simd::{Level, Simd};
+
+/// The last shots of a batch, which the scalar code finishes.
+const LAST_SHOTS: usize = 8;
+/// A step of a full block takes about as long as one lane of five with the scalar code.
+const LANES_PER_SCALAR_STEP: usize = 5;
 
 /// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace.
 /// `level` is one of those that
@@ -72,7 +81,8 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             } else {
                 fly_from_release::<S, EightLanes<S>, WIDTH>(&mut batch, starts);
             }
-            if batch.workspace.is_idle() {
+            if batch.workspace.all_have_started() && batch.workspace.waiting() <= LAST_SHOTS {
+                batch.finish_one_by_one();
                 return;
             }
             for phase in Phase::ALL {
@@ -81,8 +91,46 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         }
     }
 
+    /// Runs all shots in progress to their ends with the scalar code.
+    #[cold]
+    fn finish_one_by_one(&mut self) {
+        while self.workspace.waiting() > 0 {
+            for phase in Phase::ALL {
+                self.run_one_by_one(phase);
+            }
+        }
+    }
+
+    /// Simulates the shots that wait for a phase with the scalar code.
+    #[cold]
+    fn run_one_by_one(&mut self, phase: Phase) {
+        for _ in 0..self.workspace.queue_mut(phase).len() {
+            if let Some(slot) = self.workspace.queue_mut(phase).pop() {
+                self.run_scalar(slot);
+            }
+        }
+    }
+
+    /// The lanes of a phase.
+    fn lanes(&self, phase: Phase) -> usize {
+        let is_wide = WIDTH == WIDE;
+        match phase {
+            Phase::Flight if is_wide && self.params.has_paper_flight() => SixteenLanes::<S>::LANES,
+            Phase::InFrame(_) if self.limits.single_precision => match is_wide {
+                true => ThirtyTwoLanesF32::<S>::LANES,
+                false => SixteenLanesF32::<S>::LANES,
+            },
+            _ => EightLanes::<S>::LANES,
+        }
+    }
+
     /// Simulates the shots that wait for a phase.
     fn run_phase(&mut self, phase: Phase) {
+        let few = self.lanes(phase) / LANES_PER_SCALAR_STEP;
+        if self.workspace.all_have_started() && self.workspace.queue_mut(phase).len() <= few {
+            self.run_one_by_one(phase);
+            return;
+        }
         match phase {
             // Done above, with the shots that start.
             Phase::Flight if !self.params.has_paper_flight() => {}

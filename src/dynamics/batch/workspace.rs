@@ -102,9 +102,14 @@ impl BatchWorkspace {
         }
     }
 
-    /// Whether no shot is in progress.
-    pub(super) fn is_idle(&self) -> bool {
-        self.queues.iter().all(Vec::is_empty)
+    /// Whether every shot of the batch has started.
+    pub(super) fn all_have_started(&self) -> bool {
+        self.started == self.verdicts.len()
+    }
+
+    /// The number of shots that wait for a phase.
+    pub(super) fn waiting(&self) -> usize {
+        self.queues.iter().map(Vec::len).sum()
     }
 
     /// The slots that wait for a phase.
@@ -122,6 +127,14 @@ impl BatchWorkspace {
         Phase::ALL
             .iter()
             .any(|&other| other != phase && self.queues[other.index()].len() >= lanes)
+    }
+
+    /// Whether a block of `lanes` with `occupied` shots should let others go first: it cannot be
+    /// filled, and at least as many shots as it holds wait for other phases, after which some of
+    /// them may join it.
+    pub(super) fn others_go_first(&self, phase: Phase, occupied: usize, lanes: usize) -> bool {
+        let own = self.queues[phase.index()].len();
+        occupied > 0 && occupied + own < lanes && self.waiting() - own >= occupied
     }
 
     /// Queues a shot for its next phase.

@@ -62,6 +62,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             let given_up = block.count_step(self.limits.max_steps);
             let result = self.step_in_world(params, &mut block, given_up);
             self.finish_contacts_in_world(&mut block, &result, given_up);
+            let occupied = block.occupied().count_ones() as usize;
+            if self.workspace.others_go_first(phase, occupied, T::LANES) {
+                self.suspend_contacts_in_world(&mut block);
+                return;
+            }
         }
     }
 
