@@ -533,4 +533,47 @@ fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
     );
     let out_of_range = ["--pitches", "60 deg, 95 deg"];
     curve(&out_of_range).exits(2).says("95 deg is not allowed");
+    curve(&["-o", "absent/curve.csv"])
+        .exits(74)
+        .says("there is no folder absent");
+}
+
+/// P from several distances is that of single curves, and the greatest mean is named.
+#[test]
+fn contract_one_pitch_angle_for_several_distances_has_the_greatest_mean() {
+    let folder = TempDir::new().unwrap();
+    let profile = write_file(&folder, "robot.toml", ROBOT);
+    let curve = |more: &[&str]| {
+        let mut command = bankshot();
+        command
+            .current_dir(folder.path())
+            .arg("pitch-curve")
+            .arg(&profile)
+            .args(["--backspin", "2 rev/s", "--quiet"])
+            .args(["--pitches", "20 deg, 60 deg, 66 deg"])
+            .args(more);
+        Answer::of(&mut command)
+    };
+    let files = ["--distances", "9 ft, 12 ft", "-o", "curves.csv", "--json"];
+    let json = curve(&files).exits(0).json();
+    let all = json.as_array().unwrap();
+    let alone = curve(&["--distance", "12 ft", "--json"]).exits(0).json();
+    assert_eq!(all[1]["shots"], alone["shots"]);
+    assert_eq!(all[0]["distance_ft"], 9.0);
+    let p = |distance: usize, row: usize| {
+        all[distance]["shots"][row]["probability"]
+            .as_f64()
+            .unwrap_or(0.0)
+    };
+    let mean = |row: usize| (p(0, row) + p(1, row)) / 2.0;
+    let best = if mean(1) > mean(2) { "60" } else { "66" };
+    let text = curve(&["--distances", "9 ft, 12 ft"]).exits(0);
+    let text = text.stdout();
+    assert!(text.lines().all(|line| line.chars().count() <= 80));
+    let words = format!("One pitch angle for all 2 distances: {best} deg makes the most");
+    assert!(text.contains(&words), "{text}");
+    let csv = fs::read_to_string(folder.path().join("curves.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 7);
+    assert!(csv.starts_with("distance_ft,kind,pitch_deg,"), "{csv}");
+    curve(&["--distances", "900 ft"]).exits(2);
 }

@@ -1,4 +1,5 @@
-//! `bankshot pitch-curve`: the best shot at each of several pitch angles.
+//! `bankshot pitch-curve`: the best shot at each of several pitch angles, from one place or from
+//! several distances.
 
 use super::table::TableFormat;
 use crate::best_shot::{ShotKind, best_by_pitch};
@@ -14,8 +15,11 @@ use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
 use crate::output::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
+use crate::output::shot_table_files::pitch_over_distances::{
+    DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
+};
 use crate::plots;
-use crate::shooter::NominalVariable;
+use crate::shooter::{Location, NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, Dimension};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -29,6 +33,7 @@ Examples:
   bankshot pitch-curve player.toml --pitches '45 deg to 60 deg by 1 deg' \\
     --plot pitch.svg -o pitch.csv
   bankshot pitch-curve player.toml --kind bank --backspin '2 rev/s'
+  bankshot pitch-curve robot.toml --distances '8 ft to 18 ft by 2 ft'
   bankshot pitch-curve results/season-fit --draws results/season-fit")]
 pub(crate) struct PitchCurveOptions {
     /// The shooter's profile, or the folder of a fit.
@@ -44,6 +49,10 @@ pub(crate) struct PitchCurveOptions {
         default_value = "40 deg to 65 deg by 2.5 deg"
     )]
     pub(crate) pitches: String,
+    /// Several distances from the hoop's centre, ascending: P at each of them, and which one pitch
+    /// angle suits them all.
+    #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
+    pub(crate) distances: Option<String>,
     /// The kind of the shots.
     #[arg(long, value_enum, default_value_t = OneKindArg::Direct)]
     pub(crate) kind: OneKindArg,
@@ -89,8 +98,10 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
-    let forms = options.output.iter().map(|path| form_of(path));
-    let forms = forms.collect::<Result<Vec<_>, _>>()?;
+    for path in &options.output {
+        form_of(path)?;
+        refuse_missing_folder(path)?;
+    }
     let fixed = FixedOptions::of_backspin(options.backspin.clone());
     // The pitch angle is given too.
     let mut given = fixed.variables();
@@ -102,21 +113,20 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
     let units = profile.output().units;
+    if let Some(distances) = &options.distances {
+        return run_from_distances(options, (&profile, distances), &pitches_rad, quiet);
+    }
     // A folder that is no fit is refused before the search.
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     let kind = options.kind.into();
     let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet))?;
     let text = || by_pitch_text(&rows, kind, &profile, units);
     let json = || format!("{:#}\n", by_pitch_json(&rows, kind, &profile, units));
-    for (path, form) in options.output.iter().zip(forms) {
-        let content = match form {
-            TableFormat::Csv => by_pitch_csv(&rows, kind, units),
-            TableFormat::Json => json(),
-            _ => text(),
-        };
-        atomic_file::write(path, content.as_bytes())
-            .map_err(|error| Failure::io(path.display(), &error))?;
-    }
+    write_outputs(&options.output, |form| match form {
+        TableFormat::Csv => by_pitch_csv(&rows, kind, units),
+        TableFormat::Json => json(),
+        _ => text(),
+    })?;
     if let Some(path) = &options.plot
         && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, &rows, units)
     {
@@ -134,18 +144,88 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
             fit_folder::angles_over_draws((folder, fit), &profile, &nominals)?
         ))?;
     }
-    if !quiet {
-        for path in options.output.iter().chain(&options.plot) {
-            if path.exists() {
-                print_remark(&format!("written: {}", path.display()));
-            }
-        }
-    }
+    print_written(options, quiet);
     Ok(if rows.iter().any(|row| row.shot.is_some()) {
         code::DONE
     } else {
         code::INCOMPLETE
     })
+}
+
+/// The shots from several distances.
+fn run_from_distances(
+    options: &PitchCurveOptions,
+    (profile, distances): (&Profile, &str),
+    pitches_rad: &[f64],
+    quiet: bool,
+) -> Result<u8, Failure> {
+    let (kind, units) = (options.kind.into(), profile.output().units);
+    let mut profiles = Vec::new();
+    for distance_m in ascending_values("distances", distances, Dimension::Length)? {
+        let place = Location {
+            distance_m,
+            ..profile.location()
+        };
+        place
+            .check(profile.physics())
+            .map_err(|error| Failure::usage(format!("--distances: {error}")))?;
+        profiles.push(profile.moved_to(place)?);
+    }
+    let bars = ProgressBars::new(quiet);
+    let mut from = Vec::new();
+    for profile in profiles {
+        let shots = best_by_pitch(&profile, kind, pitches_rad, &bars)?;
+        from.push(DistanceShots { profile, shots });
+    }
+    let text = || pitch_over_distances_text(&from, kind, units);
+    let json = || format!("{:#}\n", pitch_over_distances_json(&from, kind, units));
+    write_outputs(&options.output, |form| match form {
+        TableFormat::Csv => pitch_over_distances_csv(&from, kind, units),
+        TableFormat::Json => json(),
+        _ => text(),
+    })?;
+    print_answer(&if options.json { json() } else { text() })?;
+    print_written(options, quiet);
+    let mut rows = from.iter().flat_map(|shots| &shots.shots);
+    Ok(if rows.any(|row| row.shot.is_some()) {
+        code::DONE
+    } else {
+        code::INCOMPLETE
+    })
+}
+
+/// Writes the outputs, each in the form that its name asks for.
+fn write_outputs(
+    paths: &[PathBuf],
+    content: impl Fn(TableFormat) -> String,
+) -> Result<(), Failure> {
+    for path in paths {
+        atomic_file::write(path, content(form_of(path)?).as_bytes())
+            .map_err(|error| Failure::io(path.display(), &error))?;
+    }
+    Ok(())
+}
+
+/// Says before a search that an output could not be written after it.
+fn refuse_missing_folder(path: &Path) -> Result<(), Failure> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => Err(Failure {
+            code: code::IO,
+            message: format!("--output: there is no folder {}", folder.display()),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn print_written(options: &PitchCurveOptions, quiet: bool) {
+    if quiet {
+        return;
+    }
+    for path in options.output.iter().chain(&options.plot) {
+        if path.exists() {
+            print_remark(&format!("written: {}", path.display()));
+        }
+    }
 }
 
 /// The pitch angles, rad, between 1 and 89 deg.

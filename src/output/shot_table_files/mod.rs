@@ -4,6 +4,7 @@ pub mod by_pitch;
 mod columns;
 pub mod csv_json;
 mod notes;
+pub mod pitch_over_distances;
 pub mod source_code;
 pub mod table_text;
 pub mod unfinished;

@@ -1,0 +1,173 @@
+//! The best shots at several pitch angles from several distances: which one pitch angle suits a
+//! launcher whose angle is fixed.
+
+use super::by_pitch::{by_pitch_csv, by_pitch_json};
+use super::notes::physics_note;
+use super::table_text::{decimal, line, wrapped};
+use crate::best_shot::ShotAtPitch;
+use crate::shooter::{Profile, ShotKind};
+use crate::units::{DEGREE_RAD, UnitSystem};
+use serde_json::{Value, json};
+
+/// The shots from one distance, one for each pitch angle. All distances have the same angles.
+#[derive(Clone, Debug)]
+pub struct DistanceShots {
+    /// The profile at that distance.
+    pub profile: Profile,
+    /// The best shots there.
+    pub shots: Vec<ShotAtPitch>,
+}
+
+impl DistanceShots {
+    fn distance(&self, units: UnitSystem) -> f64 {
+        let distance = self.profile.location().distance_m / units.length().1;
+        // Without what its conversion cost in the last digits.
+        (distance * 1e9).round() / 1e9
+    }
+
+    /// P at a pitch angle; zero where no shot goes in.
+    fn probability(&self, row: usize) -> f64 {
+        let shot = self.shots[row].shot.as_ref();
+        shot.map_or(0.0, |shot| shot.probability)
+    }
+}
+
+/// A loss of the mean P that the sentence about the angles counts as none.
+const LEVEL: f64 = 0.01;
+/// Distances side by side in 80 columns.
+const ACROSS: usize = 8;
+
+/// Mean and least P over the distances at a pitch angle.
+fn mean_and_least(from: &[DistanceShots], row: usize) -> (f64, f64) {
+    let all = from.iter().map(|shots| shots.probability(row));
+    let (sum, least) = all.fold((0.0, 1.0_f64), |(sum, least), p| (sum + p, least.min(p)));
+    (sum / from.len() as f64, least)
+}
+
+/// P at each pitch angle and distance for people, at most 80 columns wide: the angle with the
+/// greatest mean and that with the greatest least P, then a table.
+#[must_use]
+pub fn pitch_over_distances_text(
+    from: &[DistanceShots],
+    kind: ShotKind,
+    units: UnitSystem,
+) -> String {
+    let [first, ..] = from else {
+        return String::new();
+    };
+    let (long, _) = units.length();
+    let rows: Vec<(f64, f64)> = (0..first.shots.len())
+        .map(|row| mean_and_least(from, row))
+        .collect();
+    let degrees = |row: usize| {
+        let text = format!("{:.1}", first.shots[row].pitch_rad / DEGREE_RAD);
+        text.trim_end_matches(".0").to_owned()
+    };
+    let greatest = |value: &dyn Fn(usize) -> f64| {
+        (0..rows.len()).max_by(|&a, &b| value(a).total_cmp(&value(b)))
+    };
+    let mut text = String::new();
+    let best = greatest(&|row| rows[row].0).filter(|&row| rows[row].0 > 0.0);
+    let Some(best) = best else {
+        return wrapped("No shot at these pitch angles goes in.");
+    };
+    let is_level = |row: &usize| rows[best].0 - rows[*row].0 <= LEVEL;
+    let low = (0..best).rev().take_while(is_level).last().unwrap_or(best);
+    let high = (best + 1..rows.len()).take_while(is_level).last();
+    let high = high.unwrap_or(best);
+    let mut words = format!(
+        "One pitch angle for all {} distances: {} deg makes the most {} shots on average, {:.1} of 100",
+        from.len(),
+        degrees(best),
+        kind.name(),
+        100.0 * rows[best].0
+    );
+    words += &match low < high {
+        true => format!(
+            "; from {} to {} deg it is at most one less.",
+            degrees(low),
+            degrees(high)
+        ),
+        false => ".".to_owned(),
+    };
+    if let Some(steady) = greatest(&|row| rows[row].1).filter(|&row| rows[row].1 > 0.0) {
+        let farthest = from
+            .iter()
+            .min_by(|a, b| a.probability(steady).total_cmp(&b.probability(steady)));
+        let where_least = farthest.map_or(0.0, |shots| shots.distance(units));
+        words += &format!(
+            " The worst distance is best at {} deg: {:.1} of 100, from {where_least} {long}.",
+            degrees(steady),
+            100.0 * rows[steady].1
+        );
+    }
+    text += &wrapped(&words);
+    text += &wrapped(&physics_note(&first.profile, units));
+    text += &wrapped(&format!(
+        "P of the best {} shot at each pitch angle and distance ({long}); speed, aim and spin are the best ones there (--backspin keeps one). -: no shot within the limits goes in; it counts as 0 in mean and least. CSV and JSON have the shots.",
+        kind.name()
+    ));
+    let mut widths = vec![5];
+    widths.extend([6; ACROSS]);
+    widths.extend([6, 6]);
+    for (number, across) in from.chunks(ACROSS).enumerate() {
+        let is_last = (number + 1) * ACROSS >= from.len();
+        let last = ["mean", "least"].map(str::to_owned);
+        let last = || last.iter().filter(|_| is_last).cloned();
+        let heads = across.iter().map(|shots| decimal(shots.distance(units), 2));
+        let mut head: Vec<String> = vec!["pitch".to_owned()];
+        head.extend(heads.chain(last()));
+        text += &line(head.iter().map(String::as_str), &widths);
+        for (row, (mean, least)) in rows.iter().enumerate() {
+            let mut cells = vec![decimal(first.shots[row].pitch_rad / DEGREE_RAD, 1)];
+            cells.extend(across.iter().map(|shots| {
+                let shot = shots.shots[row].shot.as_ref();
+                decimal(shot.map_or(f64::NAN, |shot| shot.probability), 3)
+            }));
+            if is_last {
+                cells.extend([decimal(*mean, 3), decimal(*least, 3)]);
+            }
+            text += &line(cells.iter().map(String::as_str), &widths);
+        }
+    }
+    text
+}
+
+/// The shots as CSV: the rows of [`by_pitch_csv`] with the distance before them.
+#[must_use]
+pub fn pitch_over_distances_csv(
+    from: &[DistanceShots],
+    kind: ShotKind,
+    units: UnitSystem,
+) -> String {
+    let mut text = String::new();
+    for shots in from {
+        let csv = by_pitch_csv(&shots.shots, kind, units);
+        let mut lines = csv.lines();
+        let header = lines.next().unwrap_or_default();
+        if text.is_empty() {
+            text += &format!("distance_{},{header}\n", units.length().0);
+        }
+        for row in lines {
+            text += &format!("{},{row}\n", shots.distance(units));
+        }
+    }
+    text
+}
+
+/// The shots as JSON: an array with the object of [`by_pitch_json`] for each distance.
+#[must_use]
+pub fn pitch_over_distances_json(
+    from: &[DistanceShots],
+    kind: ShotKind,
+    units: UnitSystem,
+) -> Value {
+    let key = format!("distance_{}", units.length().0);
+    from.iter()
+        .map(|shots| {
+            let mut object = by_pitch_json(&shots.shots, kind, &shots.profile, units);
+            object[&key] = json!(shots.distance(units));
+            object
+        })
+        .collect()
+}
