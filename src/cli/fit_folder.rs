@@ -429,7 +429,7 @@ pub(crate) fn angles_over_draws(
         return Ok(String::new());
     };
     let mut text = format!(
-        "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, draw by draw (95 %)\n",
+        "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, which has the greatest mean, draw by draw (95 %)\n",
         which_draws(folder, fit)
     );
     for (pitch_deg, p) in &angles {
@@ -450,7 +450,7 @@ fn percents(interval: &Interval) -> [f64; 3] {
 /// Which draws an interval is over, and what it leaves out.
 fn which_draws(folder: &Path, fit: &FitFolder) -> String {
     format!(
-        "over {} draws of the scatter in {}, the aim being exact (any other interval of P is numerical)",
+        "over {} draws of the scatter in {}, the aim being exact (the interval of P that `fit` prints has the uncertain aim too; any other one is numerical)",
         fit.posterior.draws.len(),
         folder.display()
     )

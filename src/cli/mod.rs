@@ -14,6 +14,7 @@ mod nominal_shot_flags;
 mod plot_files;
 mod progress_bars;
 mod run_folder;
+mod scatter_flags;
 mod signals;
 mod terminal;
 mod value_lists;

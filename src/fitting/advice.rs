@@ -116,7 +116,6 @@ pub fn advise(
     let usual_p = shooting.with(Change::default()).probabilities.clone();
     let keeps_backspin = posterior.spin != SpinSource::Measured;
     let usual = typical.means[place];
-    let kind = ShotKind::of(profile, &nominal_of(&usual));
     let searched = if keeps_backspin {
         &with_backspin_kept(profile, usual[3])
     } else {
@@ -124,6 +123,9 @@ pub fn advise(
     };
     let (_, found) = find_kinds(searched, &ShotKind::ALL, SensitivityTopics::NONE, progress)?;
     let best_of = |kind: ShotKind| found[kind as usize].as_ref().ok();
+    let bests = ShotKind::ALL.map(|kind| best_of(kind).map(|best| values_of(&best.nominal)));
+    let kind = nearest_kind(&usual, &typical.sds_at(place), &bests)
+        .unwrap_or_else(|| ShotKind::of(profile, &nominal_of(&usual)));
     let by_kind: Vec<Option<DrawProbabilities>> = ShotKind::ALL
         .into_iter()
         .map(|kind| {
@@ -181,6 +183,23 @@ pub fn advise(
         training,
         landings,
         kinds,
+    })
+}
+
+/// The kind of the usual shot where both kinds can be made: that whose best shot is nearer in
+/// speed, pitch and aim, in standard deviations. The path alone does not tell it: a direct shot
+/// that is thrown too hard meets the board first as well.
+fn nearest_kind(usual: &Values, sds: &Values, bests: &[Option<Values>; 2]) -> Option<ShotKind> {
+    let [Some(direct), Some(bank)] = bests else {
+        return None;
+    };
+    let square = |best: &Values| -> f64 {
+        let z = (0..3).map(|i| (best[i] - usual[i]) / sds[i].max(f64::MIN_POSITIVE));
+        z.map(|z| z * z).sum()
+    };
+    Some(match square(bank) < square(direct) {
+        true => ShotKind::Bank,
+        false => ShotKind::Direct,
     })
 }
 

@@ -90,6 +90,8 @@ pub enum FitWarning {
     Drift(&'static str, f64),
     /// The means of the sessions differ: value, p-value.
     SessionsDiffer(&'static str, f64),
+    /// The scatter of sessions differs: value, p-value.
+    ScatterDiffers(&'static str, f64),
     /// The number of makes is not what these shots give: seen, expected, its standard deviation.
     OtherMakes(usize, f64, f64),
     /// The chances are too sure: see [`ExpectedMakes::calibration_z`](super::ExpectedMakes). With
@@ -154,6 +156,11 @@ impl std::fmt::Display for FitWarning {
             Self::SessionsDiffer(name, p) => write!(
                 out,
                 "{name} differs between the sessions ({}): the scatter here holds that too, and is wider than that of one session (fit one alone with --session NAME)",
+                p_value(*p)
+            ),
+            Self::ScatterDiffers(name, p) => write!(
+                out,
+                "the scatter of {name} differs between the sessions ({}): what is said here is of their mixture, not of the latest one (fit one alone with --session NAME; `bankshot compare-sessions` compares two)",
                 p_value(*p)
             ),
             Self::SerialCorrelation(name, p) => write!(
@@ -435,6 +442,9 @@ pub fn warnings(
     for trend in trends {
         if let Some(p) = trend.sessions_p.filter(|p| *p < WARNING_LEVEL) {
             warnings.push(FitWarning::SessionsDiffer(trend.name, p));
+        }
+        if let Some(p) = trend.spreads_p.filter(|p| *p < WARNING_LEVEL) {
+            warnings.push(FitWarning::ScatterDiffers(trend.name, p));
         }
         if trend.drift_p < WARNING_LEVEL {
             warnings.push(FitWarning::Drift(trend.name, trend.drift_p));

@@ -56,7 +56,7 @@ pub use session_comparison::{
     POWER, ProbabilityChange, SessionComparison, TWO_SIDED_95, compare_probabilities,
     compare_sessions, probability_change,
 };
-pub use session_trends::{SessionTrend, trends};
+pub use session_trends::{SessionTrend, session_names, trends};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};
 pub use tracker_noise::{Tracker, TrackerNoise};

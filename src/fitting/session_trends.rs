@@ -17,6 +17,45 @@ pub struct SessionTrend {
     /// p-value of equal means in all sessions (F test by Paulson's approximation, Annals of
     /// Mathematical Statistics 13 (1942) 233). `None` with one session.
     pub sessions_p: Option<f64>,
+    /// p-value of equal scatter in all sessions (Levene's test: the same F test of the distances
+    /// from the median of the session; Brown and Forsythe, JASA 69 (1974) 364). `None` with one
+    /// session.
+    pub spreads_p: Option<f64>,
+}
+
+/// The different names of sessions: in the order of time where all are numbers, or dates with the
+/// year first; else in the order in which they come.
+#[must_use]
+pub fn session_names(sessions: &[String]) -> Vec<&String> {
+    let mut names: Vec<&String> = Vec::new();
+    for session in sessions {
+        if !names.contains(&session) {
+            names.push(session);
+        }
+    }
+    let numbers: Option<Vec<Vec<u64>>> = names.iter().map(|name| numbers_of(name)).collect();
+    if let Some(numbers) = numbers
+        && numbers
+            .windows(2)
+            .all(|pair| pair[0].len() == pair[1].len())
+    {
+        let mut order: Vec<usize> = (0..names.len()).collect();
+        order.sort_by(|&a, &b| numbers[a].cmp(&numbers[b]));
+        names = order.into_iter().map(|k| names[k]).collect();
+    }
+    names
+}
+
+/// The numbers of a name that is a number, or a date with the year first.
+fn numbers_of(name: &str) -> Option<Vec<u64>> {
+    let is_separator = |c: char| matches!(c, '-' | '/' | '.' | ':' | ' ' | 'T');
+    let parts = name.trim().split(is_separator).map(|part| {
+        let is_number = !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+        part.parse().ok().filter(|_| is_number)
+    });
+    let numbers: Vec<u64> = parts.collect::<Option<_>>()?;
+    let is_date = numbers.first().is_some_and(|year| *year >= 1900);
+    (numbers.len() == 1 || is_date).then_some(numbers)
 }
 
 /// The shots of each session, in the order of the file. Without names all are of one session.
@@ -92,7 +131,45 @@ fn trend(
             let between = between - total * total / count;
             f_test(between / freedom[0] / (squares / freedom[1]), freedom)
         }),
+        spreads_p: (groups.len() > 1 && free > 1.0).then(|| {
+            let distances = groups.iter().map(|group| {
+                let own: Vec<f64> = group.iter().map(deviation).collect();
+                distances_from_median(&own)
+            });
+            equal_means_p(&distances.collect::<Vec<_>>())
+        }),
     }
+}
+
+/// The distances of values from their median.
+fn distances_from_median(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    let median = match sorted.len() {
+        0 => 0.0,
+        count if count % 2 == 0 => 0.5 * (sorted[middle - 1] + sorted[middle]),
+        _ => sorted[middle],
+    };
+    values.iter().map(|value| (value - median).abs()).collect()
+}
+
+/// The p-value of equal means of groups.
+fn equal_means_p(groups: &[Vec<f64>]) -> f64 {
+    let count = groups.iter().map(Vec::len).sum::<usize>() as f64;
+    let (mut within, mut between, mut total) = (0.0, 0.0, 0.0);
+    for group in groups {
+        let sum: f64 = group.iter().sum();
+        let mean = sum / group.len() as f64;
+        let squares = group.iter().map(|value| (value - mean) * (value - mean));
+        within += squares.sum::<f64>();
+        between += sum * mean;
+        total += sum;
+    }
+    let freedom = [groups.len() as f64 - 1.0, count - groups.len() as f64];
+    let between = between - total * total / count;
+    let within = within.max(f64::MIN_POSITIVE);
+    f_test(between / freedom[0] / (within / freedom[1]), freedom)
 }
 
 /// The probability that a ratio of mean squares with these degrees of freedom is greater.

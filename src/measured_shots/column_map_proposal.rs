@@ -42,11 +42,12 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "direction",
             "lateral",
             "horizontalangle",
+            "phi",
             "rightofhoop",
             "leftofhoop",
         ],
     ),
-    ("backspin", &["backspin", "spinrate", "spin"]),
+    ("backspin", &["backspin", "spinrate", "spin", "rpm"]),
     ("left_right", &["leftright", "leftorright", "offline"]),
     ("court_angle", &["courtangle", "floorangle"]),
     (
@@ -112,7 +113,8 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
             continue;
         }
         taken.push(target);
-        is_short_height |= letters_of(name) == "height";
+        is_short_height |=
+            target == "release_height" && first_word(&name.to_lowercase()) == "height";
         maps.push(match quantity {
             None => format!("--map '{target}={name}'"),
             Some(quantity) => {
@@ -302,9 +304,12 @@ fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static st
         .or_else(|| {
             // `L/R (in)` is `lr` with a unit.
             let without_unit = letters_of(name.split(['(', '[']).next().unwrap_or_default());
-            let short = SHORT_NAMES
-                .iter()
-                .find(|(_, short)| *short == letters || *short == without_unit);
+            // So is `height_m`.
+            let before_last = name.rsplit_once('_').map_or(name, |(before, _)| before);
+            let before_last = letters_of(before_last);
+            let short = SHORT_NAMES.iter().find(|(_, short)| {
+                [&letters, &without_unit, &before_last].contains(&&(*short).to_owned())
+            });
             OTHER_NAMES
                 .iter()
                 .find(|(target, _)| short.is_some_and(|(short, _)| short == target))

@@ -21,7 +21,8 @@ pub struct PhysicsValue {
 const BALL_RULES: &str = "rule book: size of the ball";
 const HOOP_RULES: &str = "rule book: equipment";
 const DROP_TEST: &str = "rule book: drop test of the ball";
-const SHOTS: &str = "measured: 27 three-point shots (0.41 +- 0.035; a smooth sphere has 0.47)";
+const SHOTS: &str =
+    "assumed: between 0.41 +- 0.035 (measured, 27 three-point shots) and 0.47 to 0.54 (spheres)";
 const NO_LIFT: &str = "measured: none in 27 three-point shots (0.00 +- 0.05)";
 const SHELL: &str = "assumed: a thin shell";
 const HOOP_LOSS: &str = "assumed: beside the ball's own loss, rule books let the ring absorb 35 to 50 % of the energy; try 0.45 to 0.70";

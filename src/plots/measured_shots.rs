@@ -4,7 +4,7 @@ use super::axes::Axes;
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::fitting::{
     CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, Values, landing_of, nominal_of,
-    release_of_landing,
+    release_of_landing, session_names,
 };
 use crate::units::{DEGREE_RAD, INCH_M, UnitSystem};
 use rayon::prelude::*;
@@ -406,6 +406,14 @@ fn drift(
         Anchor::Start,
         "The shots in their order: each less the mean of its place",
     );
+    // Session by session, also where their shots take turns in the file.
+    let names = session_names(sessions);
+    let number_of = |k: usize| names.iter().position(|name| Some(*name) == sessions.get(k));
+    let mut order: Vec<usize> = (0..shots.len()).collect();
+    order.sort_by_key(|&k| number_of(k));
+    let shots: &Vec<MeasuredRelease> = &order.iter().map(|&k| shots[k].clone()).collect();
+    let in_order = order.iter().filter_map(|&k| sessions.get(k).cloned());
+    let sessions: &Vec<String> = &in_order.collect();
     let runs = runs_of_equal(sessions);
     let window = (shots.len() / 8).clamp(5, 50);
     for (panel, (i, label, unit)) in rows.into_iter().enumerate() {
@@ -567,14 +575,20 @@ fn reliability(fit: &ShooterFit) -> Plot {
     axes.draw_grid(&mut svg);
     let style = format!("stroke=\"{FAINT}\" stroke-dasharray=\"5 4\" fill=\"none\"");
     svg.polyline([axes.pixel((0.0, 0.0)), axes.pixel((100.0, 100.0))], &style);
+    let mut numbered: Vec<(f64, f64)> = Vec::new();
     for bin in &fit.makes.bins {
         let at = |share: f64| axes.pixel((100.0 * bin.predicted, 100.0 * share));
         let style = format!("stroke=\"{MADE}\" stroke-width=\"2\" fill=\"none\"");
         svg.polyline([at(bin.observed.low), at(bin.observed.high)], &style);
         let (x, y) = at(bin.observed.share);
         svg.circle((x, y), 5.0, &format!("fill=\"{MADE}\""));
-        let shots = bin.shots.to_string();
-        svg.text((x + 9.0, y + 4.0), 11.0, Anchor::Start, &shots);
+        // Points that lie together have one number.
+        let is_apart = |(a, b): &(f64, f64)| (a - x).abs() > 24.0 || (b - y).abs() > 12.0;
+        if numbered.iter().all(is_apart) {
+            let shots = bin.shots.to_string();
+            svg.text((x + 9.0, y + 4.0), 11.0, Anchor::Start, &shots);
+            numbered.push((x, y));
+        }
     }
     axes.draw(
         &mut svg,
@@ -584,7 +598,7 @@ fn reliability(fit: &ShooterFit) -> Plot {
     );
     svg.footnote(
         (80.0, 545.0),
-        "Each point: as many shots of similar chance as it says. On the dashed line, predicted is observed.",
+        "Points: shots of similar chance, with their number. On the dashed line: as predicted.",
     );
     named(fit, "reliability", "predicted against observed", svg)
 }

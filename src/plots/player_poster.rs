@@ -28,7 +28,7 @@ pub struct PlayerPoster {
     pub plot: Plot,
     /// The map alone, for a page with the sentences as text.
     pub map_svg: String,
-    /// What the map says: three sentences, two numbers each.
+    /// What the map says: three sentences, two numbers each; of one place the last is empty.
     pub sentences: [String; 3],
 }
 
@@ -66,14 +66,19 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let named = best.1.in_words_with_mirror(&alike(best.0), units);
     let is_both = named != best.1.in_words(units);
     let others = as_sure.saturating_sub(if is_both { 2 } else { 1 });
+    let is_one_place = found.len() == 1;
     let sentences = [
         match others {
+            _ if is_one_place => format!(
+                "From {named} {} of 100 of your best shots go in.",
+                of_hundred(best.0)
+            ),
             0 => format!(
-                "Your surest place is {named}: {} of 100 go in.",
+                "Your surest place is {named}: {} of 100 of your best shots go in.",
                 of_hundred(best.0)
             ),
             _ => format!(
-                "Your surest place is {named}: {} of 100 go in; {others} more {} as sure.",
+                "Your surest place is {named}: {} of 100 of your best shots go in; {others} more {} as sure.",
                 of_hundred(best.0),
                 if others == 1 { "is" } else { "are" }
             ),
@@ -83,11 +88,14 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         } else {
             bank_in_words(&bank, units)
         } + &doubt_in_words(results.chances()),
-        format!(
-            "Your hardest place is {}: {} of 100 go in.",
-            worst.1.in_words_with_mirror(&alike(worst.0), units),
-            of_hundred(worst.0)
-        ),
+        match is_one_place {
+            true => String::new(),
+            false => format!(
+                "Your hardest place is {}: {} of 100 go in.",
+                worst.1.in_words_with_mirror(&alike(worst.0), units),
+                of_hundred(worst.0)
+            ),
+        },
     ];
     let drawing = |words: &[String]| {
         let map = CourtMap {
@@ -97,6 +105,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         let (width, height) = map.size();
         let lines: Vec<_> = words
             .iter()
+            .filter(|sentence| !sentence.is_empty())
             .flat_map(|sentence| textwrap::wrap(sentence, LINE_LETTERS))
             .collect();
         let words_top = MAP_TOP + height;
@@ -114,13 +123,13 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
             let at = (10.0, words_top + LINE_HEIGHT * (i as f64 + 0.6));
             svg.text(at, WORDS_FONT, Anchor::Start, line);
         }
-        svg.finish(&sentences.join(" "))
+        svg.finish(sentences.join(" ").trim_end())
     };
     Some(PlayerPoster {
         plot: Plot {
             name: "poster".to_owned(),
             svg: drawing(&sentences),
-            caption: sentences.join(" "),
+            caption: sentences.join(" ").trim_end().to_owned(),
         },
         map_svg: drawing(&[]),
         sentences: sentences.clone(),

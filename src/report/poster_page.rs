@@ -10,6 +10,7 @@ pub fn poster_page(name: &str, poster: &PlayerPoster) -> String {
     let list: String = poster
         .sentences
         .iter()
+        .filter(|sentence| !sentence.is_empty())
         .map(|sentence| format!("<p>{}</p>\n", escaped(sentence)))
         .collect();
     format!(

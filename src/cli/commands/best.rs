@@ -8,6 +8,7 @@ use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
+use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::best_shot_json::best_shots_json;
@@ -26,6 +27,7 @@ Examples:
   bankshot best configs/bank_wing.toml --units metric --out wing
   bankshot best configs/free_throw.toml --distance '12 ft' --angle '45 deg'
   bankshot best configs/free_throw.toml --pitch '50 deg'
+  bankshot best configs/free_throw.toml --scatter 'speed=-20%'
 
 Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
 best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
@@ -38,6 +40,8 @@ pub(crate) struct BestOptions {
     pub(crate) place: PlaceOptions,
     #[command(flatten)]
     pub(crate) fixed: FixedOptions,
+    #[command(flatten)]
+    pub(crate) scatter: ScatterOptions,
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -60,6 +64,7 @@ pub(crate) struct BestOptions {
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
     let loaded = load_profile_with_text(&options.profile, &options.physics, (&fixed, quiet))?;
+    let loaded = options.scatter.changed(loaded, &options.profile)?;
     let loaded = with_fixed(loaded, &options.fixed, &options.profile)?;
     let (mut profile, text) = moved(loaded, &options.place)?;
     if let Some(units) = options.units {

@@ -185,6 +185,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
         }
         text.push_str(&probabilities_text(&name_of(&other, path), &other_best));
         text.push_str(&differences_text(&best, &other_best));
+        text.push_str(&conditions_text([&profile, &other]));
         exit = exit.max(run_folder::exit_code(&other, &other_best));
         against = Some((other_text, other, other_best));
     }
@@ -218,13 +219,38 @@ fn differences_text(first: &BestShots, second: &BestShots) -> String {
             );
             let error = libm::hypot(first.standard_error, second.standard_error);
             Some(format!(
-                "{}: the second makes {:+.1} \u{b1} {:.1} more of 100 than the first\n",
+                "second less first, {}: {:+.1} points (numerical error \u{b1} {:.1})\n",
                 kind.name(),
                 100.0 * (second.probability - first.probability),
                 100.0 * error
             ))
         })
         .collect()
+}
+
+/// Where, and under which physics, if that is not the same for both profiles.
+fn conditions_text(profiles: [&Profile; 2]) -> String {
+    let [first, second] = profiles;
+    let is_same_place = first.location() == second.location()
+        && first.shooter().release_height_m == second.shooter().release_height_m;
+    let is_same_physics = first.physics() == second.physics();
+    let mut text = String::new();
+    if !is_same_place {
+        let [a, b] = profiles.map(|profile| {
+            let units = profile.output().units;
+            let (long, metre) = units.length();
+            format!(
+                "{}, {:.2} {long} up",
+                profile.location().in_words(units),
+                profile.shooter().release_height_m / metre
+            )
+        });
+        text += &format!("The places are not the same: {a}; {b}.\n");
+    }
+    if !is_same_physics {
+        text += "The physics are not the same (`bankshot check PROFILE --verbose` lists them): the difference is not that of the shooters alone.\n";
+    }
+    text
 }
 
 /// P of the best shots of a profile, or why there is none.

@@ -9,7 +9,7 @@ use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
     DrawProbabilities, MeasuredRelease, Posterior, ProbabilityChange, SessionComparison,
     ShooterFit, SpinSource, VALUE_NAMES, change_of_share, compare_probabilities, compare_sessions,
-    probability_change,
+    probability_change, session_names,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
@@ -36,7 +36,8 @@ Examples:
   bankshot compare-sessions season.csv
   bankshot compare-sessions season.csv --session September --session March
 
-A file with a column session needs no second one; with several shooters, each is compared.")]
+A file with a column session needs no second one; with several shooters, each is compared. Sessions that are numbers, or dates with \
+the year first (2026-11-03), are compared in their order, others in that of the file, or as --session names them.")]
 pub(crate) struct CompareSessionsOptions {
     /// The first session, or a file with a column session that has two values.
     pub(crate) before: PathBuf,
@@ -302,12 +303,7 @@ fn fit_by_session(
     let wanted = &options.measured.session[..];
     let place = file.file.display().to_string();
     report_rejected(file, shots, file.shooters.len() == 1);
-    let mut names: Vec<&String> = Vec::new();
-    for session in &shots.sessions {
-        if !names.contains(&session) {
-            names.push(session);
-        }
-    }
+    let mut names = session_names(&shots.sessions);
     let listed = names
         .iter()
         .map(|name| name.as_str())

@@ -10,6 +10,7 @@ use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
@@ -42,6 +43,8 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) place: PlaceOptions,
+    #[command(flatten)]
+    pub(crate) scatter: ScatterOptions,
     /// The pitch angles, ascending.
     #[arg(
         long,
@@ -107,6 +110,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     let mut given = fixed.variables();
     given.push(NominalVariable::Pitch);
     let loaded = load_profile_with_text(&options.profile, &options.physics, (&given, quiet))?;
+    let loaded = options.scatter.changed(loaded, &options.profile)?;
     let loaded = with_fixed(loaded, &fixed, &options.profile)?;
     let (mut profile, _) = moved(loaded, &options.place)?;
     if let Some(units) = options.units {

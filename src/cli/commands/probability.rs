@@ -2,11 +2,12 @@
 
 use super::trace;
 use crate::analysis::miss_breakdown::classify_misses;
-use crate::cli::config_files::load_profile;
+use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::{NominalOptions, PlaceOptions};
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg, sample, standard_error};
 use crate::dynamics::Release;
@@ -67,6 +68,8 @@ pub(crate) struct ProbabilityOptions {
     pub(crate) nominal: NominalOptions,
     #[command(flatten)]
     pub(crate) place: PlaceOptions,
+    #[command(flatten)]
+    pub(crate) scatter: ScatterOptions,
     /// The method of computing P.
     #[arg(long, value_enum, default_value_t = Method::Sobol)]
     pub(crate) method: Method,
@@ -110,7 +113,8 @@ struct Precision {
 }
 
 pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failure> {
-    let profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let loaded = load_profile_with_text(&options.profile, &options.physics, (&[], quiet))?;
+    let (profile, _) = options.scatter.changed(loaded, &options.profile)?;
     let mut profile = options.place.moved(profile)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;

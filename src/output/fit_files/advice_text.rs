@@ -165,10 +165,11 @@ fn other_kind_in_words(advice: &Advice) -> String {
         return String::new();
     }
     format!(
-        "{words} makes {:.0} %, the best {} one {:.0} % (it is better in {:.0} % of the draws).\n",
+        "{words} makes {:.0} %, the best {} one {:.0} % ({} is better in {:.0} % of the draws).\n",
         100.0 * other.mean,
         advice.kind.name(),
         100.0 * own.mean,
+        advice.kind.other().name(),
         100.0 * sure
     )
 }
@@ -368,7 +369,7 @@ pub fn advice_text(
             100.0 * probability.high,
             100.0 * advice.gain_is_positive
         );
-        text += "usual shot: as measured; advised shot: with the changes that are sure; best shot: the best of all\n";
+        text += "usual shot: as measured; advised shot: with the changes that are sure; best shot: the best of its kind\n";
         text += &words.release("usual shot", &advice.usual);
         if let Some(steps) = &advice.steps {
             text += &words.release("advised shot", &steps.advised);

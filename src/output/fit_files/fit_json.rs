@@ -236,6 +236,10 @@ fn tests_json(fit: &ShooterFit) -> Value {
                 "equal_sessions_p",
                 trend.sessions_p.map_or(Value::Null, number),
             ),
+            named(
+                "equal_scatter_p",
+                trend.spreads_p.map_or(Value::Null, number),
+            ),
         ])
     });
     object(vec![

@@ -83,6 +83,19 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             makes.expected,
             makes.expected_sd
         );
+        if fit.places.len() > 1 {
+            for place in 0..fit.places.len() {
+                let makes = makes.at_place(place);
+                text += &format!(
+                    "        place {}: {} of {}, expected {:.1} ± {:.1}\n",
+                    place + 1,
+                    makes.made,
+                    makes.labelled,
+                    makes.expected,
+                    makes.expected_sd
+                );
+            }
+        }
         if makes.labelled < posterior.shots {
             text += &format!(
                 "        {} of the {} shots have no result\n",
@@ -155,6 +168,9 @@ fn tests_text(fit: &ShooterFit) -> String {
             Some(("drift", trend.drift_p)),
             Some(("a shot like the one before", trend.serial_p)),
             trend.sessions_p.map(|p| ("unequal sessions", p)),
+            trend
+                .spreads_p
+                .map(|p| ("unequal scatter of the sessions", p)),
         ]
         .map(|test| test.map(|(what, p)| (what, trend.name, p)))
     });

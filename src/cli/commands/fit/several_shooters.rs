@@ -9,7 +9,7 @@ use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
-use crate::fitting::Place;
+use crate::fitting::{FitWarning, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
 use crate::probability::Progress;
@@ -113,6 +113,11 @@ pub(super) fn fit(
             "made and expected: of these balls, as they were measured. P: of the fitted distribution, so of all balls like them.\n",
         )?;
     }
+    if rows.iter().any(|row| row.is_doubted) {
+        print_prose(
+            "!: the makes and the measured shots do not belong together (see the warning): do not act on that P yet. `bankshot compare-sessions` says whether it is one session.\n",
+        )?;
+    }
     for warning in rows.iter().flat_map(|row| &row.warnings) {
         print_remark(warning);
     }
@@ -134,6 +139,8 @@ struct ShooterRow {
     /// A row of the printed table for each place, or why there is no fit.
     result: Result<Vec<PlaceRow>, String>,
     warnings: Vec<String>,
+    /// See [`is_doubted`].
+    is_doubted: bool,
 }
 
 /// A place in a cell of the table, such as `13.75 ft, 0 deg, from 7.00 ft up`, with its name above
@@ -162,6 +169,12 @@ struct PlaceRow {
     cells: [String; 4],
 }
 
+/// Whether the makes and the measured shots of a fit do not belong together.
+fn is_doubted(fit: &ShooterFit) -> bool {
+    let mut warnings = fit.warnings.iter();
+    warnings.any(|warning| matches!(warning, FitWarning::OtherMakes(..)))
+}
+
 fn fit_one(
     file: &MeasuredFile,
     shots: &ShooterShots,
@@ -180,6 +193,7 @@ fn fit_one(
                 records: vec![record],
                 result: Err(format!("{name}: {error}")),
                 warnings: Vec::new(),
+                is_doubted: false,
             });
         }
     };
@@ -192,8 +206,9 @@ fn fit_one(
         // A place takes two lines, so the interval does too.
         let is_one = fit.places.len() == 1;
         let [made, expected] = if makes.labelled > 0 {
+            let mark = if is_doubted(&fit) { " !" } else { "" };
             [
-                format!("{} of {}", makes.made, makes.labelled),
+                format!("{} of {}{mark}", makes.made, makes.labelled),
                 format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
             ]
         } else {
@@ -233,6 +248,7 @@ fn fit_one(
             options.measured.unit_system(),
         ),
         result: Ok(places),
+        is_doubted: is_doubted(&fit),
         warnings: fit
             .warnings
             .iter()

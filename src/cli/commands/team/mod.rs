@@ -363,7 +363,8 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     atomic_file::write(&page_file, page.html().as_bytes())
         .map_err(|error| Failure::io(page_file.display(), &error))?;
     print_prose(&team_text(&players, units))?;
-    if is_one_sided {
+    let has_several_places = players.iter().any(|player| player.places.len() > 1);
+    if is_one_sided && has_several_places {
         print_prose(
             "Left and right differ for players whose aim is correlated with speed or angle. After a fit of few shots that can be chance: its profile.toml has the intervals.\n",
         )?;
