@@ -141,7 +141,7 @@ fn together(changes: &[(&str, f64)]) -> [f64; 2] {
 pub enum SameShot {
     /// The one that the profile gives: that of a shooter who does not know the answer.
     OfProfile,
-    /// The best direct shot of the first row.
+    /// The best shot of the first row, of either kind.
     BestOfFirstRow,
 }
 
@@ -151,7 +151,7 @@ impl SameShot {
     pub fn in_words(self) -> &'static str {
         match self {
             Self::OfProfile => "the usual shot (the profile's [nominal] table)",
-            Self::BestOfFirstRow => "the best direct shot of the first row",
+            Self::BestOfFirstRow => "the best shot of the first row",
         }
     }
 }
@@ -257,6 +257,7 @@ pub fn compare_physics(
     let own = profile
         .nominal_overrides()
         .whole_shot(profile.location().angle_rad);
+    let mut first = None;
     progress.begin("comparing physics", variants.len() as u64);
     for variant in variants {
         progress.advance(u64::from(!rows.is_empty()));
@@ -274,8 +275,16 @@ pub fn compare_physics(
         let none = |kind| Err(NoShot::Impossible(kind));
         let bank = shots.pop().unwrap_or_else(|| none(ShotKind::Bank));
         let direct = shots.pop().unwrap_or_else(|| none(ShotKind::Direct));
-        let first = rows.first().map_or(&direct, |row| &row.direct);
-        let first = first.as_ref().ok().map(|shot| shot.nominal);
+        if rows.is_empty() {
+            let found = [&direct, &bank]
+                .into_iter()
+                .filter_map(|shot| shot.as_ref().ok());
+            let best = found.max_by(|a, b| {
+                let [a, b] = [a, b].map(|shot| shot.estimate.probability);
+                a.total_cmp(&b)
+            });
+            first = best.map(|shot| shot.nominal);
+        }
         let search = other.search();
         let same_shot = own.or(first).map(|shot| {
             let sampler = Sampler::new(&other);

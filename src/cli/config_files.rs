@@ -275,7 +275,33 @@ fn physics_text(name: &str) -> Result<String, Failure> {
 pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Failure> {
     let texts = read_sweep(path)?;
     let config = parse_sweep(&texts, &path.display().to_string())?;
+    let unused = search_keys_not_used(&texts);
+    if !unused.is_empty() {
+        print_remark(&format!(
+            "warning: {}: a sweep has its own [search]; {} of the shooter's file {} not used: write {} into the sweep",
+            path.display(),
+            unused.join(", "),
+            if unused.len() == 1 { "is" } else { "are" },
+            if unused.len() == 1 { "it" } else { "them" }
+        ));
+    }
     Ok((config, texts))
+}
+
+/// The keys of `[search]` in the shooter's file that change what is searched, and that the sweep
+/// does not give.
+fn search_keys_not_used(texts: &SourceTexts) -> Vec<String> {
+    const PRECISION: [&str; 3] = ["standard_error", "seed", "climb_samples"];
+    let keys = |text: &str| -> Vec<String> {
+        let root = text.parse::<toml::Table>().unwrap_or_default();
+        let search = root.get("search").and_then(toml::Value::as_table);
+        search.map_or_else(Vec::new, |search| search.keys().cloned().collect())
+    };
+    let own = keys(&texts.sweep);
+    let of_shooter = texts.shooter.as_deref().map_or_else(Vec::new, keys);
+    let mut unused = of_shooter;
+    unused.retain(|key| !PRECISION.contains(&key.as_str()) && !own.contains(key));
+    unused
 }
 
 /// Reads a sweep whose shooter gives way to another one: what belongs to the shooter is left out,

@@ -95,7 +95,7 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     say(
         mass_g < LIGHTEST_BASKETBALL_G
             && of_basketballs.is_some_and(|usual| {
-                [SolidId::Board, SolidId::Ring].into_iter().any(|solid| {
+                [SolidId::Board, SolidId::Ring].into_iter().all(|solid| {
                     let difference = usual.restitution_on(solid) - physics.restitution_on(solid);
                     libm::fabs(difference) < 0.001
                 })

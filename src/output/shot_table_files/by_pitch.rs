@@ -65,7 +65,7 @@ pub fn by_pitch_text(
     text += &wrapped(
         "At each pitch angle the speed, the aim and the spin are the best ones (--backspin keeps \
          one); the errors are taken to be the same at all angles. aim: positive to the left. entry: \
-         -, if it hits the ring from below first. less: than the highest P. margin: by how much speed \
+         -, if it meets the ring on its way up. less: than the highest P. margin: by how much speed \
          and pitch can be off, down and up, one at a time and with all else exact, until the shot \
          first misses.",
     );

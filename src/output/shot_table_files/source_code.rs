@@ -285,6 +285,7 @@ const JAVA: &str = "\
 const CPP: &str = "\
 @ABOUT@#pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 

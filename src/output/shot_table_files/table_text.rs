@@ -82,7 +82,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
              the chance of each. margin: by how much speed and pitch can be off, {}, one \
              at a time and with all else exact, until the shot first misses (beyond that more may go \
              in). time, entry: where it \
-             first falls to the height of the hoop, as if there were no ring (-: it hits the ring from below first, and would fall behind the board).{}",
+             first falls to the height of the hoop, as if there were no ring (-: it meets the ring on its way up, or would fall behind the board).{}",
             what_shots(table.kind),
             if has_one_angle {
                 "down and up"
