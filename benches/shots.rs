@@ -41,6 +41,9 @@ fn main() {
     for (name, court_deg, polar_deg) in SAMPLES {
         compare_presets(name, court_deg, polar_deg);
     }
+    for (preset, faster) in [("paper", 1.0), ("ncaa", 1.03)] {
+        compare_batch_sizes(preset, faster);
+    }
     compare_agreement(&physics, &uniform(BATCH, 0.0, 0.0));
     time_free_throw();
     compare_threads(&physics, &uniform(THREAD_SHOTS, 0.0, 0.0));
@@ -189,6 +192,36 @@ fn compare_integrators(physics: &Physics, sample: &str, starts: &[BallState]) {
             time / times[0],
             contender.starts.len()
         );
+    }
+}
+
+/// Rates of the free throw sample in batches of several sizes. At the end of each batch lanes stay
+/// empty.
+fn compare_batch_sizes(preset: &str, faster: f64) {
+    let simulator = Simulator::new(&Preset::named(preset).unwrap().physics()).unwrap();
+    let mut shots = releases(BATCH, 0.0, 0.0);
+    for shot in &mut shots {
+        shot.speed_m_s *= faster;
+    }
+    let starts: Vec<BallState> = shots.iter().map(Release::state).collect();
+    let sizes = [BATCH, 8192, 1024, 256];
+    let mut variants: Vec<Variant<'_>> = sizes
+        .iter()
+        .map(|size| {
+            let (simulator, starts) = (&simulator, &starts);
+            let mut workspace = BatchWorkspace::default();
+            Variant::new(format!("batches of {size}"), move || {
+                for batch in starts.chunks(*size) {
+                    black_box(simulator.verdicts(batch, &mut workspace).unwrap());
+                }
+            })
+        })
+        .collect();
+    println!("\nfree_throw_uniform under {preset}, one thread");
+    let least = least_times_s(&mut variants);
+    for (variant, seconds) in variants.iter().zip(least) {
+        let rate = BATCH as f64 / seconds;
+        println!("  {:28} {rate:>10.0} shots/s", variant.name);
     }
 }
 

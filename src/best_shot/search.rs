@@ -35,6 +35,9 @@ const TRIAL_MARGIN: f64 = 0.02;
 const LEAST_GAIN: f64 = 2.0;
 /// A trial that ends nearer than this to the optimum, in pitch, has found the same one.
 const SAME_OPTIMUM_RAD: f64 = 0.05;
+/// The same for a fixed pitch angle: in direction, and relative in speed.
+const SAME_DIRECTION_RAD: f64 = 0.02;
+const SAME_SPEED: f64 = 0.02;
 /// The optima of the climbs are compared with this many times the Sobol points of the climbs.
 const COMPARISON_FACTOR: u32 = 8;
 /// Greatest number of windows in a row.
@@ -335,7 +338,7 @@ impl BestShotSearch<'_> {
         let worth_a_climb = best.0 as f64 / compared - TRIAL_MARGIN;
         let is_promising = |optimum: &Nominal| {
             let made = sampler.count(optimum, scramble, (0, TRIAL_SAMPLES)).made();
-            (optimum.pitch_rad - best.1.pitch_rad).abs() > SAME_OPTIMUM_RAD
+            self.is_other_optimum(optimum, &best.1)
                 && made as f64 / f64::from(TRIAL_SAMPLES) > worth_a_climb
         };
         let promising: Vec<Nominal> = starts
@@ -351,6 +354,21 @@ impl BestShotSearch<'_> {
             Some(other) if other.0 as f64 > best.0 as f64 + LEAST_GAIN * error => other.1,
             _ => best.1,
         })
+    }
+
+    /// Whether an optimum is another one: apart in pitch; where the pitch angle is fixed, in
+    /// direction or speed.
+    fn is_other_optimum(&self, optimum: &Nominal, known: &Nominal) -> bool {
+        if self
+            .profile
+            .search()
+            .choice
+            .includes(NominalVariable::Pitch)
+        {
+            return (optimum.pitch_rad - known.pitch_rad).abs() > SAME_OPTIMUM_RAD;
+        }
+        (optimum.polar_rad - known.polar_rad).abs() > SAME_DIRECTION_RAD
+            || (optimum.speed_m_s / known.speed_m_s - 1.0).abs() > SAME_SPEED
     }
 
     /// Climbs from every start; returns the highest optimum, if any shot of it is made, with the
