@@ -179,6 +179,21 @@ pub(crate) fn moved(
     Ok((place.moved(profile)?, text))
 }
 
+/// A profile's text with other tables, which begins with the flags that changed it, earlier ones
+/// first. Other comments are lost.
+pub(crate) fn rewritten(text: &str, root: &toml::Table, flags: &str) -> Result<String, Failure> {
+    let earlier: String = text
+        .split_inclusive('\n')
+        .take_while(|line| line.starts_with(WITH_FLAGS))
+        .collect();
+    let tables = toml::to_string_pretty(root)
+        .map_err(|error| Failure::usage(format!("the profile: {error}")))?;
+    Ok(format!("{earlier}{WITH_FLAGS}{flags}\n{tables}"))
+}
+
+/// What a line with flags begins with.
+const WITH_FLAGS: &str = "# With";
+
 /// A profile in which the flags' values are fixed, and its text with them.
 pub(crate) fn with_fixed(
     (profile, text): (Profile, String),
@@ -275,17 +290,25 @@ fn physics_text(name: &str) -> Result<String, Failure> {
 pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Failure> {
     let texts = read_sweep(path)?;
     let config = parse_sweep(&texts, &path.display().to_string())?;
-    let unused = search_keys_not_used(&texts);
-    if !unused.is_empty() {
-        print_remark(&format!(
-            "warning: {}: a sweep has its own [search]; {} of the shooter's file {} not used: write {} into the sweep",
-            path.display(),
-            unused.join(", "),
-            if unused.len() == 1 { "is" } else { "are" },
-            if unused.len() == 1 { "it" } else { "them" }
-        ));
-    }
     Ok((config, texts))
+}
+
+/// Says which keys of the shooter's file a sweep does not use.
+pub(crate) fn warn_of_unused_search(path: &Path, texts: &SourceTexts) {
+    let unused = search_keys_not_used(texts);
+    if unused.is_empty() {
+        return;
+    }
+    let (are, them) = if unused.len() == 1 {
+        ("is", "it")
+    } else {
+        ("are", "them")
+    };
+    print_remark(&format!(
+        "warning: {}: a sweep has its own [search]; {} of the shooter's file {are} not used: write {them} into the sweep",
+        path.display(),
+        unused.join(", ")
+    ));
 }
 
 /// The keys of `[search]` in the shooter's file that change what is searched, and that the sweep

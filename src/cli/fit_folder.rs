@@ -405,7 +405,7 @@ pub(crate) fn kinds_over_draws(
             points.mean, points.low, points.high
         );
     }
-    text += "P above is that of the middle scatter. Draws scatter less and more, and P is not linear in that, so their mean may differ by some tenths of a point.\n";
+    text += "P above uses the typical scatter. P is not linear in it, so the mean over the draws can differ by some tenths of a point.\n";
     Ok(text)
 }
 
@@ -429,7 +429,7 @@ pub(crate) fn angles_over_draws(
         return Ok(String::new());
     };
     let mut text = format!(
-        "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, which has the greatest mean, draw by draw (95 %)\n",
+        "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, draw by draw (95 %). That angle has the greatest mean.\n",
         which_draws(folder, fit)
     );
     for (pitch_deg, p) in &angles {

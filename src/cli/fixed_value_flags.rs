@@ -1,5 +1,6 @@
 //! Values of a nominal shot that a command's flags take out of its search.
 
+use super::config_files::rewritten;
 use super::failure::Failure;
 use crate::shooter::{NominalVariable, Profile};
 use crate::units::{self, DEGREE_RAD, REV_RAD};
@@ -99,7 +100,6 @@ impl FixedOptions {
             .given()
             .map(|(variable, text)| format!(" --{} '{text}'", variable.name()))
             .collect();
-        let changed = toml::to_string_pretty(&root).map_err(|error| refuse(error.to_string()))?;
-        Ok(format!("# With{flags}\n{changed}"))
+        rewritten(text, &root, &flags)
     }
 }

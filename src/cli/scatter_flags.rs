@@ -1,5 +1,6 @@
 //! Errors of a profile that a flag makes smaller or greater.
 
+use super::config_files::rewritten;
 use super::failure::Failure;
 use crate::config::parse_profile;
 use crate::shooter::{Profile, ReleaseDispersion};
@@ -59,13 +60,12 @@ impl ScatterOptions {
                 errors.insert(key.to_owned(), value);
             }
         }
-        let changed = toml::to_string_pretty(&root).map_err(|error| refuse(error.to_string()))?;
         let flags: String = self
             .scatter
             .iter()
             .map(|text| format!(" --scatter '{text}'"))
             .collect();
-        let text = format!("# With{flags}\n{changed}");
+        let text = rewritten(&text, &root, &flags)?;
         let profile = parse_profile(&text, &format!("{} as changed", origin.display()))?;
         Ok((profile, text))
     }
@@ -80,9 +80,9 @@ fn error_and_factor(text: &str) -> Result<(usize, f64), Failure> {
     };
     let (name, percent) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
     let number = ERRORS.iter().position(|(error, _)| *error == name.trim());
-    let number = number.ok_or_else(|| refuse("names no error"))?;
+    let number = number.ok_or_else(|| refuse("is none of the four"))?;
     let percent = percent.trim();
-    if !percent.ends_with('%') {
+    if !units::PERCENT.iter().any(|unit| percent.ends_with(unit)) {
         return Err(refuse("is not in percent"));
     }
     let share = units::parse(percent.trim_start_matches('+'), Dimension::Number)

@@ -240,3 +240,21 @@ fn training_gains(
     gains.sort_by(|a, b| b.gain.mean.total_cmp(&a.gain.mean));
     gains
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_a_long_direct_shot_is_direct() {
+        let (direct, bank) = ([7.3, 0.93, 0.0, 15.0], [7.8, 1.03, 0.0, 15.0]);
+        let sds = [0.1, 0.03, 0.02, 2.0];
+        let kind = |usual: [f64; 4], bests| nearest_kind(&usual, &sds, &bests);
+        let both = [Some(direct), Some(bank)];
+        // Three standard deviations too fast, and so off the board.
+        let long = [7.6, 0.93, 0.0, 15.0];
+        assert_eq!(kind(long, both), Some(ShotKind::Direct));
+        assert_eq!(kind(bank, both), Some(ShotKind::Bank));
+        assert_eq!(kind(long, [None, Some(bank)]), None);
+    }
+}

@@ -160,7 +160,7 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::ScatterDiffers(name, p) => write!(
                 out,
-                "the scatter of {name} differs between the sessions ({}): what is said here is of their mixture, not of the latest one (fit one alone with --session NAME; `bankshot compare-sessions` compares two)",
+                "the scatter of {name} differs between the sessions ({}): this fit describes their mixture, not the latest one (fit one alone with --session NAME; `bankshot compare-sessions` compares two)",
                 p_value(*p)
             ),
             Self::SerialCorrelation(name, p) => write!(
@@ -432,8 +432,12 @@ pub fn warnings(
     if typical.tail_weight > 0.0 {
         warnings.push(FitWarning::HeavyTails(typical.tail_weight));
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
-        let sessions_differ =
-            |trend: &SessionTrend| trend.sessions_p.is_some_and(|p| p < WARNING_LEVEL);
+        let sessions_differ = |trend: &SessionTrend| {
+            [trend.sessions_p, trend.spreads_p]
+                .into_iter()
+                .flatten()
+                .any(|p| p < WARNING_LEVEL)
+        };
         warnings.push(FitWarning::NotNormal(
             [shape.skewness_p, shape.kurtosis_p],
             trends.iter().any(sessions_differ),

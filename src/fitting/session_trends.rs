@@ -18,8 +18,8 @@ pub struct SessionTrend {
     /// Mathematical Statistics 13 (1942) 233). `None` with one session.
     pub sessions_p: Option<f64>,
     /// p-value of equal scatter in all sessions (Levene's test: the same F test of the distances
-    /// from the median of the session; Brown and Forsythe, JASA 69 (1974) 364). `None` with one
-    /// session.
+    /// from the median of the session; Brown and Forsythe, JASA 69 (1974) 364). `None` with
+    /// fewer than two sessions of ten shots.
     pub spreads_p: Option<f64>,
 }
 
@@ -75,25 +75,25 @@ fn by_session(shots: usize, sessions: &[String]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The trends of the first `values` values. `means` are those of the places; `sessions` has the
-/// name of each shot's session, or nothing.
+/// The trends of the first `values` values. `means` and `sds` are the means and the standard
+/// deviations at the places; `sessions` has the name of each shot's session, or nothing.
 #[must_use]
 pub fn trends(
     shots: &[MeasuredRelease],
     sessions: &[String],
-    means: &[Values],
+    (means, sds): (&[Values], &[Values]),
     values: usize,
 ) -> Vec<SessionTrend> {
     let groups = by_session(shots.len(), sessions);
     (0..values)
-        .map(|i| trend(shots, &groups, means, i))
+        .map(|i| trend(shots, &groups, (means, sds), i))
         .collect()
 }
 
 fn trend(
     shots: &[MeasuredRelease],
     groups: &[Vec<usize>],
-    means: &[Values],
+    (means, sds): (&[Values], &[Values]),
     i: usize,
 ) -> SessionTrend {
     let deviation = |shot: &usize| shots[*shot].values[i] - means[shots[*shot].place][i];
@@ -131,15 +131,23 @@ fn trend(
             let between = between - total * total / count;
             f_test(between / freedom[0] / (squares / freedom[1]), freedom)
         }),
-        spreads_p: (groups.len() > 1 && free > 1.0).then(|| {
-            let distances = groups.iter().map(|group| {
-                let own: Vec<f64> = group.iter().map(deviation).collect();
+        spreads_p: {
+            // The scatter of the speed grows with the speed, so each deviation is in units of the
+            // standard deviation at its place.
+            let in_sds = |shot: &usize| deviation(shot) / sds[shots[*shot].place][i];
+            let large = groups.iter().filter(|group| group.len() >= LEAST_SHOTS);
+            let distances = large.map(|group| {
+                let own: Vec<f64> = group.iter().map(in_sds).collect();
                 distances_from_median(&own)
             });
             equal_means_p(&distances.collect::<Vec<_>>())
-        }),
+        },
     }
 }
+
+/// Of a session with fewer shots the scatter is not compared: the distances from the median of a
+/// few shots are far from independent.
+const LEAST_SHOTS: usize = 10;
 
 /// The distances of values from their median.
 fn distances_from_median(values: &[f64]) -> Vec<f64> {
@@ -154,8 +162,8 @@ fn distances_from_median(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| (value - median).abs()).collect()
 }
 
-/// The p-value of equal means of groups.
-fn equal_means_p(groups: &[Vec<f64>]) -> f64 {
+/// The p-value of equal means of groups; `None` for fewer than two, and where no group varies.
+fn equal_means_p(groups: &[Vec<f64>]) -> Option<f64> {
     let count = groups.iter().map(Vec::len).sum::<usize>() as f64;
     let (mut within, mut between, mut total) = (0.0, 0.0, 0.0);
     for group in groups {
@@ -168,8 +176,8 @@ fn equal_means_p(groups: &[Vec<f64>]) -> f64 {
     }
     let freedom = [groups.len() as f64 - 1.0, count - groups.len() as f64];
     let between = between - total * total / count;
-    let within = within.max(f64::MIN_POSITIVE);
-    f_test(between / freedom[0] / (within / freedom[1]), freedom)
+    (groups.len() > 1 && within > 0.0)
+        .then(|| f_test(between / freedom[0] / (within / freedom[1]), freedom))
 }
 
 /// The probability that a ratio of mean squares with these degrees of freedom is greater.
@@ -214,7 +222,7 @@ mod tests {
 
     fn speed_trend(sizes: &[usize], random: &mut ChaCha12Rng, of: Shape) -> SessionTrend {
         let (shots, sessions) = simulated(sizes, random, of);
-        trends(&shots, &sessions, &[[0.0; 4]], 1)[0]
+        trends(&shots, &sessions, (&[[0.0; 4]], &[[1.0; 4]]), 1)[0]
     }
 
     type Shape = fn(usize, usize, f64) -> f64;
@@ -224,10 +232,12 @@ mod tests {
     #[test]
     fn val_p_values_of_equal_sessions_are_uniform() {
         let mut random = ChaCha12Rng::seed_from_u64(1);
-        let mut below = [0; 3];
+        let mut below = [0; 4];
         for _ in 0..2000 {
             let trend = speed_trend(&[30, 50, 40], &mut random, |_, _, noise| noise);
-            let all = [trend.drift_p, trend.serial_p, trend.sessions_p.unwrap()];
+            let of_sessions = [trend.sessions_p, trend.spreads_p].map(Option::unwrap);
+            let [means_p, spreads_p] = of_sessions;
+            let all = [trend.drift_p, trend.serial_p, means_p, spreads_p];
             for (count, p) in below.iter_mut().zip(all) {
                 *count += usize::from(p < 0.05);
             }
@@ -236,6 +246,38 @@ mod tests {
             below.iter().all(|count| (60..=140).contains(count)),
             "{below:?}"
         );
+    }
+
+    /// A scatter that doubles is seen, and small sessions say nothing.
+    #[test]
+    fn val_a_scatter_that_differs_between_sessions_is_seen() {
+        let mut random = ChaCha12Rng::seed_from_u64(3);
+        let doubled = speed_trend(&[60, 60], &mut random, |session, _, noise| {
+            (1 + session) as f64 * noise
+        });
+        assert!(doubled.spreads_p.unwrap() < 1e-3, "{doubled:?}");
+        assert!(doubled.sessions_p.unwrap() > 0.005, "{doubled:?}");
+        for small in [&[60, 1, 2][..], &[2, 2, 2]] {
+            let trend = speed_trend(small, &mut random, |_, _, noise| noise);
+            assert_eq!(trend.spreads_p, None, "{small:?}");
+        }
+        let constant = speed_trend(&[20, 20], &mut random, |_, _, _| 1.0);
+        assert_eq!(constant.spreads_p, None);
+    }
+
+    #[test]
+    fn contract_sessions_that_are_dates_or_numbers_are_in_order() {
+        for (given, expected) in [
+            (["2026-11-10", "2026-11-3"], ["2026-11-3", "2026-11-10"]),
+            (["10", "9"], ["9", "10"]),
+            // The day may come first or second.
+            (["10/11/2026", "3/11/2026"], ["10/11/2026", "3/11/2026"]),
+            (["spring", "autumn"], ["spring", "autumn"]),
+            (["2026-11-10", "late"], ["2026-11-10", "late"]),
+        ] {
+            let sessions = given.map(str::to_owned);
+            assert_eq!(session_names(&sessions), expected);
+        }
     }
 
     /// Two sessions with other means are no drift, and a drift within sessions is not hidden by

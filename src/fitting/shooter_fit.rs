@@ -7,7 +7,7 @@ use super::fit_checks::{
     FitWarning, FlightResiduals, ShapeTest, TestError, check_releases, shape_test, warnings,
 };
 use super::fitted_profile::fitted_profile;
-use super::measured_release::{MeasuredRelease, Place};
+use super::measured_release::{MeasuredRelease, Place, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
 use super::session_trends::{SessionTrend, trends};
 use crate::model::Physics;
@@ -110,7 +110,10 @@ pub fn fit_shooter(
     let makes = expected_makes(&profiles, test.shots, &typical, is_measured);
     let values = if is_measured { 4 } else { 3 };
     let shape = shape_test(test.shots, test.places.len());
-    let trends = trends(test.shots, test.sessions, &typical.means, values);
+    let sds: Vec<Values> = (0..typical.means.len())
+        .map(|place| typical.sds_at(place))
+        .collect();
+    let trends = trends(test.shots, test.sessions, (&typical.means, &sds), values);
     let mut warnings = warnings(
         test.shots,
         (&shape, &trends),

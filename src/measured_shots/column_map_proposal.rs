@@ -42,7 +42,6 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "direction",
             "lateral",
             "horizontalangle",
-            "phi",
             "rightofhoop",
             "leftofhoop",
         ],
@@ -74,8 +73,9 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
 ];
 
 /// Names that are too short to be looked for within others.
-const SHORT_NAMES: [(&str, &str); 9] = [
+const SHORT_NAMES: [(&str, &str); 10] = [
     ("release_height", "height"),
+    ("aim", "phi"),
     ("pitch", "angle"),
     ("made", "in"),
     ("left_right", "lr"),
@@ -113,8 +113,9 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
             continue;
         }
         taken.push(target);
-        is_short_height |=
-            target == "release_height" && first_word(&name.to_lowercase()) == "height";
+        is_short_height |= target == "release_height"
+            && first_word(&name.to_lowercase()) == "height"
+            && !letters_of(name).contains("release");
         maps.push(match quantity {
             None => format!("--map '{target}={name}'"),
             Some(quantity) => {
@@ -305,7 +306,15 @@ fn target_of(name: &str, is_landing: bool, taken: &[&str]) -> Option<&'static st
             // `L/R (in)` is `lr` with a unit.
             let without_unit = letters_of(name.split(['(', '[']).next().unwrap_or_default());
             // So is `height_m`.
-            let before_last = name.rsplit_once('_').map_or(name, |(before, _)| before);
+            let is_unit = |word: &str| {
+                let word = word.to_lowercase();
+                let mut quantities = Quantity::ALL.into_iter();
+                quantities.any(|quantity| quantity.unit_names().contains(&word.as_str()))
+            };
+            let before_last = match name.rsplit_once('_') {
+                Some((before, last)) if is_unit(last) => before,
+                _ => name,
+            };
             let before_last = letters_of(before_last);
             let short = SHORT_NAMES.iter().find(|(_, short)| {
                 [&letters, &without_unit, &before_last].contains(&&(*short).to_owned())

@@ -404,7 +404,7 @@ fn drift(
         (20.0, 26.0),
         16.0,
         Anchor::Start,
-        "The shots in their order: each less the mean of its place",
+        "The shots, session by session: each less the mean of its place",
     );
     // Session by session, also where their shots take turns in the file.
     let names = session_names(sessions);
@@ -575,20 +575,24 @@ fn reliability(fit: &ShooterFit) -> Plot {
     axes.draw_grid(&mut svg);
     let style = format!("stroke=\"{FAINT}\" stroke-dasharray=\"5 4\" fill=\"none\"");
     svg.polyline([axes.pixel((0.0, 0.0)), axes.pixel((100.0, 100.0))], &style);
-    let mut numbered: Vec<(f64, f64)> = Vec::new();
+    // Points that lie together have one number, that of their shots.
+    let mut numbers: Vec<((f64, f64), usize)> = Vec::new();
     for bin in &fit.makes.bins {
         let at = |share: f64| axes.pixel((100.0 * bin.predicted, 100.0 * share));
         let style = format!("stroke=\"{MADE}\" stroke-width=\"2\" fill=\"none\"");
         svg.polyline([at(bin.observed.low), at(bin.observed.high)], &style);
         let (x, y) = at(bin.observed.share);
         svg.circle((x, y), 5.0, &format!("fill=\"{MADE}\""));
-        // Points that lie together have one number.
-        let is_apart = |(a, b): &(f64, f64)| (a - x).abs() > 24.0 || (b - y).abs() > 12.0;
-        if numbered.iter().all(is_apart) {
-            let shots = bin.shots.to_string();
-            svg.text((x + 9.0, y + 4.0), 11.0, Anchor::Start, &shots);
-            numbered.push((x, y));
+        let is_near = |((a, b), _): &&mut ((f64, f64), usize)| {
+            (*a - x).abs() <= 24.0 && (*b - y).abs() <= 12.0
+        };
+        match numbers.iter_mut().find(is_near) {
+            Some((_, shots)) => *shots += bin.shots,
+            None => numbers.push(((x, y), bin.shots)),
         }
+    }
+    for ((x, y), shots) in numbers {
+        svg.text((x + 9.0, y + 4.0), 11.0, Anchor::Start, &shots.to_string());
     }
     axes.draw(
         &mut svg,

@@ -1,7 +1,9 @@
 //! `probability`: P of one shot, and the replay of its samples.
 
-use super::support::{Answer, bankshot};
+use super::support::{Answer, bankshot, write_file};
 use bankshot::dynamics::InstructionSet;
+use std::path::Path;
+use tempfile::TempDir;
 
 /// `probability` of the nine errors with the given flags.
 fn probability(flags: &[&str]) -> Answer {
@@ -295,4 +297,50 @@ fn contract_physics_replaces_the_table_of_the_profile() {
         .says("1.1900 kg/m^3 -> 0.0000 kg/m^3");
     let answer = probability(&["--physics", "ncaaa"]).exits(2);
     answer.says("is neither a preset (paper, ncaa, ");
+}
+
+/// An error that a flag changes is that of a file with the changed error, also for an error in
+/// percent, in an inline table and with correlations.
+#[test]
+fn contract_scatter_changes_an_error_as_an_edit_would() {
+    let folder = TempDir::new().unwrap();
+    let text = |errors: &str| {
+        format!(
+            "[shooter]\nname = \"S\"\nrelease_height = \"7 ft\"\nmax_backspin = \"3 rev/s\"\n{errors}\n[shooter.correlation]\nspeed_pitch = 0.3\n\n[location]\ndistance = \"13.75 ft\"\nangle = \"0 deg\"\n\n[physics]\npreset = \"ncaa\"\n"
+        )
+    };
+    let inline = |speed: &str, pitch: &str| {
+        text(&format!(
+            "errors = {{ speed = \"{speed}\", pitch = \"{pitch}\", polar = \"0.8 deg\", backspin = \"0.3 rev/s\" }}\n"
+        ))
+    };
+    let own = write_file(&folder, "own.toml", &inline("1.5 %", "1 deg"));
+    let edited = write_file(&folder, "edited.toml", &inline("1.2 %", "1.1 deg"));
+    let run = |profile: &Path, more: &[&str]| {
+        let mut command = bankshot();
+        command
+            .arg("probability")
+            .arg(profile)
+            .args(["--speed", "24.3 ft/s", "--pitch", "52 deg", "--quiet"])
+            .args(["--target", "0.005"])
+            .args(more);
+        Answer::of(&mut command)
+    };
+    let scatter = ["--scatter", "speed=-20%", "--scatter", "pitch=+10 %"];
+    let p = |answer: Answer| answer.exits(0).json()["probability"].as_f64().unwrap();
+    let changed = p(run(&own, &[&scatter[..], &["--json"]].concat()));
+    let by_hand = p(run(&edited, &["--json"]));
+    // The last digits of an error may differ, and with them a shot at the edge.
+    assert!((changed - by_hand).abs() < 2e-4, "{changed} {by_hand}");
+    assert!((changed - p(run(&own, &["--json"]))).abs() > 0.005);
+    for (given, says) in [
+        ("speed=20", "is not in percent"),
+        ("speed=-101%", "is out of range"),
+        ("side_spin=-20%", "is none of the four"),
+        ("speed", "has no ="),
+    ] {
+        run(&own, &["--scatter", given]).exits(2).says(says);
+    }
+    let twice = ["--scatter", "speed=-20%", "--scatter", "speed=-10%"];
+    run(&own, &twice).exits(2).says("speed is given twice");
 }

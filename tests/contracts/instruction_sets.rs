@@ -4,7 +4,9 @@
 //! of sets that this machine does not have are covered by unit tests of the batch.
 
 use crate::common::{free_throw_uniform, side_uniform, states, wild};
-use bankshot::dynamics::{BatchWorkspace, InstructionSet, Simulator, Verdict};
+use bankshot::dynamics::{
+    BatchWorkspace, InstructionSet, Integrator, Precision, Simulator, Verdict,
+};
 use bankshot::model::{BallState, BoardEdge, PRESETS, Physics, Preset};
 use rayon::prelude::*;
 
@@ -108,15 +110,25 @@ fn contract_vector_sets_equal_single_shots_on_wild_shots() {
 #[test]
 fn contract_a_batch_of_any_size_has_a_verdict_for_every_shot() {
     let starts = states(&free_throw_uniform(3000, 45));
-    let simulator = Simulator::new(&Physics::paper()).unwrap();
-    let expected = single_shots(&simulator, &starts);
-    for (name, instructions) in vector_sets() {
-        let simulator = simulator.clone().with_instructions(instructions);
-        let mut workspace = BatchWorkspace::default();
-        // One workspace for all, large batches before small ones.
-        for size in [3000, 0, 1, 7, 17, 2049] {
-            let found = simulator.verdicts(&starts[..size], &mut workspace).unwrap();
-            assert_eq!(found, &expected[..size], "{name}, batch of {size}");
+    let double = Integrator::EventDriven {
+        steps_per_contact: 4,
+        precision: Precision::Double,
+    };
+    let ncaa = Preset::named("ncaa").unwrap().physics();
+    for simulator in [
+        Simulator::new(&Physics::paper()).unwrap(),
+        Simulator::new(&ncaa).unwrap(),
+        Simulator::with_integrator(&ncaa, double).unwrap(),
+    ] {
+        let expected = single_shots(&simulator, &starts);
+        for (name, instructions) in vector_sets() {
+            let simulator = simulator.clone().with_instructions(instructions);
+            let mut workspace = BatchWorkspace::default();
+            // One workspace for all, large batches before small ones.
+            for size in [3000, 0, 1, 2, 7, 8, 9, 16, 17, 33, 1025, 2049] {
+                let found = simulator.verdicts(&starts[..size], &mut workspace).unwrap();
+                assert_eq!(found, &expected[..size], "{name}, batch of {size}");
+            }
         }
     }
 }

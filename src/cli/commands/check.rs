@@ -1,6 +1,8 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use crate::cli::config_files::{load_profile, load_profile_with_text, load_sweep, read_text};
+use crate::cli::config_files::{
+    load_profile, load_profile_with_text, load_sweep, read_text, warn_of_unused_search,
+};
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
@@ -38,7 +40,10 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
     }
     let path = options.profile.display();
     if is_sweep(&read_text(&options.profile)?) {
-        let (config, _) = load_sweep(&options.profile)?;
+        let (config, texts) = load_sweep(&options.profile)?;
+        if !quiet {
+            warn_of_unused_search(&options.profile, &texts);
+        }
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }

@@ -219,7 +219,7 @@ fn differences_text(first: &BestShots, second: &BestShots) -> String {
             );
             let error = libm::hypot(first.standard_error, second.standard_error);
             Some(format!(
-                "second less first, {}: {:+.1} points (numerical error \u{b1} {:.1})\n",
+                "second minus first, {}: {:+.1} points (numerical error \u{b1} {:.1})\n",
                 kind.name(),
                 100.0 * (second.probability - first.probability),
                 100.0 * error

@@ -2,7 +2,7 @@
 //! several distances.
 
 use super::table::TableFormat;
-use crate::best_shot::{ShotKind, best_by_pitch};
+use crate::best_shot::{MOST_NODES, ShotKind, best_by_pitch};
 use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each angle is a search of its own: about two seconds on two cores.
+Each angle, from each distance, is a search of its own: one or two seconds on two cores.
 
 Examples:
   bankshot pitch-curve configs/free_throw.toml
@@ -72,7 +72,7 @@ pub(crate) struct PitchCurveOptions {
     /// Draw P and the speed over the pitch angle (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Print one JSON object instead of the table.
+    /// Print JSON instead of the table: an object, with --distances an array.
     #[arg(long)]
     pub(crate) json: bool,
     /// Units of the output [default: the profile's, else imperial].
@@ -165,7 +165,15 @@ fn run_from_distances(
 ) -> Result<u8, Failure> {
     let (kind, units) = (options.kind.into(), profile.output().units);
     let mut profiles = Vec::new();
-    for distance_m in ascending_values("distances", distances, Dimension::Length)? {
+    let distances_m = ascending_values("distances", distances, Dimension::Length)?;
+    if distances_m.len() * pitches_rad.len() > MOST_NODES {
+        return Err(Failure::usage(format!(
+            "--distances: {} distances at {} pitch angles are more than {MOST_NODES} searches",
+            distances_m.len(),
+            pitches_rad.len()
+        )));
+    }
+    for distance_m in distances_m {
         let place = Location {
             distance_m,
             ..profile.location()

@@ -6,9 +6,8 @@
 //! waiting. Rare events (from one contact to two, the board's edges, the time limit in flight, an
 //! unresolved search) are left to the scalar code; after them the shot waits in a queue again.
 //!
-//! When all shots have started, lanes begin to stay empty. A block that is not full then waits for
-//! the shots of other phases, so that they go on together; the last few shots are left to the
-//! scalar code.
+//! A block that is not full lets the shots of other phases go first, so that they go on together.
+//! When all shots have started, the last few are left to the scalar code.
 //!
 //! It is the same generic code as for one shot, with the same operations in the same order. So the
 //! verdicts are the same, bit for bit.
@@ -32,7 +31,7 @@ use fearless_simd::{Level, Simd};
 
 /// The last shots of a batch, which the scalar code finishes.
 const LAST_SHOTS: usize = 8;
-/// A step of a full block takes about as long as one lane of five with the scalar code.
+/// A vector step takes about as long as scalar steps of a fifth of its lanes.
 const LANES_PER_SCALAR_STEP: usize = 5;
 
 /// Runs the shots that start at `starts` to their ends. The verdicts are then in the workspace.
@@ -92,7 +91,6 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     }
 
     /// Runs all shots in progress to their ends with the scalar code.
-    #[cold]
     fn finish_one_by_one(&mut self) {
         while self.workspace.waiting() > 0 {
             for phase in Phase::ALL {
@@ -102,7 +100,6 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     }
 
     /// Simulates the shots that wait for a phase with the scalar code.
-    #[cold]
     fn run_one_by_one(&mut self, phase: Phase) {
         for _ in 0..self.workspace.queue_mut(phase).len() {
             if let Some(slot) = self.workspace.queue_mut(phase).pop() {

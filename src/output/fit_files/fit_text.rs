@@ -86,6 +86,9 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         if fit.places.len() > 1 {
             for place in 0..fit.places.len() {
                 let makes = makes.at_place(place);
+                if makes.labelled == 0 {
+                    continue;
+                }
                 text += &format!(
                     "        place {}: {} of {}, expected {:.1} ± {:.1}\n",
                     place + 1,

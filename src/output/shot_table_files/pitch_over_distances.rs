@@ -91,12 +91,12 @@ pub fn pitch_over_distances_text(
         false => ".".to_owned(),
     };
     if let Some(steady) = greatest(&|row| rows[row].1).filter(|&row| rows[row].1 > 0.0) {
-        let farthest = from
+        let worst = from
             .iter()
             .min_by(|a, b| a.probability(steady).total_cmp(&b.probability(steady)));
-        let where_least = farthest.map_or(0.0, |shots| shots.distance(units));
+        let where_least = worst.map_or(0.0, |shots| shots.distance(units));
         words += &format!(
-            " The worst distance is best at {} deg: {:.1} of 100, from {where_least} {long}.",
+            " The lowest P over the distances is highest at {} deg: {:.1} of 100, from {where_least} {long}.",
             degrees(steady),
             100.0 * rows[steady].1
         );
