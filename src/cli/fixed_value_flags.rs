@@ -1,6 +1,6 @@
 //! Values of a nominal shot that a command's flags take out of its search.
 
-use super::config_files::rewritten;
+use super::changed_profile_text::rewritten;
 use super::failure::Failure;
 use crate::shooter::{NominalVariable, Profile};
 use crate::units::{self, DEGREE_RAD, REV_RAD};

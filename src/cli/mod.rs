@@ -2,6 +2,7 @@
 //!
 //! [`main`] is the program; [`answer_of`] runs one command inside another program.
 
+mod changed_profile_text;
 mod command_line;
 mod commands;
 mod config_files;

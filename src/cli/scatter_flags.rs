@@ -1,6 +1,6 @@
 //! Errors of a profile that a flag makes smaller or greater.
 
-use super::config_files::rewritten;
+use super::changed_profile_text::rewritten;
 use super::failure::Failure;
 use crate::config::parse_profile;
 use crate::shooter::{Profile, ReleaseDispersion};
