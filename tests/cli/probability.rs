@@ -314,8 +314,8 @@ fn contract_scatter_changes_an_error_as_an_edit_would() {
             "errors = {{ speed = \"{speed}\", pitch = \"{pitch}\", polar = \"0.8 deg\", backspin = \"0.3 rev/s\" }}\n"
         ))
     };
-    let own = write_file(&folder, "own.toml", &inline("1.5 %", "1 deg"));
-    let edited = write_file(&folder, "edited.toml", &inline("1.2 %", "1.1 deg"));
+    let own = write_file(&folder, "own.toml", inline("1.5 %", "1 deg"));
+    let edited = write_file(&folder, "edited.toml", inline("1.2 %", "1.1 deg"));
     let run = |profile: &Path, more: &[&str]| {
         let mut command = bankshot();
         command
