@@ -15,7 +15,7 @@ pub struct SessionTrend {
     /// p-value of the correlation of a shot with the one before it in its session.
     pub serial_p: f64,
     /// p-value of equal means in all sessions (F test by Paulson's approximation, Annals of
-    /// Mathematical Statistics 13 (1942) 233). `None` with one session.
+    /// Mathematical Statistics 13 (1942) 233). `None` with one session, and where none varies.
     pub sessions_p: Option<f64>,
     /// p-value of equal scatter in all sessions (Levene's test: the same F test of the distances
     /// from the median of the session; Brown and Forsythe, JASA 69 (1974) 364). `None` with
@@ -98,7 +98,7 @@ fn trend(
 ) -> SessionTrend {
     let deviation = |shot: &usize| shots[*shot].values[i] - means[shots[*shot].place][i];
     let (mut product, mut squares, mut order, mut lagged) = (0.0, 0.0, 0.0, 0.0);
-    let (mut between, mut total) = (0.0, 0.0);
+    let mut values_of_groups = Vec::with_capacity(groups.len());
     for group in groups {
         let count = group.len() as f64;
         let own: Vec<f64> = group.iter().map(deviation).collect();
@@ -114,8 +114,7 @@ fn trend(
         lagged += pairs
             .map(|pair| (pair[0] - mean) * (pair[1] - mean))
             .sum::<f64>();
-        between += count * mean * mean;
-        total += count * mean;
+        values_of_groups.push(own);
     }
     let count = shots.len() as f64;
     // Each session has a mean of its own.
@@ -126,11 +125,7 @@ fn trend(
         name: VALUE_NAMES[i],
         drift_p: p_of(product / (squares * order).sqrt().max(f64::MIN_POSITIVE)),
         serial_p: p_of(lagged / squares),
-        sessions_p: (groups.len() > 1 && free > 1.0).then(|| {
-            let freedom = [groups.len() as f64 - 1.0, free - 1.0];
-            let between = between - total * total / count;
-            f_test(between / freedom[0] / (squares / freedom[1]), freedom)
-        }),
+        sessions_p: equal_means_p(&values_of_groups),
         spreads_p: {
             // The scatter of the speed grows with the speed, so each deviation is in units of the
             // standard deviation at its place.

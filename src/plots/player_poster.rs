@@ -28,8 +28,8 @@ pub struct PlayerPoster {
     pub plot: Plot,
     /// The map alone, for a page with the sentences as text.
     pub map_svg: String,
-    /// What the map says: three sentences, two numbers each; of one place the last is empty.
-    pub sentences: [String; 3],
+    /// What the map says: three sentences, two numbers each; two of them for one place.
+    pub sentences: Vec<String>,
 }
 
 /// Draws the poster of a player; `None` if nothing can be made from any place.
@@ -67,7 +67,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let is_both = named != best.1.in_words(units);
     let others = as_sure.saturating_sub(if is_both { 2 } else { 1 });
     let is_one_place = found.len() == 1;
-    let sentences = [
+    let mut sentences = vec![
         match others {
             _ if is_one_place => format!(
                 "From {named} {} of 100 of your best shots go in.",
@@ -88,15 +88,14 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         } else {
             bank_in_words(&bank, units)
         } + &doubt_in_words(results.chances()),
-        match is_one_place {
-            true => String::new(),
-            false => format!(
-                "Your hardest place is {}: {} of 100 go in.",
-                worst.1.in_words_with_mirror(&alike(worst.0), units),
-                of_hundred(worst.0)
-            ),
-        },
     ];
+    if !is_one_place {
+        sentences.push(format!(
+            "Your hardest place is {}: {} of 100 go in.",
+            worst.1.in_words_with_mirror(&alike(worst.0), units),
+            of_hundred(worst.0)
+        ));
+    }
     let drawing = |words: &[String]| {
         let map = CourtMap {
             style: MapStyle::Poster,
@@ -105,7 +104,6 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         let (width, height) = map.size();
         let lines: Vec<_> = words
             .iter()
-            .filter(|sentence| !sentence.is_empty())
             .flat_map(|sentence| textwrap::wrap(sentence, LINE_LETTERS))
             .collect();
         let words_top = MAP_TOP + height;
@@ -123,16 +121,16 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
             let at = (10.0, words_top + LINE_HEIGHT * (i as f64 + 0.6));
             svg.text(at, WORDS_FONT, Anchor::Start, line);
         }
-        svg.finish(sentences.join(" ").trim_end())
+        svg.finish(&sentences.join(" "))
     };
     Some(PlayerPoster {
         plot: Plot {
             name: "poster".to_owned(),
             svg: drawing(&sentences),
-            caption: sentences.join(" ").trim_end().to_owned(),
+            caption: sentences.join(" "),
         },
         map_svg: drawing(&[]),
-        sentences: sentences.clone(),
+        sentences,
     })
 }
 

@@ -10,7 +10,6 @@ pub fn poster_page(name: &str, poster: &PlayerPoster) -> String {
     let list: String = poster
         .sentences
         .iter()
-        .filter(|sentence| !sentence.is_empty())
         .map(|sentence| format!("<p>{}</p>\n", escaped(sentence)))
         .collect();
     format!(

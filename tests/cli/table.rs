@@ -491,22 +491,27 @@ fn campaign_interpolation_of_launchers() {
     }
 }
 
+const THREE_PITCHES: [&str; 2] = ["--pitches", "20 deg, 60 deg, 66 deg"];
+
+/// `pitch-curve` of the launcher in a folder.
+fn pitch_curve(folder: &TempDir, more: &[&str]) -> Answer {
+    let profile = write_file(folder, "robot.toml", ROBOT);
+    let mut command = bankshot();
+    command
+        .current_dir(folder.path())
+        .arg("pitch-curve")
+        .arg(profile)
+        .args(["--backspin", "2 rev/s", "--quiet"])
+        .args(more);
+    Answer::of(&mut command)
+}
+
 /// The best shot at each pitch angle is that of a table with the pitch angle fixed.
 #[test]
 fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
     let folder = TempDir::new().unwrap();
-    let profile = write_file(&folder, "robot.toml", ROBOT);
-    let curve = |more: &[&str]| {
-        let mut command = bankshot();
-        command
-            .current_dir(folder.path())
-            .arg("pitch-curve")
-            .arg(&profile)
-            .args(["--backspin", "2 rev/s", "--quiet"])
-            .args(more);
-        Answer::of(&mut command)
-    };
-    let pitches = ["--pitches", "20 deg, 60 deg, 66 deg"];
+    let curve = |more: &[&str]| pitch_curve(&folder, more);
+    let pitches = THREE_PITCHES;
     let files = ["-o", "curve.csv", "--plot", "curve.svg", "--json"];
     let json = curve(&[&pitches[..], &files].concat()).exits(0).json();
     let shots = json["shots"].as_array().unwrap();
@@ -542,18 +547,7 @@ fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
 #[test]
 fn contract_one_pitch_angle_for_several_distances_has_the_greatest_mean() {
     let folder = TempDir::new().unwrap();
-    let profile = write_file(&folder, "robot.toml", ROBOT);
-    let curve = |more: &[&str]| {
-        let mut command = bankshot();
-        command
-            .current_dir(folder.path())
-            .arg("pitch-curve")
-            .arg(&profile)
-            .args(["--backspin", "2 rev/s", "--quiet"])
-            .args(["--pitches", "20 deg, 60 deg, 66 deg"])
-            .args(more);
-        Answer::of(&mut command)
-    };
+    let curve = |more: &[&str]| pitch_curve(&folder, &[&THREE_PITCHES[..], more].concat());
     let files = ["--distances", "9 ft, 12 ft", "-o", "curves.csv", "--json"];
     let json = curve(&files).exits(0).json();
     let all = json.as_array().unwrap();

@@ -108,39 +108,45 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         }
     }
 
-    /// The lanes of a phase.
-    fn lanes(&self, phase: Phase) -> usize {
-        let is_wide = WIDTH == WIDE;
-        match phase {
-            Phase::Flight if is_wide && self.params.has_paper_flight() => SixteenLanes::<S>::LANES,
-            Phase::InFrame(_) if self.limits.single_precision => match is_wide {
-                true => ThirtyTwoLanesF32::<S>::LANES,
-                false => SixteenLanesF32::<S>::LANES,
-            },
-            _ => EightLanes::<S>::LANES,
-        }
-    }
-
     /// Simulates the shots that wait for a phase.
     fn run_phase(&mut self, phase: Phase) {
-        let few = self.lanes(phase) / LANES_PER_SCALAR_STEP;
-        if self.workspace.all_have_started() && self.workspace.queue_mut(phase).len() <= few {
-            self.run_one_by_one(phase);
-            return;
-        }
         match phase {
             // Done above, with the shots that start.
             Phase::Flight if !self.params.has_paper_flight() => {}
-            Phase::Flight if WIDTH == WIDE => fly::<S, SixteenLanes<S>, WIDTH>(self),
-            Phase::Flight => fly::<S, EightLanes<S>, WIDTH>(self),
+            Phase::Flight if WIDTH == WIDE => {
+                self.run_unless_few::<SixteenLanes<S>>(phase, fly::<S, SixteenLanes<S>, WIDTH>);
+            }
+            Phase::Flight => {
+                self.run_unless_few::<EightLanes<S>>(phase, fly::<S, EightLanes<S>, WIDTH>);
+            }
             Phase::InFrame(part) if !self.limits.single_precision => {
-                in_frame::<S, EightLanes<S>, WIDTH>(self, part);
+                self.run_unless_few::<EightLanes<S>>(phase, |batch| {
+                    in_frame::<S, EightLanes<S>, WIDTH>(batch, part);
+                });
             }
             Phase::InFrame(part) if WIDTH == WIDE => {
-                in_frame::<S, ThirtyTwoLanesF32<S>, WIDTH>(self, part)
+                self.run_unless_few::<ThirtyTwoLanesF32<S>>(phase, |batch| {
+                    in_frame::<S, ThirtyTwoLanesF32<S>, WIDTH>(batch, part);
+                });
             }
-            Phase::InFrame(part) => in_frame::<S, SixteenLanesF32<S>, WIDTH>(self, part),
-            Phase::InWorld => in_world::<S, EightLanes<S>, WIDTH>(self),
+            Phase::InFrame(part) => {
+                self.run_unless_few::<SixteenLanesF32<S>>(phase, |batch| {
+                    in_frame::<S, SixteenLanesF32<S>, WIDTH>(batch, part);
+                });
+            }
+            Phase::InWorld => {
+                self.run_unless_few::<EightLanes<S>>(phase, in_world::<S, EightLanes<S>, WIDTH>);
+            }
+        }
+    }
+
+    /// Runs a phase in lanes; with the scalar code where no other shots can fill them any more.
+    fn run_unless_few<T: SimdReal>(&mut self, phase: Phase, run: impl FnOnce(&mut Self)) {
+        let few = T::LANES / LANES_PER_SCALAR_STEP;
+        if self.workspace.all_have_started() && self.workspace.queue_mut(phase).len() <= few {
+            self.run_one_by_one(phase);
+        } else {
+            run(self);
         }
     }
 }
