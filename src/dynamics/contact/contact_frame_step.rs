@@ -50,7 +50,8 @@ pub(crate) struct MacroStep<T: Real> {
     pub(crate) separates: T::Mask,
 }
 
-/// The rates of what changes slowly, without friction.
+/// The rates of what changes slowly, without friction. On a flat solid the spin and the third
+/// coordinate do not change.
 #[derive(Clone, Copy)]
 struct SlowRates<T> {
     /// On the ring those of d v1 and D v2; on a flat solid those of v1 and v2.
@@ -58,26 +59,6 @@ struct SlowRates<T> {
     v2: T,
     spin: ContactVector<T>,
     coordinates: [T; 3],
-}
-
-impl<T: Real> SlowRates<T> {
-    /// `self a + other b`, value by value.
-    #[inline(always)]
-    fn mix(&self, a: f64, other: &Self, b: f64) -> Self {
-        let (p, q) = (self.spin, other.spin);
-        let [p_0, p_1, p_2] = self.coordinates;
-        let [q_0, q_1, q_2] = other.coordinates;
-        Self {
-            v1: self.v1 * a + other.v1 * b,
-            v2: self.v2 * a + other.v2 * b,
-            spin: ContactVector::new(
-                p.normal * a + q.normal * b,
-                p.tangent.x * a + q.tangent.x * b,
-                p.tangent.y * a + q.tangent.y * b,
-            ),
-            coordinates: [p_0 * a + q_0 * b, p_1 * a + q_1 * b, p_2 * a + q_2 * b],
-        }
-    }
 }
 
 /// The equations of motion at one moment, without friction.
@@ -247,6 +228,30 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         }
     }
 
+    /// The sum of two rates, each times its weight.
+    #[inline(always)]
+    fn mix(
+        &self,
+        (first, a): (&SlowRates<T>, f64),
+        (second, b): (&SlowRates<T>, f64),
+    ) -> SlowRates<T> {
+        let mut mixed = *first;
+        let (p, q) = (&mut mixed.coordinates, &second.coordinates);
+        (p[0], p[1]) = (p[0] * a + q[0] * b, p[1] * a + q[1] * b);
+        mixed.v1 = first.v1 * a + second.v1 * b;
+        mixed.v2 = first.v2 * a + second.v2 * b;
+        if !S::FLAT {
+            p[2] = p[2] * a + q[2] * b;
+            let (p, q) = (&first.spin, &second.spin);
+            mixed.spin = ContactVector::new(
+                p.normal * a + q.normal * b,
+                p.tangent.x * a + q.tangent.x * b,
+                p.tangent.y * a + q.tangent.y * b,
+            );
+        }
+        mixed
+    }
+
     /// The motion after `h` at the given rates, with the compression and the normal velocity given.
     #[inline(always)]
     fn advance(
@@ -260,17 +265,25 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
         let ball = &self.params.ball;
         let from = &start.motion;
         let before = &start.at.distances;
-        let coordinates = [
+        let mut coordinates = [
             rates.coordinates[0] * h + from.coordinates[0],
             rates.coordinates[1] * h + from.coordinates[1],
-            rates.coordinates[2] * h + from.coordinates[2],
+            from.coordinates[2],
         ];
         let spin_change = scaled(impulse.times_lever, ball.mass_over_inertia);
-        let spin = ContactVector::new(
-            rates.spin.normal * h + from.spin.normal,
-            rates.spin.tangent.x * h + (from.spin.tangent.x + spin_change.y),
-            rates.spin.tangent.y * h + (from.spin.tangent.y - spin_change.x),
+        let mut spin = ContactVector::new(
+            from.spin.normal,
+            from.spin.tangent.x + spin_change.y,
+            from.spin.tangent.y - spin_change.x,
         );
+        if !S::FLAT {
+            coordinates[2] = rates.coordinates[2] * h + coordinates[2];
+            spin = ContactVector::new(
+                rates.spin.normal * h + spin.normal,
+                rates.spin.tangent.x * h + spin.tangent.x,
+                rates.spin.tangent.y * h + spin.tangent.y,
+            );
+        }
         let distances = self.solid.distances(ball, compression, &coordinates);
         let v = from.velocity.tangent;
         let tangent = if S::FLAT {
@@ -679,7 +692,7 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
             ),
         );
         let impulse = self.friction_impulse(linear, &at_m.distances);
-        let rates = at_m.rates.mix(2.0, &at.rates, -1.0);
+        let rates = self.mix((&at_m.rates, 2.0), (&at.rates, -1.0));
         let (motion, distances) = self.advance(start, &rates, h, (u, vn), &impulse);
         let at_e = self.evaluate(&motion, distances);
         let force = force.positive_part();
@@ -752,8 +765,8 @@ impl<T: Real, S: Solid<T>> Contact<'_, T, S> {
                 scaled(last.friction.friction, d_e.lever),
             ) + scaled(missing, d_m.lever),
         };
-        let ends = at.rates.mix(1.0 / 6.0, &at_e.rates, 1.0 / 6.0);
-        let rates = ends.mix(1.0, &at_m.rates, 4.0 / 6.0);
+        let ends = self.mix((&at.rates, 1.0 / 6.0), (&at_e.rates, 1.0 / 6.0));
+        let rates = self.mix((&ends, 1.0), (&at_m.rates, 4.0 / 6.0));
         self.advance(start, &rates, h, (u_1, vn_1), &impulse).0
     }
 

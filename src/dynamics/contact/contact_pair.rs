@@ -120,28 +120,15 @@ impl<T: Real> ContactPair<T> {
         }
     }
 
-    /// The slip rate at a contact from the force of the other contact.
+    /// The slip rate at a contact without any friction: from motion, gravity and the normal force
+    /// of the other contact.
     #[inline(always)]
-    fn slip_rate_from_other(&self, contact: usize, other: ContactVector<T>) -> Vec2<T> {
-        self.slip_rate(contact, self.response(1 - contact, other))
-    }
-
-    /// The slip rate at a contact without friction there: from motion, gravity and the other
-    /// contact.
-    #[inline(always)]
-    pub(super) fn frictionless_slip_rate(
-        &self,
-        contact: usize,
-        other: ContactVector<T>,
-    ) -> Vec2<T> {
+    fn frictionless_slip_rate(&self, contact: usize) -> Vec2<T> {
+        let [_, tangent_1, tangent_2] = self.axes[contact];
+        let other = 1 - contact;
+        let (normal, force) = (self.axes[other][0], self.normal_forces[other]);
         self.kinematics[contact].frictionless_slip_rate()
-            + self.slip_rate_from_other(contact, other)
-    }
-
-    /// The normal force of a contact alone.
-    #[inline(always)]
-    pub(super) fn normal_only(&self, params: &ModelParams<T>, contact: usize) -> ContactVector<T> {
-        ContactVector::new(self.normal_forces[contact], params.zero(), params.zero())
+            + Vec2::new(tangent_1.dot(normal) * force, tangent_2.dot(normal) * force)
     }
 
     /// The greatest friction of a contact.
@@ -162,8 +149,7 @@ impl<T: Real> ContactPair<T> {
             return sliding;
         }
         let right_side = for_both!(i => {
-            let rate = self.frictionless_slip_rate(i, self.normal_only(params, 1 - i));
-            (-rate).select(rolling[i], sliding[i])
+            (-self.frictionless_slip_rate(i)).select(rolling[i], sliding[i])
         });
         self.solve(params, rolling, right_side)
     }
@@ -192,7 +178,7 @@ impl<T: Real> ContactPair<T> {
             let inverse_effective_mass = self.kinematics[i].inverse_effective_mass(&params.ball);
             inverse_effective_mass.select(constrained[i], params.one())
         });
-        let [c_12, c_21] = for_both!(i => self.coupling(params, i, constrained[i]));
+        let [c_12, c_21] = self.couplings(params, constrained);
         let inverse_b_1 = params.one() / b_1;
         let from_first = c_21.times(Vec2::new(w_1.x * inverse_b_1, w_1.y * inverse_b_1));
         let reduced = Vec2::new(w_2.x - from_first.x, w_2.y - from_first.y);
@@ -212,24 +198,32 @@ impl<T: Real> ContactPair<T> {
         [a_1, a_2]
     }
 
-    /// The slip rates at a contact for unit tangential accelerations at the other one, where
-    /// `constrained`.
+    /// The slip rates at each contact for unit tangential accelerations at the other one, where
+    /// `constrained`: with g the lever here times the lever there over the moment of inertia, and
+    /// `d_ij` the scalar product of the direction i here and j there,
+    ///
+    /// ```text
+    /// C = | d_11 + g d_22   d_12 - g d_21 |
+    ///     | d_21 - g d_12   d_22 + g d_11 |
+    /// ```
     #[inline(always)]
-    fn coupling(
-        &self,
-        params: &ModelParams<T>,
-        contact: usize,
-        constrained: T::Mask,
-    ) -> Matrix2<T> {
-        let (zero, one) = (params.zero(), params.one());
-        let first = self.slip_rate_from_other(contact, ContactVector::new(zero, one, zero));
-        let second = self.slip_rate_from_other(contact, ContactVector::new(zero, zero, one));
-        Matrix2 {
-            a: first.x.select(constrained, zero),
-            b: second.x.select(constrained, zero),
-            c: first.y.select(constrained, zero),
-            d: second.y.select(constrained, zero),
-        }
+    fn couplings(&self, params: &ModelParams<T>, constrained: [T::Mask; 2]) -> [Matrix2<T>; 2] {
+        let zero = params.zero();
+        let [[_, first_1, first_2], [_, second_1, second_2]] = self.axes;
+        let (d_11, d_12) = (first_1.dot(second_1), first_1.dot(second_2));
+        let (d_21, d_22) = (first_2.dot(second_1), first_2.dot(second_2));
+        // Seen from the second contact, i and j change places.
+        let mixed = [(d_12, d_21), (d_21, d_12)];
+        for_both!(i => {
+            let g = self.kinematics[i].lever * self.lever_over_inertia[1 - i];
+            let (d_12, d_21) = mixed[i];
+            Matrix2 {
+                a: (d_11 + g * d_22).select(constrained[i], zero),
+                b: (d_12 - g * d_21).select(constrained[i], zero),
+                c: (d_21 - g * d_12).select(constrained[i], zero),
+                d: (d_22 + g * d_11).select(constrained[i], zero),
+            }
+        })
     }
 }
 
@@ -306,7 +300,7 @@ mod tests {
                     tangent: found[contact],
                 };
                 let own = pair.slip_rate(i, pair.response(i, force(i)));
-                let other = pair.slip_rate_from_other(i, force(1 - i));
+                let other = pair.slip_rate(i, pair.response(1 - i, force(1 - i)));
                 let expected = if constrained[i] {
                     own + other
                 } else {

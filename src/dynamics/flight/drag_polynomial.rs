@@ -23,7 +23,7 @@ const TERMS: usize = 9;
 /// The length of an arc as a fraction of that to the singularity: the maximum of these lines (value
 /// at w = 0, slope) in `w = drag_strength |v|`. They lie below the fraction at which position and
 /// velocity err by 3e-6 m and 7e-5 m/s, less than a contact does (`val_the_series_are_the_flight`).
-const FRACTIONS: [(f64, f64); 3] = [(1.36, -1.66), (1.02, -0.45), (0.76, -0.14)];
+const FRACTIONS: [(f64, f64); 4] = [(1.9, -7.5), (1.36, -1.66), (1.02, -0.45), (0.785, -0.14)];
 /// The least fraction, for the strongest drag.
 const MIN_FRACTION: f64 = 0.40;
 /// Least horizontal speed, m/s: one of an arc that goes straight up and down.
@@ -32,6 +32,8 @@ const MIN_HORIZONTAL_SPEED_M_S: f64 = 1e-6;
 const NEWTON_STEPS: u32 = 4;
 /// Limit on those to a height: three or four, more only where the path is nearly flat.
 const MAX_STEPS_TO_HEIGHT: u32 = 30;
+/// A path that is at most this fraction of a height above it counts as being there.
+const MAX_EXCESS_FRACTION: f64 = 0.01;
 /// Height within which a search for a rising crossing must end, m.
 const CROSSING_TOLERANCE_M: f64 = 1e-10;
 
@@ -211,10 +213,34 @@ impl<T: Real> HeightPath<T> for DragPolynomial<T> {
         self.z[0]
     }
 
-    /// Never, if not on this arc.
+    /// Never, if not on this arc. The parabola with the greatest -z'' lies below the path. So its
+    /// time to the height is too early, and a second parabola from there nearly exact.
     #[inline(always)]
-    fn falls_through(&self, height: T) -> T {
-        self.falling_s(height)
+    fn falls_through_after(&self, height: T) -> (T, T) {
+        let (zero, one) = (height.zero(), height.one());
+        let (end_z, end_rate) = self.end;
+        let falls = end_z.lt(height) & end_rate.is_negative();
+        if !falls.any() {
+            return (self.never, height);
+        }
+        let (start, first_rate) = (self.z[0], self.rate[0]);
+        let bound = self.acceleration_bound();
+        let inverse_bound = one / bound;
+        let square = |z: T, rate: T| rate.squared() + (z - height) * bound * 2.0;
+        let root = square(start, first_rate).positive_part().sqrt();
+        let s = ((first_rate + root) * inverse_bound).positive_part();
+        let s = Real::min(s, one);
+        let (z, rate) = self.height_and_rate(s);
+        let square = square(z, rate);
+        let step = ((rate + square.positive_part().sqrt()) * inverse_bound).positive_part();
+        // How far above the height a path that falls already may still be.
+        let least = self.first_fall_rate();
+        let excess = (bound - least) * step.squared() * 0.5;
+        let is_near =
+            rate.le(zero) & zero.le(square) & excess.le(height.abs() * MAX_EXCESS_FRACTION);
+        let rise = first_rate.positive_part().squared() / (least * 2.0);
+        let highest = Real::max(start + rise, height).select(!is_near, height + excess);
+        ((s + step).select(falls, self.never), highest)
     }
 
     /// -z'' only grows: the parabolas with its first and its last value lie above and below the
@@ -258,8 +284,9 @@ impl<T: Real> DragPolynomial<T> {
         )
     }
 
+    /// Where it falls through `height`; never, if not on this arc.
     #[inline(always)]
-    fn falling_s(&self, height: T) -> T {
+    pub(super) fn falling_s(&self, height: T) -> T {
         let (zero, one) = (height.zero(), height.one());
         let (end_z, end_rate) = self.end;
         let falls = end_z.lt(height) & end_rate.is_negative();
@@ -426,7 +453,7 @@ mod tests {
                 }
                 for fraction in [1e-6, 1e-3, 0.007, 0.05, 0.3, 0.6, 0.95] {
                     let height = end_z * fraction;
-                    let s = path.falls_through(height);
+                    let s = path.falling_s(height);
                     let (z, rate) = path.height_and_rate(s);
                     assert!(
                         (z - height).abs() < 1e-9 && rate < 0.0,

@@ -45,16 +45,16 @@ pub(crate) fn drag_segment<T: Real>(
     let (one, never) = (params.one(), params.ball.never_s);
     let arc = arc_of(params, state);
     let reach = params.ring.reach;
-    let falls_s = arc.falls_through(-reach);
+    let falls_s = arc.falling_s(-reach);
     let fell = fall_s(params, &arc, state, falls_s);
     let inverse_x = inverse_x_of(&arc);
     let board = board_events(params, &arc, state, inverse_x);
     let near = comes_near_s(params, &arc, state, inverse_x);
     let last = Real::min(Real::min(one, near), Real::min(fell, board.behind));
     let motion = HorizontalMotion::new(params, state.position_m, arc.displacement);
-    let falls_through_reach = arc.falls_through(reach);
+    let falls_to_reach = arc.falls_through_after(reach);
     let until = Real::min(last, board.face);
-    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_through_reach, until));
+    let (ring, ring_unresolved) = ring_time(params, &motion, &arc, (falls_to_reach, until));
     let mut end = Real::min(until, ring);
     let (mut edge, mut bracket) = (never, never);
     let mut unresolved = ring_unresolved | has_diverged(params, state);
@@ -71,7 +71,7 @@ pub(crate) fn drag_segment<T: Real>(
     }
     if params.ring.has_bracket {
         let is_above = params.ring.reach.lt(state.position_m.z);
-        let from = falls_through_reach.select(is_above, params.zero());
+        let from = falls_to_reach.0.select(is_above, params.zero());
         let near = from.lt(end) & comes_to_bracket(params, &arc, from, end);
         if near.any() {
             let search_failed;

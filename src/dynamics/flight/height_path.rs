@@ -12,9 +12,10 @@ pub(super) trait HeightPath<T: Real> {
     fn first_height(&self) -> T;
     /// z and its rate at `t`.
     fn height_and_rate(&self, t: T) -> (T, T);
-    /// The time at which it falls through `height`. If it does not: never, or for a parabola the
-    /// time of the highest point.
-    fn falls_through(&self, height: T) -> T;
+    /// A time before which it does not fall through `height`, and a bound on its height from then
+    /// on, which is little more than `height`. If it does not fall through it: never, or for a
+    /// parabola the time of the highest point.
+    fn falls_through_after(&self, height: T) -> (T, T);
     /// A lower and an upper bound on the time at which it rises through `height`. From the upper
     /// bound to the highest point it is above `height`. If it does not rise through it: any two
     /// times before the highest point.
@@ -45,10 +46,11 @@ impl<T: Real> HeightPath<T> for Parabola<'_, T> {
         self.z
     }
 
-    /// For a ball that never rises to it, the time of its highest point.
+    /// The exact time. For a ball that never rises to the height, that of its highest point.
     #[inline(always)]
-    fn falls_through(&self, height: T) -> T {
-        falling_time(self.params, self.z, self.vz, height)
+    fn falls_through_after(&self, height: T) -> (T, T) {
+        let time = falling_time(self.params, self.z, self.vz, height);
+        (time, height)
     }
 
     #[inline(always)]

@@ -74,8 +74,8 @@ fn first_ring_touch<T: Real>(
         z: p.z,
         vz: v.z,
     };
-    let falls_through_reach = heights.falls_through(params.ring.reach);
-    ring_time(params, &motion, &heights, (falls_through_reach, search_end))
+    let falls_to_reach = heights.falls_through_after(params.ring.reach);
+    ring_time(params, &motion, &heights, (falls_to_reach, search_end))
 }
 
 impl FlightEvents<f64> {

@@ -16,8 +16,10 @@ use crate::math::real::{Mask, Real};
 use crate::math::vector::{Vec2, Vec3};
 use crate::model::constants_per_ball_mass::ModelParams;
 
-/// F at which an approaching ball touches the ring, as a fraction of the square of the reach.
-const TOUCH_TOLERANCE: f64 = 1e-10;
+/// F at which an approaching ball touches the ring, as a fraction of the square of the reach: a gap
+/// of 6e-8 m. The last step goes on from there, so that the gap at a touch is less than 1e-12 m
+/// where the ball does not graze the ring.
+const TOUCH_TOLERANCE: f64 = 1e-6;
 /// Shortest jump, s; a shorter one is left to the safe step.
 const MIN_JUMP_S: f64 = 1e-9;
 /// Shortest step of a ball that moves away from the ring, s.
@@ -81,8 +83,8 @@ impl<T: Real> HorizontalMotion<T> {
 
 /// The parts of an arc in which no touch is possible, and the bound on F'' elsewhere.
 struct SearchBounds<T> {
-    /// The centre falls through z = reach.
-    falls_through_reach: T,
+    /// Before this time a centre above z = reach does not fall through it.
+    above_until: T,
     /// The centre rises through z = -reach, at this time or later.
     rises_through_minus_reach: T,
     /// The centre rises through z = reach, at this time or before.
@@ -106,7 +108,7 @@ impl<T: Real> SearchBounds<T> {
         params: &ModelParams<T>,
         motion: &HorizontalMotion<T>,
         heights: &impl HeightPath<T>,
-        falls_through_reach: T,
+        (falls_to_reach, highest): (T, T),
     ) -> Self {
         let z = heights.first_height();
         let (ring_radius, reach) = (params.ring.radius, params.ring.reach);
@@ -118,12 +120,13 @@ impl<T: Real> SearchBounds<T> {
         let nearest = Real::max(inner.squared(), motion.closest_squared);
         let inward = ring_radius - motion.distance_squared.sqrt();
         let value = inward.squared() + z.squared() - reach.squared();
+        let rises_through_reach = heights.rises_between(reach).1;
         Self {
             overlap: Real::min(value, value.zero()),
-            height_bound: heights.acceleration_bound() * reach,
-            falls_through_reach,
+            height_bound: heights.acceleration_bound() * highest,
+            above_until: Real::max(falls_to_reach, rises_through_reach),
             rises_through_minus_reach: heights.rises_between(-reach).0,
-            rises_through_reach: heights.rises_between(reach).1,
+            rises_through_reach,
             inner_enter: (motion.closest_time - half_time)
                 .select(!motion.is_vertical, -params.ball.never_s),
             inner_leave: (motion.closest_time + half_time)
@@ -136,14 +139,14 @@ impl<T: Real> SearchBounds<T> {
 
 /// Time of the first touch of the ring's circle before `search_end` (else never), and whether the
 /// search reached its iteration limit. The time may be any variable in which the horizontal motion
-/// is linear; `falls_through_reach` is that at which the centre falls through the reach above the
-/// hoop.
+/// is linear; `falls_to_reach` is what [`HeightPath::falls_through_after`] gives for the reach above
+/// the hoop.
 #[inline(always)]
 pub(super) fn ring_time<T: Real>(
     params: &ModelParams<T>,
     motion: &HorizontalMotion<T>,
     heights: &impl HeightPath<T>,
-    (falls_through_reach, search_end): (T, T),
+    (falls_to_reach, search_end): ((T, T), T),
 ) -> (T, T::Mask) {
     let (zero, reach) = (params.zero(), params.ring.reach);
     let outer = params.ring.radius + reach;
@@ -159,26 +162,27 @@ pub(super) fn ring_time<T: Real>(
     // Start when the ball has come near the ring and has fallen through z = reach. A ball that is
     // lower and still rising then (a release from beneath) starts when it has come near.
     let (z_then, _) = heights.height_and_rate(t);
-    t = Real::max(falls_through_reach, t).select(reach.lt(z_then), t);
+    t = Real::max(falls_to_reach.0, t).select(reach.lt(z_then), t);
 
     let mut searching = t.lt(stop) & !out_of_reach;
     let mut found = params.ball.never_s;
     let mut iterations = 0;
     if searching.any() {
-        let bounds = SearchBounds::new(params, motion, heights, falls_through_reach);
+        let bounds = SearchBounds::new(params, motion, heights, falls_to_reach);
         while searching.any() && iterations < MAX_ITERATIONS {
             iterations += 1;
             let (touches, next) = search_step(params, motion, &bounds, heights, t);
-            let touches = touches & searching;
-            found = t.select(touches, found);
             t = next.select(searching, t);
-            searching = searching & !touches & t.lt(stop);
+            searching = searching & t.lt(stop);
+            found = t.select(touches & searching, found);
+            searching = searching & !touches;
         }
     }
     (found, searching)
 }
 
-/// Whether the ball touches the ring at the time `t`, and the next time to look at.
+/// Whether the ball touches the ring right after the time `t`, and when; or the next time to look
+/// at.
 #[inline(always)]
 fn search_step<T: Real>(
     params: &ModelParams<T>,
@@ -221,7 +225,7 @@ fn search_step<T: Real>(
     let above = reach.lt(z_t);
     let jump = Real::max(
         Real::max(
-            bounds.falls_through_reach.select(above, zero),
+            bounds.above_until.select(above, zero),
             bounds.rises_through_minus_reach.select(below, zero),
         ),
         bounds.inner_leave.select(inside, zero),
@@ -234,7 +238,7 @@ fn search_step<T: Real>(
         t.lt(bounds.rises_through_reach) & bounds.rises_through_reach.lt(safe) & !reaches_inner;
     let step = bounds.inner_leave.select(
         reaches_inner,
-        bounds.falls_through_reach.select(reaches_top, safe),
+        bounds.above_until.select(reaches_top, safe),
     );
-    (touches, jump.select(jumps, step))
+    (touches, safe.select(touches, jump.select(jumps, step)))
 }
