@@ -12,8 +12,10 @@ type Row<E> = [E; MAX_LANES];
 
 /// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
 /// the last one, and steps on without harm.
+///
+/// Every row starts at a cache line, so that no vector lies across two of them.
+#[repr(C, align(64))]
 pub(super) struct ContactFrameBlock<E> {
-    part: FramedPart,
     /// The values of [`ContactFrameState`].
     motion: [Row<E>; CONTACT_VALUES],
     slip_tolerances: Row<E>,
@@ -26,6 +28,7 @@ pub(super) struct ContactFrameBlock<E> {
     /// [`ShotProgress::steps`].
     steps: [u32; MAX_LANES],
     flags: ContactFlags,
+    part: FramedPart,
 }
 
 /// The Boolean values of each lane. A local copy stays in registers.

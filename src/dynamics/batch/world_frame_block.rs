@@ -15,6 +15,9 @@ const ZEROS: LaneArray = [0.0; MAX_F64_LANES];
 
 /// The state of the shots in the lanes between two steps. A lane without a shot keeps the values of
 /// the last one, and steps on without harm.
+///
+/// Every row starts at a cache line, so that no vector lies across two of them.
+#[repr(C, align(64))]
 pub(super) struct WorldFrameBlock {
     /// The nine state variables.
     state: [LaneArray; 9],
