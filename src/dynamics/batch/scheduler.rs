@@ -72,13 +72,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             workspace,
         };
         loop {
-            if !params.has_paper_flight() {
-                // Sixteen lanes would need more registers than there are.
-                fly_in_segments::<S, EightLanes<S>, WIDTH>(&mut batch, starts);
-            } else if WIDTH == WIDE {
-                fly_from_release::<S, SixteenLanes<S>, WIDTH>(&mut batch, starts);
-            } else {
-                fly_from_release::<S, EightLanes<S>, WIDTH>(&mut batch, starts);
+            match (params.has_paper_flight(), WIDTH) {
+                (true, WIDE) => fly_from_release::<S, SixteenLanes<S>, WIDTH>(&mut batch, starts),
+                (true, _) => fly_from_release::<S, EightLanes<S>, WIDTH>(&mut batch, starts),
+                (false, WIDE) => fly_in_segments::<S, SixteenLanes<S>, WIDTH>(&mut batch, starts),
+                (false, _) => fly_in_segments::<S, EightLanes<S>, WIDTH>(&mut batch, starts),
             }
             if batch.workspace.all_have_started() && batch.workspace.waiting() <= LAST_SHOTS {
                 batch.finish_one_by_one();

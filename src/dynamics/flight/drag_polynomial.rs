@@ -226,12 +226,13 @@ impl<T: Real> HeightPath<T> for DragPolynomial<T> {
         let (start, first_rate) = (self.z[0], self.rate[0]);
         let bound = self.acceleration_bound();
         let inverse_bound = one / bound;
-        let square = |z: T, rate: T| rate.squared() + (z - height) * bound * 2.0;
-        let root = square(start, first_rate).positive_part().sqrt();
+        let twice = bound * 2.0;
+        let square = first_rate.squared() + (start - height) * twice;
+        let root = square.positive_part().sqrt();
         let s = ((first_rate + root) * inverse_bound).positive_part();
         let s = Real::min(s, one);
         let (z, rate) = self.height_and_rate(s);
-        let square = square(z, rate);
+        let square = rate.squared() + (z - height) * twice;
         let step = ((rate + square.positive_part().sqrt()) * inverse_bound).positive_part();
         // How far above the height a path that falls already may still be.
         let least = self.first_fall_rate();

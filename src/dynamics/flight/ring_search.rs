@@ -236,9 +236,8 @@ fn search_step<T: Real>(
     let reaches_inner = t.lt(bounds.inner_enter) & bounds.inner_enter.lt(safe);
     let reaches_top =
         t.lt(bounds.rises_through_reach) & bounds.rises_through_reach.lt(safe) & !reaches_inner;
-    let step = bounds.inner_leave.select(
-        reaches_inner,
-        bounds.above_until.select(reaches_top, safe),
-    );
+    let step = bounds
+        .inner_leave
+        .select(reaches_inner, bounds.above_until.select(reaches_top, safe));
     (touches, safe.select(touches, jump.select(jumps, step)))
 }
