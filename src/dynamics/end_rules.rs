@@ -5,8 +5,8 @@ use super::outcome::Ending;
 use crate::math::real::Real;
 use crate::math::vector::RealVector;
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::TOUCH_GAP_M;
-use crate::model::{BallState, SolidId};
+use crate::model::solids::{FramedPart, TOUCH_GAP_M};
+use crate::model::BallState;
 
 /// Settings of a simulation that are not part of the equations: limits, steps and precision.
 #[derive(Clone, Copy, Debug)]
@@ -15,8 +15,9 @@ pub(crate) struct ShotLimits {
     pub(crate) longest_world_steps_s: [f64; 2],
     /// Contacts with one solid are computed in single precision.
     pub(crate) single_precision: bool,
-    /// The normal motion and the longest step in contact with each solid, by [`SolidId::index`].
-    pub(crate) oscillators: [Oscillator; SolidId::COUNT],
+    /// The normal motion and the longest step in contact with each part, in the order of
+    /// [`FramedPart`].
+    pub(crate) oscillators: [Oscillator; FramedPart::COUNT],
     /// A shot that takes longer ends, s.
     pub(crate) time_limit_s: f64,
     /// A ball that rolls on two solids for this long is lodged, s; 0 for never.

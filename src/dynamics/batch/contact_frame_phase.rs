@@ -41,7 +41,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         B: Solid<T>,
     {
         let phase = Phase::InFrame(A::PART);
-        let oscillator = &self.limits.oscillators[A::ID.index()].map(
+        let oscillator = &self.limits.oscillators[A::PART as usize].map(
             #[inline(always)]
             |value| T::broadcast(self.simd, value),
         );

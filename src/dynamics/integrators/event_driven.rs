@@ -419,7 +419,7 @@ impl<O: Observer> Run<'_, O> {
         solid: &S,
         other: &Other,
     ) -> Option<Verdict> {
-        let oscillator = &self.limits.oscillators[S::ID.index()].map(T::from_f64);
+        let oscillator = &self.limits.oscillators[S::PART as usize].map(T::from_f64);
         let contact = Contact {
             params,
             solid,
