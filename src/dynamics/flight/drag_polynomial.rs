@@ -241,7 +241,10 @@ impl<T: Real> HeightPath<T> for DragPolynomial<T> {
             rate.le(zero) & zero.le(square) & excess.le(height.abs() * MAX_EXCESS_FRACTION);
         let rise = first_rate.positive_part().squared() / (least * 2.0);
         let highest = Real::max(start + rise, height).select(!is_near, height + excess);
-        ((s + step).select(falls, self.never), highest)
+        (
+            (s + step).select(falls, self.never),
+            highest.select(falls, height),
+        )
     }
 
     /// -z'' only grows: the parabolas with its first and its last value lie above and below the
