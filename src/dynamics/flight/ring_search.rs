@@ -139,8 +139,8 @@ impl<T: Real> SearchBounds<T> {
 
 /// Time of the first touch of the ring's circle before `search_end` (else never), and whether the
 /// search reached its iteration limit. The time may be any variable in which the horizontal motion
-/// is linear; `falls_to_reach` is what [`HeightPath::falls_through_after`] gives for the reach above
-/// the hoop.
+/// is linear; `falls_to_reach` is what [`HeightPath::falls_through_after`] gives for the reach
+/// above the hoop.
 #[inline(always)]
 pub(super) fn ring_time<T: Real>(
     params: &ModelParams<T>,
