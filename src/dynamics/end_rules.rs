@@ -4,9 +4,9 @@ use super::contact::oscillator::Oscillator;
 use super::outcome::Ending;
 use crate::math::real::Real;
 use crate::math::vector::RealVector;
+use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::{FramedPart, TOUCH_GAP_M};
-use crate::model::BallState;
 
 /// Settings of a simulation that are not part of the equations: limits, steps and precision.
 #[derive(Clone, Copy, Debug)]

@@ -88,7 +88,8 @@ pub fn side_uniform(count: usize, seed: u64) -> Vec<Release> {
     uniform(count, seed, 67.5, 62.107)
 }
 
-fn uniform(count: usize, seed: u64, court_deg: f64, polar_deg: f64) -> Vec<Release> {
+/// The same spread about a mean polar angle, from a court angle.
+pub fn uniform(count: usize, seed: u64, court_deg: f64, polar_deg: f64) -> Vec<Release> {
     let mut random = ChaCha12Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
     (0..count)
