@@ -80,7 +80,30 @@ pub fn estimate(
     }
 }
 
-/// Sample number `index` of a seed.
+/// The first `count` samples of a seed, in order.
+#[must_use]
+pub fn first_samples(
+    profile: &Profile,
+    nominal: &Nominal,
+    seed: u64,
+    count: usize,
+) -> Vec<Release> {
+    let distribution = ReleaseDistribution::new(profile, nominal);
+    let count = count as u64;
+    (0..count.div_ceil(BLOCK))
+        .into_par_iter()
+        .flat_map_iter(|block| {
+            let mut random = stream(seed, block);
+            let length = BLOCK.min(count - block * BLOCK);
+            (0..length)
+                .map(|_| draw(&distribution, &mut random))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// Sample number `index` of a seed. For many samples [`first_samples`] is faster: this one draws
+/// those before it in their stream.
 #[must_use]
 pub fn sample(profile: &Profile, nominal: &Nominal, seed: u64, index: u64) -> Release {
     let distribution = ReleaseDistribution::new(profile, nominal);

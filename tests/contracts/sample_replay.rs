@@ -35,4 +35,10 @@ fn contract_a_monte_carlo_sample_is_found_again_by_its_number() {
         })
         .count();
     assert_eq!(estimate.probability, made as f64 / 300.0);
+    let first = monte_carlo::first_samples(&profile, &shot, 7, 5000);
+    assert_eq!(first.len(), 5000);
+    for index in [0, 299, 4095, 4096, 4999] {
+        let release = monte_carlo::sample(&profile, &shot, 7, index as u64);
+        assert_eq!(first[index], release, "{index}");
+    }
 }

@@ -187,11 +187,11 @@ fn val_convergence_orders() {
 #[test]
 #[ignore = "eight hours on a slow machine: cargo test --release --test validation campaign_bias -- --ignored --nocapture"]
 fn campaign_bias_of_p_at_the_default_steps() {
-    const SAMPLES: u64 = 1 << 20;
+    const SAMPLES: usize = 1 << 20;
     let only = std::env::var("BANKSHOT_CASE").ok();
     let samples_at_1000_steps = match std::env::var("BANKSHOT_SAMPLES_AT_1000_STEPS") {
         Ok(samples) => samples.parse().unwrap(),
-        Err(_) => SAMPLES as usize,
+        Err(_) => SAMPLES,
     };
     let mut differences = Vec::new();
     for (name, profile, shots) in bias_cases() {
@@ -209,10 +209,7 @@ fn campaign_bias_of_p_at_the_default_steps() {
         let default = Simulator::new(&physics).unwrap();
         let (hundred, thousand) = (with_steps(100), with_steps(1000));
         for shot in shots {
-            let releases: Vec<Release> = (0..SAMPLES)
-                .into_par_iter()
-                .map(|index| monte_carlo::sample(&profile, &shot, 7, index))
-                .collect();
+            let releases = monte_carlo::first_samples(&profile, &shot, 7, SAMPLES);
             let few = &releases[..samples_at_1000_steps];
             let with_hundred = made(&hundred, &releases);
             let [first, second] = [

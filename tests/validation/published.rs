@@ -291,15 +291,14 @@ fn val_slegers_2022_best_pitch_above_that_of_least_speed() {
 
 /// Mullineaux and Uhl 2010: missed free throws are 0.10 m/s slower than swishes. Mean speed of the
 /// misses less that of the swishes, m/s, of `shots` shots at a speed above the best one.
-fn misses_less_swishes_m_s(above_best_m_s: f64, shots: u64) -> f64 {
+fn misses_less_swishes_m_s(above_best_m_s: f64, shots: usize) -> f64 {
     let profile = college(4.19, 0.0, 7.0 * FOOT_M, Effort::Coarse)
         .with(|settings| settings.physics = Preset::named("ncaa").unwrap().physics())
         .unwrap();
     let best = best_direct(&profile).nominal;
     let usual = best.with(NominalVariable::Speed, best.speed_m_s + above_best_m_s);
     let mut sums = [(0.0, 0.0); 2];
-    for index in 0..shots {
-        let release = monte_carlo::sample(&profile, &usual, 3, index);
+    for release in monte_carlo::first_samples(&profile, &usual, 3, shots) {
         let outcome = profile.simulator().simulate(&release).unwrap();
         let sum = match outcome.kind {
             OutcomeKind::Swish => &mut sums[0],
