@@ -178,52 +178,32 @@ fn val_convergence_orders() {
     );
 }
 
-/// P of 40 nominal shots at the default steps against 1000 steps in double precision, with common
-/// samples: the difference is bias, not chance. It is the sum of two differences: the default
-/// against 100 steps and 100 against 1000, each at 2^20 samples. Both are unbiased, and the standard
-/// error of the sum is printed. `BANKSHOT_SAMPLES_AT_1000_STEPS=131072` takes the second difference
-/// at the first 2^17 samples, in a fraction of the time; `BANKSHOT_CASE=near` runs one group of
-/// shots alone.
+/// P of 40 nominal shots at the default steps against 1000 steps in double precision, at 2^20 common
+/// samples each: the difference is bias, not chance. `BANKSHOT_CASE=near` runs one group of shots
+/// alone.
 #[test]
-#[ignore = "eight hours on a slow machine: cargo test --release --test validation campaign_bias -- --ignored --nocapture"]
+#[ignore = "half an hour: cargo test --release --test validation campaign_bias -- --ignored --nocapture"]
 fn campaign_bias_of_p_at_the_default_steps() {
     const SAMPLES: usize = 1 << 20;
     let only = std::env::var("BANKSHOT_CASE").ok();
-    let samples_at_1000_steps = match std::env::var("BANKSHOT_SAMPLES_AT_1000_STEPS") {
-        Ok(samples) => samples.parse().unwrap(),
-        Err(_) => SAMPLES,
-    };
     let mut differences = Vec::new();
     for (name, profile, shots) in bias_cases() {
         if only.as_ref().is_some_and(|only| only != name) {
             continue;
         }
         let physics = profile.physics().clone();
-        let with_steps = |steps_per_contact| {
-            let integrator = Integrator::EventDriven {
-                steps_per_contact,
-                precision: Precision::Double,
-            };
-            Simulator::with_integrator(&physics, integrator).unwrap()
-        };
         let default = Simulator::new(&physics).unwrap();
-        let (hundred, thousand) = (with_steps(100), with_steps(1000));
+        let tiny_steps = Integrator::EventDriven {
+            steps_per_contact: 1000,
+            precision: Precision::Double,
+        };
+        let reference = Simulator::with_integrator(&physics, tiny_steps).unwrap();
         for shot in shots {
             let releases = monte_carlo::first_samples(&profile, &shot, 7, SAMPLES);
-            let few = &releases[..samples_at_1000_steps];
-            let with_hundred = made(&hundred, &releases);
-            let [first, second] = [
-                difference_of_p(&made(&default, &releases), &with_hundred),
-                difference_of_p(&with_hundred[..few.len()], &made(&thousand, few)),
-            ];
-            let p = with_hundred.iter().filter(|made| **made).count() as f64 / SAMPLES as f64;
-            let difference = first.0 + second.0;
-            println!(
-                "{name:10} P {p:.5}, at the default steps {difference:+.6} +- {:.6} (100 against \
-                 1000 steps {:+.6})",
-                libm::hypot(first.1, second.1),
-                second.0,
-            );
+            let expected = made(&reference, &releases);
+            let (difference, error) = difference_of_p(&made(&default, &releases), &expected);
+            let p = expected.iter().filter(|made| **made).count() as f64 / SAMPLES as f64;
+            println!("{name:10} P {p:.5}, at the default steps {difference:+.6} +- {error:.6}");
             differences.push(difference);
         }
     }

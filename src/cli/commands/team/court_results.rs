@@ -215,8 +215,14 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
         let mut places = player.places.iter();
         places.any(|place| place.bank_is_better.is_some())
     };
-    let of_profiles = if players.iter().any(has_draws) {
+    let has_unsure_places = |player: &PlayerSweep| {
+        let bank = player.bank_places();
+        bank.iter().any(|place| !place.is_sure())
+    };
+    let of_profiles = if players.iter().any(has_unsure_places) {
         "Not sure yet: the kind is the better one in fewer than 90 of 100 draws of the fit (team.csv has the share). P itself takes each profile as exact.\n"
+    } else if players.iter().any(has_draws) {
+        "P takes each profile as exact; team.csv has the share of the draws of the fit in which bank is better.\n"
     } else {
         "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n"
     };
