@@ -469,8 +469,8 @@ mod tests {
         }
     }
 
-    /// Authority: the path at 400 places. Before the time the path does not fall through the height;
-    /// from then on it is not above the bound.
+    /// Authority: the path at 400 places. Before the time the path does not fall through the
+    /// height; from then on it is not above the bound.
     #[test]
     fn prop_a_path_does_not_fall_through_a_height_before_the_bound() {
         let physics = Preset::named("ncaa").unwrap().physics();
