@@ -24,9 +24,14 @@ mod tests {
     use proptest::prelude::*;
 
     fn gaps(params: &ModelParams, state: &BallState) -> f64 {
-        let (board, _) = params.board.gap(&params.ball, state);
-        let (ring, _) = params.ring.gap(&params.ball, state);
-        board.min(ring)
+        gap_and_rate(params, state).0
+    }
+
+    /// The gap to the nearer solid, and its rate.
+    fn gap_and_rate(params: &ModelParams, state: &BallState) -> (f64, f64) {
+        let board = params.board.gap(&params.ball, state);
+        let ring = params.ring.gap(&params.ball, state);
+        if board.0 < ring.0 { board } else { ring }
     }
 
     proptest! {
@@ -55,8 +60,11 @@ mod tests {
             prop_assert!(!segment.unresolved);
             let end = segment.end;
             if segment.touches.contains(&true) {
-                // Less, unless the ball grazes the ring.
-                prop_assert!(gaps(&params, &end).abs() < 1e-7, "{segment:?}");
+                // The search of the ring ends with a step from 6e-8 m. Its error is greater where
+                // the ball only grazes the ring.
+                let (gap, rate) = gap_and_rate(&params, &end);
+                let allowed = if rate < -0.05 { 1e-9 } else { 1e-7 };
+                prop_assert!(gap.abs() < allowed, "{rate} {segment:?}");
             }
             // Classical Runge-Kutta.
             let h = segment.dt / 400.0;
