@@ -4,8 +4,11 @@ use crate::analysis::aim_past_hoop::centre_speed_m_s;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
-/// Greatest number of moves from one start.
-const MAX_MOVES: u32 = 200;
+/// Greatest number of shots that are tried from one start.
+const MAX_TRIALS: u32 = 200;
+
+/// Two shots whose variables differ by less are the same but for rounding, SI units.
+const SAME_SHOT: f64 = 1e-9;
 
 /// The steps of a climb, as multiples of the first step of each variable; each is half the one
 /// before.
@@ -47,26 +50,37 @@ impl Climb<'_> {
         value: impl Fn(&Nominal) -> u64,
     ) -> Nominal {
         let choice = self.profile.search().choice;
+        let variables: Vec<NominalVariable> = choice.iter().collect();
         let mut best = (value(&start), start);
-        let mut moves = 0;
+        let mut trials = 0;
         for scale in steps.0 {
-            let mut moved = true;
-            while moved && moves < MAX_MOVES {
-                moved = false;
-                for variable in choice.iter() {
-                    let step = scale * first_step(variable);
-                    for by in [step, -step] {
-                        let next = self.moved(&best.1, variable, by);
-                        if next == best.1 || ShotKind::of(self.profile, &next) != kind {
-                            continue;
-                        }
-                        moves += 1;
-                        let made = value(&next);
-                        if made > best.0 {
-                            best = (made, next);
-                            moved = true;
-                            break;
-                        }
+            // Where the last move came from, and the variables that were tried since without one.
+            let mut previous = None;
+            let mut unmoved = 0;
+            for &variable in variables.iter().cycle() {
+                if unmoved == variables.len() || trials >= MAX_TRIALS {
+                    break;
+                }
+                unmoved += 1;
+                let step = scale * first_step(variable);
+                for by in [step, -step] {
+                    let next = self.moved(&best.1, variable, by);
+                    let is_same = |known: &Nominal| {
+                        variables
+                            .iter()
+                            .all(|&v| (next.get(v) - known.get(v)).abs() < SAME_SHOT)
+                    };
+                    let is_known = is_same(&best.1) || previous.as_ref().is_some_and(is_same);
+                    if is_known || ShotKind::of(self.profile, &next) != kind {
+                        continue;
+                    }
+                    trials += 1;
+                    let made = value(&next);
+                    if made > best.0 {
+                        previous = Some(best.1);
+                        best = (made, next);
+                        unmoved = 0;
+                        break;
                     }
                 }
             }
