@@ -5,9 +5,10 @@ use super::failure::{Failure, code, refuse_missing};
 use super::measured_shots_flags::MeasuredShotsOptions;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
+use crate::best_shot::{ShotAtPitch, TableShot};
 use crate::fitting::{
-    Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, WeightedShots, fitted_profile,
-    usual_probabilities, values_of,
+    AngleOverDraws, Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, WeightedShots,
+    fitted_profile, usual_probabilities, values_of,
 };
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
@@ -409,37 +410,48 @@ pub(crate) fn kinds_over_draws(
     Ok(text)
 }
 
-/// P of the best shot at each pitch angle over the draws of a fit, and by how much it is less than
-/// at the best of these angles, in words.
+/// P of the best shot at each pitch angle over the draws of a fit.
 pub(crate) fn angles_over_draws(
-    (folder, fit): (&Path, &FitFolder),
+    fit: &FitFolder,
     profile: &Profile,
-    nominals: &[(f64, &Nominal)],
-) -> Result<String, Failure> {
-    let mut angles = Vec::new();
-    for (pitch_rad, nominal) in nominals {
-        let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
-        angles.push((pitch_rad / DEGREE_RAD, p));
-    }
-    let mean = |(_, p): &(f64, DrawProbabilities)| p.interval().mean;
-    let best = angles
-        .iter()
-        .reduce(|a, b| if mean(b) > mean(a) { b } else { a });
-    let Some((best_deg, best)) = best else {
-        return Ok(String::new());
+    rows: &[ShotAtPitch],
+) -> Result<Vec<Option<AngleOverDraws>>, Failure> {
+    let shots = rows.iter().map(|row| row.shot.as_ref());
+    let p = |shot: Option<&TableShot>| {
+        shot.map(|shot| probability_over_draws(&fit.posterior.draws, profile, &shot.nominal, SHOTS))
+            .transpose()
+    };
+    let angles: Vec<_> = shots.map(p).collect::<Result<_, Failure>>()?;
+    Ok(AngleOverDraws::of_angles(&angles))
+}
+
+/// The same in words.
+pub(crate) fn angles_in_words(
+    (folder, fit): (&Path, &FitFolder),
+    rows: &[ShotAtPitch],
+    over_draws: &[Option<AngleOverDraws>],
+) -> String {
+    let angles = rows.iter().zip(over_draws);
+    let angles: Vec<(f64, AngleOverDraws)> = angles
+        .filter_map(|(row, angle)| Some((row.pitch_rad / DEGREE_RAD, (*angle)?)))
+        .collect();
+    let mean = |(_, angle): &(f64, AngleOverDraws)| angle.probability.mean;
+    let best = angles.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
+    let Some((best_deg, _)) = best else {
+        return String::new();
     };
     let mut text = format!(
         "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, draw by draw (95 %). That angle has the greatest mean.\n",
         which_draws(folder, fit)
     );
-    for (pitch_deg, p) in &angles {
-        let [mean, low, high] = percents(&p.interval());
-        let [less, least, most] = percents(&best.minus(p).interval());
+    for (pitch_deg, angle) in &angles {
+        let [mean, low, high] = percents(&angle.probability);
+        let [less, least, most] = percents(&angle.less);
         text += &format!(
             "{pitch_deg:>5.1}  {mean:>5.1} ({low:>4.1} to {high:>4.1})  {less:>5.1} ({least:>+5.1} to {most:>+5.1})\n"
         );
     }
-    Ok(text)
+    text
 }
 
 /// Mean and ends in percent. Rounded first, and 0 added: no negative zero.

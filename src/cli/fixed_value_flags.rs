@@ -58,6 +58,12 @@ impl FixedOptions {
                     "--pitch: must be from 1 to 89 deg, not '{text}'"
                 )));
             }
+            let search = &profile.settings().search;
+            if variable == NominalVariable::Pitch
+                && let Some(words) = search.pitch_beyond_limits(value)
+            {
+                return Err(Failure::usage(format!("--pitch: \"{text}\" {words}")));
+            }
             let most = profile.shooter().max_backspin_rad_s;
             if variable == NominalVariable::Backspin && value > most {
                 return Err(Failure::usage(format!(

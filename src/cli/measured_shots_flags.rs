@@ -448,6 +448,8 @@ impl MeasuredFile {
             file: self.file.display().to_string(),
             file_blake3: self.blake3.clone(),
             tracker: self.tracker.clone(),
+            noise: self.noise,
+            prior: self.prior(),
             physics: self.physics_name.clone(),
             seed: self.seed,
             is_shooter_named: !shots.name.is_empty(),
@@ -457,14 +459,19 @@ impl MeasuredFile {
         }
     }
 
-    /// Options of the fit of a shooter.
-    pub(crate) fn fit_options(&self, shots: &ShooterShots) -> FitOptions {
+    /// The prior, with the backspin that was given.
+    fn prior(&self) -> PopulationPrior {
         let mut prior = PopulationPrior::MEASURED;
         if let Some(backspin) = self.backspin_rad_s {
             prior.backspin.mean = backspin;
         }
+        prior
+    }
+
+    /// Options of the fit of a shooter.
+    pub(crate) fn fit_options(&self, shots: &ShooterShots) -> FitOptions {
         FitOptions {
-            prior,
+            prior: self.prior(),
             spin: shots.spin,
             tails: match self.tails {
                 TailsArg::Auto => tails_of(&shots.shots, shots.places.len()),

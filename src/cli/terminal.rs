@@ -19,7 +19,8 @@ pub(crate) fn print_prose(text: &str) -> Result<u8, Failure> {
 /// Columns of a terminal of the usual width.
 const COLUMNS: usize = 80;
 
-fn wrapped(text: &str) -> String {
+/// Prose in lines of at most 80 columns, as [`print_prose`] prints it.
+pub(crate) fn wrapped(text: &str) -> String {
     let mut wrapped = String::with_capacity(text.len());
     for line in text.lines() {
         if line.chars().count() <= COLUMNS {

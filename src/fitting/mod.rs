@@ -11,6 +11,7 @@
 
 mod advice;
 mod advice_steps;
+mod angle_over_draws;
 mod chain_diagnostics;
 mod dispersion_posterior;
 mod draw_probabilities;
@@ -33,6 +34,7 @@ mod unmeasured_parameter_likelihood;
 
 pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabilities};
 pub use advice_steps::{AdviceStep, AdviceSteps, Cause, SAME_SPEED_M_S};
+pub use angle_over_draws::AngleOverDraws;
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{

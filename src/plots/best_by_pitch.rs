@@ -3,6 +3,7 @@
 use super::axes::Axes;
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::best_shot::{ShotAtPitch, TableShot};
+use crate::fitting::AngleOverDraws;
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
@@ -14,12 +15,13 @@ const APART: f64 = 430.0;
 /// Top of the panels, px.
 const TOP: f64 = 74.0;
 
-/// Draws both curves; `None` with fewer than two angles that have a shot.
+/// Draws both curves; `None` with fewer than two angles that have a shot. P over the draws of a fit
+/// may be given, one for each row.
 #[must_use]
 pub fn draw(
     profile: &Profile,
     kind: ShotKind,
-    rows: &[ShotAtPitch],
+    (rows, over_draws): (&[ShotAtPitch], &[Option<AngleOverDraws>]),
     units: UnitSystem,
 ) -> Option<Plot> {
     let (long, metre) = units.length();
@@ -28,6 +30,8 @@ pub fn draw(
     let [first, .., last] = angles[..] else {
         return None;
     };
+    // Points and bars do not lie on the frame.
+    let x_margin = 0.03 * (last - first);
     let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 56.0);
     let name = shortened(&profile.shooter().name, 50);
     let title = format!("The best {} shot at each pitch angle: {name}", kind.name());
@@ -40,6 +44,8 @@ pub fn draw(
         .iter()
         .filter_map(|row| row.shot.as_ref())
         .map(probability);
+    let ends = over_draws.iter().flatten().map(|angle| angle.probability);
+    let chances = chances.chain(ends.flat_map(|p| [p.low, p.high]));
     let (lowest, highest) = chances.fold((1.0_f64, 0.0_f64), |(low, high), p| {
         (low.min(p), high.max(p))
     });
@@ -52,7 +58,7 @@ pub fn draw(
     let panel = |i: usize, y| Axes {
         corner: (LEFT + APART * i as f64, TOP),
         size: PANEL,
-        x: (first, last),
+        x: (first - x_margin, last + x_margin),
         y,
     };
     let of_p = panel(
@@ -61,16 +67,30 @@ pub fn draw(
     );
     let of_speed = panel(1, (slowest - margin, fastest + margin));
     draw_curve(&mut svg, &of_p, rows, &probability);
+    for (row, angle) in rows.iter().zip(over_draws) {
+        let Some(AngleOverDraws { probability, .. }) = angle else {
+            continue;
+        };
+        let end = |p: f64| of_p.pixel((row.pitch_rad / DEGREE_RAD, p));
+        let style = format!("stroke=\"{INK}\" stroke-width=\"1\" fill=\"none\"");
+        svg.polyline([end(probability.low), end(probability.high)], &style);
+    }
     of_p.draw(&mut svg, "", "pitch angle (deg)", "P");
     draw_curve(&mut svg, &of_speed, rows, &speed);
     let label = format!("best speed ({long}/s)");
     of_speed.draw(&mut svg, "", "pitch angle (deg)", &label);
-    let caption =
-        "P of the best shot at each pitch angle, and its speed. Open circle: the highest P.";
+    let bars = if over_draws.is_empty() {
+        ""
+    } else {
+        " Bars: 95 % of the draws of the fit."
+    };
+    let caption = format!(
+        "P of the best shot at each pitch angle, and its speed. Open circle: the highest P.{bars}"
+    );
     Some(Plot {
         name: "best_by_pitch".to_owned(),
-        caption: caption.to_owned(),
-        svg: svg.finish(caption),
+        svg: svg.finish(&caption),
+        caption,
     })
 }
 

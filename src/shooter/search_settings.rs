@@ -222,6 +222,23 @@ impl SearchSettings {
         self.seed.unwrap_or(Search::DEFAULT_SEED)
     }
 
+    /// How a pitch angle breaks the limits that are set, such as `is more than search.pitch_max
+    /// (60 deg)`; `None` if it does not.
+    #[must_use]
+    pub fn pitch_beyond_limits(&self, pitch_rad: f64) -> Option<String> {
+        let tolerance_rad = 1e-9;
+        let is_below = |limit: &f64| pitch_rad < limit - tolerance_rad;
+        let is_above = |limit: &f64| pitch_rad > limit + tolerance_rad;
+        let words = |word: &str, key: &str, limit_rad: f64| {
+            let limit_deg = (limit_rad / DEGREE_RAD * 1e6).round() / 1e6;
+            format!("is {word} than search.{key} ({limit_deg} deg)")
+        };
+        let low = self.pitch_min_rad.filter(is_below);
+        let high = self.pitch_max_rad.filter(is_above);
+        low.map(|limit| words("less", "pitch_min", limit))
+            .or_else(|| high.map(|limit| words("more", "pitch_max", limit)))
+    }
+
     pub(super) fn check(
         &self,
         checks: &mut SettingChecks,
@@ -281,7 +298,14 @@ impl SearchSettings {
         }
         if omits(NominalVariable::Pitch) {
             match nominal.pitch_rad {
-                Some(pitch) if PITCH_RANGE_RAD.contains(&pitch) => {}
+                Some(pitch) if PITCH_RANGE_RAD.contains(&pitch) => {
+                    if let Some(words) = self.pitch_beyond_limits(pitch) {
+                        checks.refuse(
+                            "nominal.pitch",
+                            format!("{words} (search.choose leaves pitch out, so every shot has this one)"),
+                        );
+                    }
+                }
                 Some(pitch) => checks.refuse(
                     "nominal.pitch",
                     format!(

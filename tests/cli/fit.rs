@@ -164,6 +164,33 @@ fn contract_advice_is_the_same_from_a_file_and_from_its_fit() {
     );
     let text = answer.exits(0).stdout().to_owned();
     assert!(text.contains("over 1000 draws"), "{text}");
+    // At several pitch angles: in the text, in the file and in JSON.
+    let curve = folder.path().join("curve.csv");
+    let mut command = bankshot();
+    command.arg("pitch-curve").arg(folder.path());
+    command.args(["--quiet", "--draws", draws, "--pitches", "52 deg, 56 deg"]);
+    command.arg("-o").arg(&curve).arg("--json");
+    let json = Answer::of(&mut command).exits(0).json();
+    let header = "draws_probability_mean,draws_probability_low,draws_probability_high,draws_less_mean,draws_less_low,draws_less_high";
+    let csv = fs::read_to_string(&curve).unwrap();
+    assert!(csv.lines().next().unwrap().ends_with(header), "{csv}");
+    let over = |k: usize, value: &str, end: &str| {
+        let shot = &json["shots"][k];
+        (shot["over_draws"][value][end].as_f64().unwrap(), shot)
+    };
+    for (k, line) in csv.lines().skip(1).enumerate() {
+        let cells: Vec<&str> = line.rsplit(',').collect();
+        let (mean, shot) = over(k, "probability", "mean");
+        assert!((cells[5].parse::<f64>().unwrap() - mean).abs() < 1e-5);
+        let exact = shot["probability"].as_f64().unwrap();
+        assert!((mean - exact).abs() < 0.03, "{mean} {exact}");
+        assert!(over(k, "less", "low").0 <= over(k, "less", "mean").0);
+    }
+    let less = [0, 1].map(|k| over(k, "less", "mean").0);
+    assert!(
+        less.contains(&0.0) && less[0].max(less[1]) > 0.0,
+        "{less:?}"
+    );
     // Bank against direct over the same draws.
     let mut command = bankshot();
     command.arg("best").arg(folder.path()).arg("--quiet");

@@ -543,6 +543,37 @@ fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
         .says("there is no folder absent");
 }
 
+/// What the launcher cannot do is not proposed.
+#[test]
+fn contract_the_pitch_limits_of_a_profile_hold() {
+    let folder = TempDir::new().unwrap();
+    let limits = "pitch_min = \"58 deg\"\npitch_max = \"61 deg\"\n";
+    let profile = write_file(&folder, "robot.toml", &format!("{ROBOT}{limits}"));
+    let run = |words: &[&str]| {
+        let mut command = bankshot();
+        let command = command.arg(words[0]).arg(&profile).args(&words[1..]);
+        Answer::of(command.arg("--quiet"))
+    };
+    // Of the default angles, every 2.5 deg, one lies within.
+    let shots = run(&["pitch-curve", "--json"]).exits(0).json();
+    let pitch_deg = |k: usize| shots["shots"][k]["pitch_deg"].as_f64();
+    assert_eq!(pitch_deg(1), None);
+    assert!((pitch_deg(0).unwrap() - 60.0).abs() < 1e-9);
+    let lowest = ["pitch-curve", "--pitches", "57 deg, 58 deg"];
+    run(&lowest)
+        .exits(2)
+        .says("--pitches: 57 deg is less than search.pitch_min (58 deg)");
+    let too_much = "--pitch: \"62 deg\" is more than search.pitch_max (61 deg)";
+    let table = ["table", "--distances", "12 ft", "--pitch", "62 deg"];
+    run(&table).exits(2).says(too_much);
+    run(&["best", "--pitch", "62 deg"]).exits(2).says(too_much);
+    let fixed = format!("{ROBOT}{limits}choose = [\"speed\"]\n[nominal]\npitch = \"62 deg\"\n");
+    write_file(&folder, "robot.toml", &fixed);
+    run(&["check"])
+        .exits(2)
+        .says("is more than search.pitch_max (61 deg)");
+}
+
 /// P from several distances is that of single curves, and the greatest mean is named.
 #[test]
 fn contract_one_pitch_angle_for_several_distances_has_the_greatest_mean() {

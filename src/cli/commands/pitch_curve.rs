@@ -11,7 +11,7 @@ use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_remark, wrapped};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
@@ -24,6 +24,9 @@ use crate::shooter::{Location, NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, Dimension};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
+
+/// The pitch angles, if none are given.
+const DEFAULT_PITCHES: &str = "40 deg to 65 deg by 2.5 deg";
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -45,13 +48,10 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) place: PlaceOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// The pitch angles, ascending.
-    #[arg(
-        long,
-        value_name = "LIST|RANGE",
-        default_value = "40 deg to 65 deg by 2.5 deg"
-    )]
-    pub(crate) pitches: String,
+    /// The pitch angles, ascending, within the profile's pitch_min and pitch_max [default: 40 deg
+    /// to 65 deg by 2.5 deg, as far as these allow].
+    #[arg(long, value_name = "LIST|RANGE")]
+    pub(crate) pitches: Option<String>,
     /// Several distances from the hoop's centre, ascending: P at each of them, and which one pitch
     /// angle suits them all.
     #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
@@ -64,7 +64,7 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) backspin: Option<String>,
     /// The folder of a fit: also say how uncertain P at each angle is, and its difference from the
     /// best angle, by what the shots do not tell about the scatter.
-    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "distances")]
     pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.
     #[arg(long, short, value_name = "FILE")]
@@ -97,7 +97,6 @@ impl From<OneKindArg> for ShotKind {
 }
 
 pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failure> {
-    let pitches_rad = pitches_rad(&options.pitches)?;
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
@@ -113,6 +112,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     let loaded = options.scatter.changed(loaded, &options.profile)?;
     let loaded = with_fixed(loaded, &fixed, &options.profile)?;
     let (mut profile, _) = moved(loaded, &options.place)?;
+    let pitches_rad = pitches_rad(options.pitches.as_deref(), &profile)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
@@ -124,30 +124,35 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     let kind = options.kind.into();
     let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet))?;
-    let text = || by_pitch_text(&rows, kind, &profile, units);
-    let json = || format!("{:#}\n", by_pitch_json(&rows, kind, &profile, units));
+    let over_draws = match &draws {
+        Some((_, fit)) => fit_folder::angles_over_draws(fit, &profile, &rows)?,
+        None => Vec::new(),
+    };
+    let text = || {
+        let text = by_pitch_text(&rows, kind, &profile, units);
+        let words = draws
+            .as_ref()
+            .map(|(folder, fit)| fit_folder::angles_in_words((folder, fit), &rows, &over_draws));
+        match words {
+            Some(words) => format!("{text}\n{}", wrapped(&words)),
+            None => text,
+        }
+    };
+    let json = || {
+        let json = by_pitch_json(&rows, &over_draws, kind, &profile, units);
+        format!("{json:#}\n")
+    };
     write_outputs(&options.output, |form| match form {
-        TableFormat::Csv => by_pitch_csv(&rows, kind, units),
+        TableFormat::Csv => by_pitch_csv(&rows, &over_draws, kind, units),
         TableFormat::Json => json(),
         _ => text(),
     })?;
     if let Some(path) = &options.plot
-        && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, &rows, units)
+        && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, (&rows, &over_draws), units)
     {
         plot_files::write_one(path, &plot)?;
     }
     print_answer(&if options.json { json() } else { text() })?;
-    if let Some((folder, fit)) = &draws {
-        let nominals = rows.iter().filter_map(|row| {
-            let shot = row.shot.as_ref()?;
-            Some((row.pitch_rad, &shot.nominal))
-        });
-        let nominals: Vec<_> = nominals.collect();
-        print_prose(&format!(
-            "\n{}",
-            fit_folder::angles_over_draws((folder, fit), &profile, &nominals)?
-        ))?;
-    }
     print_written(options, quiet);
     Ok(if rows.iter().any(|row| row.shot.is_some()) {
         code::DONE
@@ -241,16 +246,38 @@ fn print_written(options: &PitchCurveOptions, quiet: bool) {
 }
 
 /// The pitch angles, rad, between 1 and 89 deg.
-fn pitches_rad(text: &str) -> Result<Vec<f64>, Failure> {
-    let pitches_rad = ascending_values("pitches", text, Dimension::Angle)?;
-    let range = DEGREE_RAD..=89.0 * DEGREE_RAD;
-    match pitches_rad.iter().find(|pitch| !range.contains(pitch)) {
-        None => Ok(pitches_rad),
-        Some(pitch_rad) => Err(Failure::usage(format!(
-            "--pitches: {} deg is not allowed; give angles from 1 to 89 deg",
-            (pitch_rad / DEGREE_RAD * 1e6).round() / 1e6
-        ))),
+fn pitches_rad(given: Option<&str>, profile: &Profile) -> Result<Vec<f64>, Failure> {
+    let pitches_rad = ascending_values(
+        "pitches",
+        given.unwrap_or(DEFAULT_PITCHES),
+        Dimension::Angle,
+    )?;
+    let search = &profile.settings().search;
+    let refuse = |pitch_rad: f64, words: &str| {
+        let pitch_deg = (pitch_rad / DEGREE_RAD * 1e6).round() / 1e6;
+        Failure::usage(format!("--pitches: {pitch_deg} deg {words}"))
+    };
+    if given.is_none() {
+        let is_allowed = |pitch_rad: &f64| search.pitch_beyond_limits(*pitch_rad).is_none();
+        let allowed: Vec<f64> = pitches_rad.into_iter().filter(is_allowed).collect();
+        if allowed.is_empty() {
+            return Err(Failure::usage(format!(
+                "--pitches: pitch_min and pitch_max of the profile allow none of {DEFAULT_PITCHES}; give the angles"
+            )));
+        }
+        return Ok(allowed);
     }
+    let range = DEGREE_RAD..=89.0 * DEGREE_RAD;
+    for pitch_rad in &pitches_rad {
+        if !range.contains(pitch_rad) {
+            let words = "is not allowed; give angles from 1 to 89 deg";
+            return Err(refuse(*pitch_rad, words));
+        }
+        if let Some(words) = search.pitch_beyond_limits(*pitch_rad) {
+            return Err(refuse(*pitch_rad, &words));
+        }
+    }
+    Ok(pitches_rad)
 }
 
 /// The form that a file's name asks for.

@@ -1,8 +1,10 @@
 //! `fit.json`: a fit for programs.
 
+use super::assumptions_json::{prior_json, tracker_errors_json};
 use super::parameters::{parameters, value_units};
 use crate::fitting::{
-    DrawProbabilities, Interval, ReleaseDifference, ShooterFit, VALUE_NAMES, Wilson,
+    DrawProbabilities, Interval, PopulationPrior, ReleaseDifference, ShooterFit, TrackerNoise,
+    VALUE_NAMES, Wilson,
 };
 use crate::output::json_object::{Record, number, object, provenance};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -19,6 +21,10 @@ pub struct FitSource<'a> {
     pub file_blake3: String,
     /// The tracker, and whether its noise was measured or is assumed.
     pub tracker: (String, String),
+    /// Its errors.
+    pub noise: TrackerNoise,
+    /// What was known of the shooter before.
+    pub prior: PopulationPrior,
     /// The physics.
     pub physics: String,
     /// Seed of the random numbers.
@@ -208,6 +214,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             ]),
         ),
         named("weight_of_the_population", object(weights.collect())),
+        named("prior", prior_json(source, units)),
         named(
             "source",
             object(vec![
@@ -216,6 +223,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
                 named("file_blake3", source.file_blake3.clone().into()),
                 named("tracker", source.tracker.0.clone().into()),
                 named("tracker_noise", source.tracker.1.clone().into()),
+                named("tracker_errors", tracker_errors_json(source, units)),
                 named("physics", source.physics.clone().into()),
                 named("names_the_shooter", source.is_shooter_named.into()),
             ]),

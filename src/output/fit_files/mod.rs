@@ -1,6 +1,7 @@
 //! The files and texts of a fitted shooter.
 
 pub mod advice_text;
+mod assumptions_json;
 pub mod draws_table;
 pub mod fit_json;
 pub mod fit_text;

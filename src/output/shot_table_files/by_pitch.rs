@@ -4,6 +4,8 @@ use super::columns::columns;
 use super::notes::physics_note;
 use super::table_text::{both_sides, decimal, line, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
+use crate::fitting::AngleOverDraws;
+use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::{number, object, provenance};
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
@@ -165,9 +167,15 @@ fn in_words(
     text
 }
 
-/// The shots as CSV; empty values where no shot goes in.
+/// The shots as CSV; empty values where no shot goes in. P over the draws of a fit may follow, one
+/// for each row.
 #[must_use]
-pub fn by_pitch_csv(rows: &[ShotAtPitch], kind: ShotKind, units: UnitSystem) -> String {
+pub fn by_pitch_csv(
+    rows: &[ShotAtPitch],
+    over_draws: &[Option<AngleOverDraws>],
+    kind: ShotKind,
+    units: UnitSystem,
+) -> String {
     let columns = columns(TableKind::One(kind), units);
     // The pitch angle comes first, also where there is no shot.
     let is_other = |name: &str| name != "pitch_deg";
@@ -176,8 +184,13 @@ pub fn by_pitch_csv(rows: &[ShotAtPitch], kind: ShotKind, units: UnitSystem) -> 
         .map(|(name, ..)| name.as_str())
         .filter(|name| is_other(name))
         .collect();
-    let mut text = format!("kind,pitch_deg,outcome,{}\n", names.join(","));
-    for row in rows {
+    let mut text = format!("kind,pitch_deg,outcome,{}", names.join(","));
+    if !over_draws.is_empty() {
+        text += ",draws_probability_mean,draws_probability_low,draws_probability_high";
+        text += ",draws_less_mean,draws_less_low,draws_less_high";
+    }
+    text += "\n";
+    for (i, row) in rows.iter().enumerate() {
         let cells: Vec<String> = columns
             .iter()
             .filter(|(name, ..)| is_other(name))
@@ -187,27 +200,38 @@ pub fn by_pitch_csv(rows: &[ShotAtPitch], kind: ShotKind, units: UnitSystem) -> 
             })
             .collect();
         text += &format!(
-            "{},{},{},{}\n",
+            "{},{},{},{}",
             kind.name(),
             pitch_deg(row),
             row.shot.as_ref().map_or("", |shot| shot.outcome.name()),
             cells.join(",")
         );
+        text += &match over_draws.get(i) {
+            None => String::new(),
+            Some(None) => ",".repeat(6),
+            Some(Some(AngleOverDraws { probability, less })) => {
+                let cells = [probability, less]
+                    .map(|over| format!(",{:.5},{:.5},{:.5}", over.mean, over.low, over.high));
+                cells.concat()
+            }
+        };
+        text += "\n";
     }
     text
 }
 
-/// The shots as one JSON object.
+/// The shots as one JSON object. P over the draws of a fit may be in it, one for each row.
 #[must_use]
 pub fn by_pitch_json(
     rows: &[ShotAtPitch],
+    over_draws: &[Option<AngleOverDraws>],
     kind: ShotKind,
     profile: &Profile,
     units: UnitSystem,
 ) -> Value {
     let columns = columns(TableKind::One(kind), units);
     let named = |name: &str, value: Value| (name.to_owned(), value);
-    let shots = rows.iter().map(|row| {
+    let shots = rows.iter().enumerate().map(|(i, row)| {
         let mut record = vec![
             named("has_shot", row.shot.is_some().into()),
             named(
@@ -222,6 +246,15 @@ pub fn by_pitch_json(
         }));
         record.retain(|(name, _)| name != "pitch_deg");
         record.insert(0, named("pitch_deg", number(pitch_deg(row))));
+        if let Some(angle) = over_draws.get(i) {
+            let value = angle.as_ref().map_or(Value::Null, |angle| {
+                object(vec![
+                    named("probability", object(interval_json(&angle.probability))),
+                    named("less", object(interval_json(&angle.less))),
+                ])
+            });
+            record.push(named("over_draws", value));
+        }
         object(record)
     });
     let mut record = provenance(profile.hash());

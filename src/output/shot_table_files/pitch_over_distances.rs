@@ -142,7 +142,7 @@ pub fn pitch_over_distances_csv(
 ) -> String {
     let mut text = String::new();
     for shots in from {
-        let csv = by_pitch_csv(&shots.shots, kind, units);
+        let csv = by_pitch_csv(&shots.shots, &[], kind, units);
         let mut lines = csv.lines();
         let header = lines.next().unwrap_or_default();
         if text.is_empty() {
@@ -165,7 +165,7 @@ pub fn pitch_over_distances_json(
     let key = format!("distance_{}", units.length().0);
     from.iter()
         .map(|shots| {
-            let mut object = by_pitch_json(&shots.shots, kind, &shots.profile, units);
+            let mut object = by_pitch_json(&shots.shots, &[], kind, &shots.profile, units);
             object[&key] = json!(shots.distance(units));
             object
         })
