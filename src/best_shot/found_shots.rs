@@ -69,6 +69,20 @@ pub struct BestShot {
     pub at_limits: Vec<Limit>,
 }
 
+impl BestShot {
+    /// The share of its makes that are of the other kind than `kind`, its own: of a bank shot
+    /// those that do not touch the board first.
+    #[must_use]
+    pub fn share_of_other_kind(&self, kind: ShotKind) -> f64 {
+        let makes = self.estimate.probability.max(f64::MIN_POSITIVE);
+        let banked = self.estimate.shares.banked() / makes;
+        match kind {
+            ShotKind::Direct => banked,
+            ShotKind::Bank => 1.0 - banked,
+        }
+    }
+}
+
 /// The best shots from a location.
 #[derive(Clone, Debug)]
 pub struct BestShots {

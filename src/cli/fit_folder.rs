@@ -10,6 +10,7 @@ use crate::fitting::{
     AngleOverDraws, Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, WeightedShots,
     fitted_profile, usual_probabilities, values_of,
 };
+use crate::measured_shots::source::Source;
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
 use crate::shooter::{Location, Nominal, Profile, ProfileError, ShotKind};
@@ -28,6 +29,8 @@ pub(crate) struct FitFolder {
     pub(crate) observed: Vec<(usize, usize)>,
     /// What the fit warned of.
     pub(crate) warnings: Vec<String>,
+    /// What was measured.
+    pub(crate) source: Source,
     /// The name of the tracker, or the path of its file.
     pub(crate) tracker: String,
     /// The name of the shooter, if the file of the shots has it.
@@ -196,6 +199,10 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
         place_names: names.map(|place| name_of(place).to_owned()).collect(),
         posterior,
         observed: observed(&json, places.len()),
+        source: json["source"]["kind"]
+            .as_str()
+            .and_then(Source::named)
+            .unwrap_or(Source::Releases),
         tracker: json["source"]["tracker"]
             .as_str()
             .unwrap_or_default()

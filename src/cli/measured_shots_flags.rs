@@ -2,14 +2,14 @@
 
 use super::config_files::{load_physics, read_text};
 use super::failure::{Failure, refuse_missing};
-use super::value_parsers::{PhysicsArg, UnitsArg};
+use super::value_parsers::UnitsArg;
 use crate::dynamics::Simulator;
 use crate::fitting::{
     FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tails, Tracker,
     TrackerNoise, fit_shooter, tails_of,
 };
 use crate::measured_shots::columns::{Columns, Label};
-use crate::measured_shots::court_frame::CourtFrame;
+use crate::measured_shots::court_frame::{CourtFrame, OntoCourt};
 use crate::measured_shots::read::read;
 use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
@@ -18,13 +18,16 @@ use crate::model::Physics;
 use crate::output::fit_files::fit_json::FitSource;
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What a file of measured shots does not say by itself.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct MeasuredShotsOptions {
-    #[command(flatten)]
-    pub(crate) physics: PhysicsArg,
+    /// The physics: a preset (paper, ncaa, ncaa_women, nba, wnba, fiba, fiba_women, youth), or a
+    /// TOML file with a [physics] table [default: ncaa, the men's college ball and hoop].
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub(crate) physics: Option<String>,
     /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a
     /// TOML file with its noise, one standard deviation each: speed = "0.05 ft/s", pitch, polar,
     /// backspin; or depth = "0.5 in", left_right, entry_angle; or position [default: lab for
@@ -44,12 +47,13 @@ pub(crate) struct MeasuredShotsOptions {
     /// `compare-sessions` takes two, and compares them.
     #[arg(long, value_name = "NAME")]
     pub(crate) session: Vec<String>,
-    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre) or court_94x50
-    /// (from a corner).
+    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre, y to the right of
+    /// who faces the hoop) or court_94x50 (from a corner). z is upwards.
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
     pub(crate) frame: String,
     /// Instead of --frame: where the hoop's centre is in the coordinates of the file, and the
-    /// direction of x that leads onto the court, such as '5.25 ft,25 ft,+x'.
+    /// direction that leads from it onto the court (+x, -x, +y or -y), such as '5.25 ft,25 ft,+x'.
+    /// The coordinates must be right-handed: facing +x, +y is to the left.
     #[arg(long, value_name = "X,Y,DIRECTION", allow_hyphen_values = true)]
     pub(crate) hoop: Option<String>,
     /// Distance of the place from the hoop's centre, where the file has no column for it.
@@ -58,9 +62,10 @@ pub(crate) struct MeasuredShotsOptions {
     /// Angle of the place on the court [default: 0 deg].
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub(crate) angle: Option<String>,
-    /// Height of the release above the floor.
-    #[arg(long, value_name = "LENGTH")]
-    pub(crate) release_height: Option<String>,
+    /// Height of the release above the floor. Of a file with several shooters it may be repeated,
+    /// one for each: 'Ana=6.9 ft'.
+    #[arg(long, value_name = "[NAME=]LENGTH")]
+    pub(crate) release_height: Vec<String>,
     /// Backspin, where it was not measured [default: that of the population, 2.5 rev/s give or take
     /// 0.25].
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
@@ -116,6 +121,28 @@ fn quantity(
         units::parse(text, dimension).map_err(|error| Failure::usage(format!("--{flag}: {error}")))
     })
     .transpose()
+}
+
+/// Keeps the rows of one shooter; of all, if none is named.
+fn keep_shooter(table: &mut Table, columns: &Columns, wanted: Option<&str>) -> Result<(), String> {
+    let Some(wanted) = wanted else {
+        return Ok(());
+    };
+    let index = columns.label(Label::Shooter);
+    let shooter = |cells: &[String]| {
+        let cell = index.and_then(|index| cells.get(index));
+        cell.map_or("", |cell| cell.trim()).to_owned()
+    };
+    let known: BTreeSet<String> = table.rows.iter().map(|(_, cells)| shooter(cells)).collect();
+    if !known.contains(wanted) {
+        let all = match index {
+            None => "no column shooter (name it with --map 'shooter=COLUMN')".to_owned(),
+            Some(_) => known.into_iter().collect::<Vec<_>>().join(", "),
+        };
+        return Err(format!("has no shooter \"{wanted}\"; it has {all}"));
+    }
+    table.rows.retain(|(_, cells)| shooter(cells) == wanted);
+    Ok(())
 }
 
 /// Keeps the rows of some sessions; of all, if none is named.
@@ -212,7 +239,7 @@ impl MeasuredShotsOptions {
     /// The first option given that says something about a file, or about how to fit it.
     pub(crate) fn first_about_a_file(&self) -> Option<&'static str> {
         [
-            ("--physics", self.physics.physics.is_some()),
+            ("--physics", self.physics.is_some()),
             ("--tracker", self.tracker.is_some()),
             ("--map", !self.map.is_empty()),
             ("--shooter", self.shooter.is_some()),
@@ -220,7 +247,7 @@ impl MeasuredShotsOptions {
             ("--hoop", self.hoop.is_some()),
             ("--distance", self.distance.is_some()),
             ("--angle", self.angle.is_some()),
-            ("--release-height", self.release_height.is_some()),
+            ("--release-height", !self.release_height.is_empty()),
             ("--backspin", self.backspin.is_some()),
             ("--tails", self.tails != TailsArg::Auto),
         ]
@@ -251,9 +278,9 @@ impl MeasuredShotsOptions {
         let columns = Columns::new(&table.header, &self.maps()?)
             .map_err(|errors| refuse(errors.join("\n")))?;
         keep_sessions(&mut table, &columns, sessions).map_err(refuse)?;
+        keep_shooter(&mut table, &columns, self.shooter.as_deref()).map_err(refuse)?;
         let source = Source::of(&columns).map_err(refuse)?;
         let physics_name = self
-            .physics
             .physics
             .clone()
             .unwrap_or_else(|| USUAL_PHYSICS.to_owned());
@@ -265,22 +292,11 @@ impl MeasuredShotsOptions {
             frame: self.frame()?,
             distance_m: quantity("distance", self.distance.as_ref(), Dimension::Length)?,
             court_angle_rad: quantity("angle", self.angle.as_ref(), Dimension::Angle)?,
-            release_height_m: quantity(
-                "release-height",
-                self.release_height.as_ref(),
-                Dimension::Length,
-            )?,
+            release_heights_m: self.release_heights_m()?,
             backspin_rad_s,
             noise,
         };
-        let mut shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
-        if let Some(name) = &self.shooter {
-            let all = names_of(&shooters);
-            shooters.retain(|shooter| shooter.name == *name);
-            if shooters.is_empty() {
-                return Err(refuse(format!("has no shooter \"{name}\"; it has {all}")));
-            }
-        }
+        let shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
         let bytes = std::fs::read(path).map_err(|error| Failure::io(path.display(), &error))?;
         Ok(MeasuredFile {
             shooters,
@@ -299,6 +315,36 @@ impl MeasuredShotsOptions {
         })
     }
 
+    /// The heights of the release: of each shooter who is named, and of all others.
+    fn release_heights_m(&self) -> Result<Vec<(Option<String>, f64)>, Failure> {
+        let height = |text: &String| {
+            let (name, length) = match text.rsplit_once('=') {
+                Some((name, length)) => (Some(name.trim().to_owned()), length.trim()),
+                None => (None, text.as_str()),
+            };
+            let height_m = units::parse(length, Dimension::Length)
+                .map_err(|error| Failure::usage(format!("--release-height: {error}")))?;
+            Ok((name, height_m))
+        };
+        let heights: Vec<(Option<String>, f64)> = self
+            .release_height
+            .iter()
+            .map(height)
+            .collect::<Result<_, Failure>>()?;
+        for (k, (name, _)) in heights.iter().enumerate() {
+            if heights[..k].iter().any(|(known, _)| known == name) {
+                return Err(Failure::usage(match name {
+                    Some(name) => format!("--release-height: {name} has two"),
+                    None => {
+                        "--release-height: is given twice; for several shooters write 'NAME=7 ft'"
+                            .to_owned()
+                    }
+                }));
+            }
+        }
+        Ok(heights)
+    }
+
     fn frame(&self) -> Result<CourtFrame, Failure> {
         let Some(hoop) = &self.hoop else {
             return CourtFrame::named(&self.frame).ok_or_else(|| {
@@ -310,7 +356,7 @@ impl MeasuredShotsOptions {
         };
         let refuse = || {
             Failure::usage(format!(
-                "--hoop '{hoop}': must be two lengths and a direction, such as '5.25 ft,25 ft,+x'"
+                "--hoop '{hoop}': must be two lengths and a direction (+x, -x, +y or -y), such as '5.25 ft,25 ft,+x'"
             ))
         };
         let parts: Vec<&str> = hoop.split(',').map(str::trim).collect();
@@ -318,12 +364,8 @@ impl MeasuredShotsOptions {
             return Err(refuse());
         };
         let length = |text: &str| units::parse(text, Dimension::Length).map_err(|_| refuse());
-        let sign = match direction {
-            "+x" => 1.0,
-            "-x" => -1.0,
-            _ => return Err(refuse()),
-        };
-        Ok(CourtFrame::HoopAt(length(x)?, length(y)?, sign))
+        let onto_court = OntoCourt::named(direction).ok_or_else(refuse)?;
+        Ok(CourtFrame::HoopAt([length(x)?, length(y)?], onto_court))
     }
 
     fn noise(&self, source: Source) -> Result<(TrackerNoise, (String, String)), Failure> {

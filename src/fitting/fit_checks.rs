@@ -6,6 +6,7 @@ use super::posterior::{Draw, SpinSource, Tails};
 use super::session_trends::SessionTrend;
 use crate::math::normal_distribution::cdf;
 use crate::model::Physics;
+use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use nalgebra::{SMatrix, SVector};
 
 /// Why shots cannot be fitted.
@@ -86,8 +87,9 @@ pub enum FitWarning {
     NotNormal([f64; 2], bool),
     /// The tails are heavier than normal ones, and were fitted: one over the degrees of freedom.
     HeavyTails(f64),
-    /// The aim drifts within the sessions: value, p-value.
-    Drift(&'static str, f64),
+    /// The aim drifts within the sessions: value, p-value, and by how much from the first shot to
+    /// the last (m/s, rad or rad/s).
+    Drift(&'static str, f64, f64),
     /// The means of the sessions differ: value, p-value.
     SessionsDiffer(&'static str, f64),
     /// The scatter of sessions differs: value, p-value.
@@ -148,9 +150,10 @@ impl std::fmt::Display for FitWarning {
                     shown.collect::<Vec<_>>().join(", ")
                 )
             }
-            Self::Drift(name, p) => write!(
+            Self::Drift(name, p, by) => write!(
                 out,
-                "{name} drifts from the first shot to the last ({})",
+                "{name} drifts by {} from the first shot to the last ({}): the last shots are not as the mean, which P and advice are about",
+                drift_in_words(name, *by),
                 p_value(*p)
             ),
             Self::SessionsDiffer(name, p) => write!(
@@ -172,8 +175,29 @@ impl std::fmt::Display for FitWarning {
     }
 }
 
+/// How much and to which side a value drifts.
+fn drift_in_words(name: &str, by: f64) -> String {
+    let size = by.abs();
+    let side = |words: [&'static str; 2]| words[usize::from(by < 0.0)];
+    match name {
+        "pitch" => format!("{:.1} deg {}", size / DEGREE_RAD, side(["up", "down"])),
+        "polar" => format!(
+            "{:.1} deg {}",
+            size / DEGREE_RAD,
+            side(["to the left", "to the right"])
+        ),
+        "speed" => format!(
+            "{:.2} ft/s ({size:.2} m/s) {}",
+            size / FOOT_M,
+            side(["up", "down"])
+        ),
+        _ => format!("{:.2} rev/s {}", size / REV_RAD, side(["up", "down"])),
+    }
+}
+
 /// `p = 0.0031`, or `p < 0.0001`.
-fn p_value(p: f64) -> String {
+#[must_use]
+pub fn p_value(p: f64) -> String {
     if p < 1e-4 {
         "p < 0.0001".to_owned()
     } else {
@@ -451,7 +475,7 @@ pub fn warnings(
             warnings.push(FitWarning::ScatterDiffers(trend.name, p));
         }
         if trend.drift_p < WARNING_LEVEL {
-            warnings.push(FitWarning::Drift(trend.name, trend.drift_p));
+            warnings.push(FitWarning::Drift(trend.name, trend.drift_p, trend.drift));
         }
         if trend.serial_p < WARNING_LEVEL {
             warnings.push(FitWarning::SerialCorrelation(trend.name, trend.serial_p));

@@ -22,6 +22,7 @@ mod flight_fit;
 mod interval;
 mod landing;
 mod measured_release;
+mod other_release_height;
 mod posterior;
 mod prior;
 mod session_comparison;
@@ -29,6 +30,7 @@ mod session_trends;
 mod shooter_fit;
 mod student_posterior;
 mod test_design;
+mod tracked_flight_noise;
 mod tracker_noise;
 mod unmeasured_parameter_likelihood;
 
@@ -43,7 +45,7 @@ pub use expected_makes::{
 };
 pub use fit_checks::{
     FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, check_releases,
-    check_speed_unit, far_shots, shape_test, tails_of, warnings,
+    check_speed_unit, far_shots, p_value, shape_test, tails_of, warnings,
 };
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};
@@ -52,6 +54,7 @@ pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_
 pub use measured_release::{
     Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,
 };
+pub use other_release_height::values_at_height;
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
 pub use prior::{PopulationPrior, Spread};
 pub use session_comparison::{
@@ -61,5 +64,6 @@ pub use session_comparison::{
 pub use session_trends::{SessionTrend, session_names, trends};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
 pub use test_design::{DesignRow, design, simulated_test};
+pub use tracked_flight_noise::tracked_flight_noise;
 pub use tracker_noise::{Tracker, TrackerNoise};
 pub use unmeasured_parameter_likelihood::{LikelihoodCurve, UnseenParameter, likelihood_curve};

@@ -1,6 +1,6 @@
 //! What to write as `--map` for a file whose columns have other names.
 
-use super::columns::{Columns, OTHER_UNITS, Quantity, in_unit};
+use super::columns::{Columns, Label, OTHER_UNITS, Quantity, in_unit};
 use crate::fitting::CENTRE_DEPTH_M;
 
 /// Parts of the names that others give to a quantity or a label, in small letters without spaces.
@@ -185,11 +185,12 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         text += "\n  release_height is that of the ball when it leaves the hand: leave it out if the \
                  column has the player's height";
     }
+    text += "\n  without --physics the shots are taken to be at the men's college ball and hoop (ncaa)";
     let is_known = |quantity: Quantity| {
         taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
     };
     if is_tracked {
-        text += "\n  x, y and z are taken from the hoop's centre, z upwards; for another origin give --frame or --hoop";
+        text += "\n  x, y and z are taken from the hoop's centre (x onto the court, y to the right of who faces the hoop, z upwards); for another origin give --frame, or --hoop such as '7.2 m,12.45 m,-y'";
     } else if !is_known(Quantity::Time) {
         let missing: Vec<&str> = [
             (Quantity::Distance, "--distance '13.75 ft'"),
@@ -203,6 +204,9 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
                 "\nand, as no column says where the shots are from: {}",
                 missing.join(" ")
             );
+            if taken.contains(&"shooter") || columns.label(Label::Shooter).is_some() {
+                text += "\n  (each shooter can have a height: --release-height 'NAME=6.9 ft', repeated)";
+            }
         }
     }
     text
@@ -228,7 +232,7 @@ fn tracked_target(name: &str) -> Option<&'static str> {
     let axis = words.find_map(|word| {
         ["x", "y", "z"].into_iter().find(|axis| {
             let rest = word.strip_prefix(axis).or_else(|| word.strip_suffix(axis));
-            matches!(rest, Some("" | "p" | "pos" | "ball" | "position"))
+            matches!(rest, Some("" | "b" | "p" | "pos" | "ball" | "position"))
         })
     });
     let is_time = match first_word(&lower) {

@@ -9,8 +9,45 @@ pub enum CourtFrame {
     Hoop,
     /// The corner of a court of 94 by 50 ft: x along it, y across; either hoop.
     Court94By50,
-    /// A hoop at a point, with the court on the side of greater x (1) or smaller x (-1), m.
-    HoopAt(f64, f64, f64),
+    /// A hoop at a point (m), and the direction that leads from it onto the court.
+    HoopAt([f64; 2], OntoCourt),
+}
+
+/// The axis of a tracking system that leads from the hoop onto the court.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OntoCourt {
+    /// Greater x.
+    PlusX,
+    /// Smaller x.
+    MinusX,
+    /// Greater y.
+    PlusY,
+    /// Smaller y.
+    MinusY,
+}
+
+impl OntoCourt {
+    /// The direction of a name such as `-y`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "+x" => Some(Self::PlusX),
+            "-x" => Some(Self::MinusX),
+            "+y" => Some(Self::PlusY),
+            "-y" => Some(Self::MinusY),
+            _ => None,
+        }
+    }
+
+    /// A point along the court and across: turned about the vertical, so that left and right stay.
+    fn turned(self, x: f64, y: f64) -> (f64, f64) {
+        match self {
+            Self::PlusX => (x, y),
+            Self::MinusX => (-x, -y),
+            Self::PlusY => (y, -x),
+            Self::MinusY => (-y, x),
+        }
+    }
 }
 
 /// Distance of a hoop's centre from the end of a court of 94 by 50 ft, and half its width, m.
@@ -33,22 +70,42 @@ impl CourtFrame {
     /// and across.
     #[must_use]
     pub fn from_hoop(&self, track: &[(f64, f64)]) -> Vec<(f64, f64)> {
-        let (x0, y0, sign) = match *self {
-            Self::Hoop => (0.0, 0.0, 1.0),
-            Self::HoopAt(x, y, sign) => (x, y, sign),
+        let ([x0, y0], onto_court) = match *self {
+            Self::Hoop => ([0.0, 0.0], OntoCourt::PlusX),
+            Self::HoopAt(hoop, onto_court) => (hoop, onto_court),
             Self::Court94By50 => {
                 let ends_left = track.last().is_none_or(|(x, _)| *x < 0.5 * COURT_LENGTH_M);
                 if ends_left {
-                    (FROM_END_M, HALF_WIDTH_M, 1.0)
+                    ([FROM_END_M, HALF_WIDTH_M], OntoCourt::PlusX)
                 } else {
-                    (COURT_LENGTH_M - FROM_END_M, HALF_WIDTH_M, -1.0)
+                    let hoop = [COURT_LENGTH_M - FROM_END_M, HALF_WIDTH_M];
+                    (hoop, OntoCourt::MinusX)
                 }
             }
         };
-        // Turned by half a turn for the other hoop, so that left and right stay.
         track
             .iter()
-            .map(|(x, y)| (sign * (x - x0), sign * (y - y0)))
+            .map(|(x, y)| onto_court.turned(x - x0, y - y0))
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball a metre in front of the hoop and half a metre to the right of who looks at it, in
+    /// four systems that are turned about the vertical.
+    #[test]
+    fn contract_turned_coordinates_keep_left_and_right() {
+        for (onto_court, ball) in [
+            (OntoCourt::PlusX, (3.0, 4.5)),
+            (OntoCourt::PlusY, (1.5, 5.0)),
+            (OntoCourt::MinusX, (1.0, 3.5)),
+            (OntoCourt::MinusY, (2.5, 3.0)),
+        ] {
+            let frame = CourtFrame::HoopAt([2.0, 4.0], onto_court);
+            assert_eq!(frame.from_hoop(&[ball]), [(1.0, 0.5)], "{onto_court:?}");
+        }
     }
 }

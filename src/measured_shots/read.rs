@@ -57,6 +57,7 @@ pub fn read(
     if by_shooter.is_empty() {
         return Err("has no rows".to_owned());
     }
+    check_named_heights(&reader, &by_shooter.keys().collect::<Vec<_>>())?;
     let mut shooters = Vec::new();
     for (name, rows) in by_shooter {
         let mut shooter = shooter(&reader, name, &rows)?;
@@ -70,11 +71,25 @@ pub fn read(
 /// What is given as an option must not be in the file too.
 fn check_options(reader: &RowReader<'_>) -> Result<(), String> {
     let options = reader.options;
+    if reader.source == Source::Trajectories {
+        let place = [
+            (options.distance_m, "--distance"),
+            (options.court_angle_rad, "--angle"),
+        ];
+        if let Some((_, flag)) = place.iter().find(|(given, _)| given.is_some()) {
+            return Err(format!(
+                "holds trajectories, which say where each shot is from; leave {flag} out"
+            ));
+        }
+    }
     for (given, quantity, flag) in [
         (options.distance_m, Quantity::Distance, "--distance"),
         (options.court_angle_rad, Quantity::CourtAngle, "--angle"),
         (
-            options.release_height_m,
+            options
+                .release_heights_m
+                .first()
+                .map(|(_, height_m)| *height_m),
             Quantity::ReleaseHeight,
             "--release-height",
         ),
@@ -90,6 +105,31 @@ fn check_options(reader: &RowReader<'_>) -> Result<(), String> {
     Ok(())
 }
 
+/// Refuses a height for a shooter that the file does not have, and a shooter without one.
+fn check_named_heights(reader: &RowReader<'_>, shooters: &[&String]) -> Result<(), String> {
+    let heights = &reader.options.release_heights_m;
+    let listed = || {
+        let names = shooters.iter().map(|name| name.as_str());
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let named = heights.iter().filter_map(|(name, _)| name.as_ref());
+    for name in named {
+        if !shooters.contains(&name) {
+            return Err(format!(
+                "has no shooter \"{name}\" for --release-height; it has {}",
+                listed()
+            ));
+        }
+    }
+    let lacks = |name: &&&String| reader.options.release_height_m(name).is_none();
+    match shooters.iter().find(lacks) {
+        Some(name) if !heights.is_empty() => Err(format!(
+            "--release-height gives none for {name}: add '{name}=7 ft', or '7 ft' for all others"
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Refuses a file that does not say where its shots are from.
 fn check_place(reader: &RowReader<'_>) -> Result<(), String> {
     if reader.source == Source::Trajectories {
@@ -100,7 +140,8 @@ fn check_place(reader: &RowReader<'_>) -> Result<(), String> {
     if !has(Quantity::Distance) && reader.options.distance_m.is_none() {
         missing.push("column distance_ft, or --distance '13.75 ft'");
     }
-    if !has(Quantity::ReleaseHeight) && reader.options.release_height_m.is_none() {
+    let heights = &reader.options.release_heights_m;
+    if !has(Quantity::ReleaseHeight) && heights.is_empty() {
         missing.push("column release_height_ft, or --release-height '7 ft'");
     }
     if !missing.is_empty() {
@@ -115,7 +156,9 @@ fn check_place(reader: &RowReader<'_>) -> Result<(), String> {
         reader.location(&[])?;
     }
     if !has(Quantity::ReleaseHeight) {
-        check_release_height(reader.options.release_height_m.unwrap_or(0.0))?;
+        for (_, height_m) in heights {
+            check_release_height(*height_m)?;
+        }
     }
     Ok(())
 }

@@ -97,7 +97,10 @@ impl RowReader<'_> {
         let location = self.location(cells)?;
         let release_height_m = self
             .value(cells, Quantity::ReleaseHeight)?
-            .or(self.options.release_height_m)
+            .or_else(|| {
+                let shooter = self.label(cells, Label::Shooter).unwrap_or_default();
+                self.options.release_height_m(shooter)
+            })
             .unwrap_or(0.0);
         check_release_height(release_height_m)?;
         Ok(Place {

@@ -8,7 +8,7 @@ use crate::fitting::{
 };
 
 /// What the file does not say.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct ReadOptions {
     /// The coordinates of trajectories.
     pub frame: CourtFrame,
@@ -16,12 +16,24 @@ pub struct ReadOptions {
     pub distance_m: Option<f64>,
     /// Its angle on the court, rad.
     pub court_angle_rad: Option<f64>,
-    /// Height of the release above the floor, m.
-    pub release_height_m: Option<f64>,
+    /// Heights of the release above the floor, m: of a shooter, or of all who have none.
+    pub release_heights_m: Vec<(Option<String>, f64)>,
     /// Backspin, rad/s.
     pub backspin_rad_s: Option<f64>,
     /// The tracker's errors.
     pub noise: TrackerNoise,
+}
+
+impl ReadOptions {
+    /// The height of the release of a shooter, m.
+    #[must_use]
+    pub fn release_height_m(&self, shooter: &str) -> Option<f64> {
+        let of = |name: Option<&str>| {
+            let mut heights = self.release_heights_m.iter();
+            heights.find_map(|(known, height_m)| (known.as_deref() == name).then_some(*height_m))
+        };
+        of(Some(shooter)).or_else(|| of(None))
+    }
 }
 
 /// The measured shots of one shooter.

@@ -25,6 +25,13 @@ impl Source {
         }
     }
 
+    /// The source of a word.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [Self::Releases, Self::Landings, Self::Trajectories];
+        all.into_iter().find(|source| source.name() == name)
+    }
+
     /// The tracker that is taken where none is named.
     #[must_use]
     pub fn usual_tracker(self) -> &'static str {

@@ -41,18 +41,15 @@ impl Table {
             unreadable: Vec::new(),
             row_name: if is_parquet { "row" } else { "line" },
         };
-        let text = |record: &csv::ByteRecord| -> Vec<String> {
-            let cells = record.iter();
-            cells
-                .map(|cell| String::from_utf8_lossy(cell).trim().to_owned())
-                .collect()
-        };
+        let mut separator = b',';
         let mut next: Box<dyn FnMut() -> Result<Vec<_>, String>> = if is_parquet {
             let mut rows = ParquetRows::open(file).map_err(|error| error.to_string())?;
-            table.header = text(&rows.header());
+            table.header = text(&rows.header(), b',');
             Box::new(move || rows.next_rows(BLOCK.0, BLOCK.1).map_err(|e| e.to_string()))
         } else {
-            let mut records = CsvRecords::new(file).map_err(|error| error.to_string())?;
+            let mut records =
+                CsvRecords::with_any_separator(file).map_err(|error| error.to_string())?;
+            separator = records.separator();
             Box::new(move || {
                 records
                     .next_rows(BLOCK.0, BLOCK.1)
@@ -66,8 +63,8 @@ impl Table {
             }
             for row in rows {
                 match row.cells {
-                    Ok(cells) if table.header.is_empty() => table.header = text(&cells),
-                    Ok(cells) => table.rows.push((row.number, text(&cells))),
+                    Ok(cells) if table.header.is_empty() => table.header = text(&cells, separator),
+                    Ok(cells) => table.rows.push((row.number, text(&cells, separator))),
                     Err(reason) if reason == "is empty" => {}
                     Err(reason) => table.unreadable.push((row.number, reason)),
                 }
@@ -80,25 +77,6 @@ impl Table {
         }
         if table.header.is_empty() {
             return Err("is empty".to_owned());
-        }
-        let is_split_at = |separator: char| {
-            // A name may hold a comma, so the rows are looked at too.
-            let is_split = |cells: &[String]| {
-                let parts = cells.iter().map(|cell| cell.matches(separator).count());
-                parts.sum::<usize>() >= 2 * cells.len()
-            };
-            is_split(&table.header) || table.rows.first().is_some_and(|(_, cells)| is_split(cells))
-        };
-        for (separator, name, command) in [
-            (';', "semicolons", "tr ';,' ',.'"),
-            ('\t', "tabs", "tr '\\t' ','"),
-        ] {
-            if is_split_at(separator) {
-                return Err(format!(
-                    "its columns are separated by {name}; save it with commas between columns and points in numbers, or write {command} < {0} > commas.csv",
-                    path.display()
-                ));
-            }
         }
         // A comma at the end of the first line names no column.
         while table.header.last().is_some_and(String::is_empty) {
@@ -116,4 +94,26 @@ impl Table {
         }
         Ok(table)
     }
+}
+
+/// The cells of a record. Where no comma separates them, one in a number is its decimal point.
+fn text(record: &csv::ByteRecord, separator: u8) -> Vec<String> {
+    let cells = record.iter().map(|cell| {
+        let cell = String::from_utf8_lossy(cell).trim().to_owned();
+        if separator != b',' && is_number_with_comma(&cell) {
+            cell.replace(',', ".")
+        } else {
+            cell
+        }
+    });
+    cells.collect()
+}
+
+/// Whether a cell is a number with a decimal comma: `-5,7`.
+fn is_number_with_comma(cell: &str) -> bool {
+    let digits = cell.strip_prefix(['-', '+']).unwrap_or(cell);
+    let are_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    digits
+        .split_once(',')
+        .is_some_and(|(whole, part)| are_digits(whole) && are_digits(part) && !part.is_empty())
 }

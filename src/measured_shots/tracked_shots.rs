@@ -49,7 +49,11 @@ pub(super) fn tracked_shots(
         .collect();
     let noise = &reader.options.noise;
     let backspin = reader.options.backspin_rad_s.unwrap_or(0.0);
-    let height = reader.options.release_height_m.unwrap_or_else(|| {
+    let shooter = rows
+        .first()
+        .and_then(|(_, cells)| reader.label(cells, Label::Shooter))
+        .unwrap_or_default();
+    let height = reader.options.release_height_m(shooter).unwrap_or_else(|| {
         let begins = tracks.par_iter().filter_map(|(_, _, track)| {
             let (points, _) = track.as_ref().ok()?;
             let fit = fit_flight(reader.simulator, points, noise, LOW_RELEASE_M, backspin).ok()?;

@@ -269,12 +269,7 @@ fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<S
     for limit in &shot.at_limits {
         notes.push(format!("{kind}: {}.", limit_text(*limit)));
     }
-    let probability = shot.estimate.probability;
-    let banked = shot.estimate.shares.banked() / probability.max(f64::MIN_POSITIVE);
-    let of_other_kind = match kind_of_shot {
-        ShotKind::Direct => banked,
-        ShotKind::Bank => 1.0 - banked,
-    };
+    let of_other_kind = shot.share_of_other_kind(kind_of_shot);
     if of_other_kind > 0.5 {
         let touch = match kind_of_shot {
             ShotKind::Direct => "touch the board first",

@@ -38,7 +38,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let found: Vec<(f64, &PlaceProbabilities)> = results
         .chances()
         .iter()
-        .filter_map(|place| Some((place.best()?.value, place)))
+        .filter_map(|place| Some((place.told()?.value, place)))
         .collect();
     let first = found.first().copied()?;
     let best = found.iter().copied();

@@ -31,7 +31,8 @@ pub fn fit_page(
             kind: ShotKind::of(profile, &nominal),
             nominal,
             probability: p.mean,
-            standard_error: p.sd,
+            // The caption gives the interval of the draws in words, not a numerical error.
+            standard_error: 0.0,
         },
         mirror_of: None,
     };

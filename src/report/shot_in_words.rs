@@ -27,10 +27,14 @@ impl ReportShot {
         if let Some(first) = kind.get_mut(0..1) {
             first.make_ascii_uppercase();
         }
+        // The numerical error, where P has no interval of its own.
+        let error = match self.shot.standard_error {
+            error if error > 0.0 => format!(" \u{b1} {error:.3}"),
+            _ => String::new(),
+        };
         format!(
-            "{kind}: P {:.3} \u{b1} {:.3}; {:.2} {long}/s, pitch {:.1} deg, polar {:.1} deg, backspin {:.1} rev/s.",
+            "{kind}: P {:.3}{error}; {:.2} {long}/s, pitch {:.1} deg, polar {:.1} deg, backspin {:.1} rev/s.",
             self.shot.probability,
-            self.shot.standard_error,
             nominal.speed_m_s / unit_m,
             nominal.pitch_rad / DEGREE_RAD,
             // Adding 0 turns a negative zero into zero.

@@ -129,6 +129,14 @@ impl PlaceProbabilities {
         both.reduce(|a, b| if b.value > a.value { b } else { a })
     }
 
+    /// P of the kind to tell the player: the greater one, but that of the direct shot where the
+    /// draws of the fit leave doubt that the bank shot is better.
+    #[must_use]
+    pub fn told(&self) -> Option<Difference> {
+        let is_doubtful = self.preference() == Some(Preference::Bank) && !self.is_sure();
+        self.direct.filter(|_| is_doubtful).or_else(|| self.best())
+    }
+
     /// Which kind to shoot; `None` without any shot.
     #[must_use]
     pub fn preference(&self) -> Option<Preference> {

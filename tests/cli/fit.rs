@@ -321,11 +321,6 @@ fn contract_columns_in_another_unit_or_place_are_refused() {
             changed(&|v| v[1] -= 9.0),
             "but 89 of 125 shots went in",
         ),
-        (
-            "semicolons",
-            text.replace(',', ";"),
-            "its columns are separated by semicolons",
-        ),
     ] {
         let path = folder.path().join(format!("{name}.csv"));
         fs::write(&path, text).unwrap();
@@ -334,6 +329,31 @@ fn contract_columns_in_another_unit_or_place_are_refused() {
         assert!(answer.stderr.contains(message), "{name}: {}", answer.stderr);
         assert!(!out.join("fit.json").exists(), "{name}");
     }
+}
+
+/// What a spreadsheet saves where the decimal separator is a comma, and a table with tabs: the same
+/// fit. A name may hold a comma.
+#[test]
+fn contract_semicolons_with_decimal_commas_are_read() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/gym_sensor.csv").unwrap();
+    let semicolons =
+        text.replace(',', ";")
+            .replace('.', ",")
+            .replacen("depth_in", "\"Depth, in\"", 1);
+    let map = ["--map", "depth=Depth, in:in"];
+    let fitted = |name: &str, text: &str, more: &[&str]| {
+        let path = folder.path().join(format!("{name}.csv"));
+        fs::write(&path, text).unwrap();
+        let out = folder.path().join(name);
+        fit(path.to_str().unwrap(), &out, more).exits(0);
+        let json: serde_json::Value =
+            serde_json::from_slice(&fs::read(out.join("fit.json")).unwrap()).unwrap();
+        json["parameters"].clone()
+    };
+    let commas = fitted("commas", &text, &[]);
+    assert_eq!(fitted("semicolons", &semicolons, &map), commas);
+    assert_eq!(fitted("tabs", &text.replace(',', "\t"), &[]), commas);
 }
 
 /// Releases of one place whose heights differ by inches are those of one place; a jump of two feet

@@ -32,7 +32,8 @@ pub(crate) struct AdviseOptions {
     /// Print one JSON object for each shooter and place instead of text.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print the first sentences alone, of each shooter and place.
+    /// Print only what to tell the player, of each shooter and place: the first sentences, how the
+    /// ball should come down, and bank against direct.
     #[arg(long, conflicts_with = "json")]
     pub(crate) brief: bool,
 }

@@ -7,9 +7,9 @@ use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{
-    DrawProbabilities, MeasuredRelease, Posterior, ProbabilityChange, SessionComparison,
+    DrawProbabilities, MeasuredRelease, Place, Posterior, ProbabilityChange, SessionComparison,
     ShooterFit, SpinSource, VALUE_NAMES, change_of_share, compare_probabilities, compare_sessions,
-    probability_change, session_names,
+    probability_change, session_names, values_at_height,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::output::fit_files::fit_json::interval_json;
@@ -126,7 +126,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
     }
     let bars = ProgressBars::new(quiet);
     let (mut code, mut several_shooters) = (code::DONE, false);
-    let compared: Vec<[Session; 2]> = match &options.after {
+    let mut compared: Vec<[Session; 2]> = match &options.after {
         Some(after) => vec![[read(&options.before, options)?, read(after, options)?]],
         None if options.before.is_dir() => {
             return Err(Failure::usage(format!(
@@ -161,12 +161,17 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             compared
         }
     };
+    let units = |session: &Session| options.measured.units_or(session.units.unwrap_or_default());
+    for sessions in &mut compared {
+        let units = units(&sessions[0]);
+        to_one_release_height(sessions, units);
+    }
     let mut jsons = Vec::new();
     let mut all = compared.iter().flatten();
     if !options.json
         && let Some(session) = all.find(|session| session.places > 1)
     {
-        let units = options.measured.units_or(session.units.unwrap_or_default());
+        let units = units(session);
         print_prose(&format!(
             "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}{}{}; the scatter is that of all.\n\n",
             session.places,
@@ -288,8 +293,44 @@ fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Brings the means of the second session to the release height of the first, along its usual
+/// flight, where heights of one place were estimated or given apart. P does not depend on it.
+fn to_one_release_height([before, after]: &mut [Session; 2], units: UnitSystem) {
+    let place = Place {
+        location: after.profile.location(),
+        release_height_m: after.profile.shooter().release_height_m,
+    };
+    let height_m = before.profile.shooter().release_height_m;
+    let apart_m = libm::fabs(place.release_height_m - height_m);
+    if !(SAME_HEIGHT_M..=SAME_PLACE_M).contains(&apart_m) {
+        return;
+    }
+    let usual = after.posterior.typical().means[after.place];
+    let simulator = after.profile.simulator();
+    let Some(moved) = values_at_height(simulator, &place, &usual, height_m) else {
+        return;
+    };
+    for draw in &mut after.posterior.draws {
+        for (mean, (to, from)) in draw.means[after.place]
+            .iter_mut()
+            .zip(moved.iter().zip(usual))
+        {
+            *mean += to - from;
+        }
+    }
+    let (long, metre) = units.length();
+    print_remark(&format!(
+        "the release heights are {:.2} and {:.2} {long}: speeds and angles of both sessions are those at {:.2} {long}",
+        height_m / metre,
+        place.release_height_m / metre,
+        height_m / metre,
+    ));
+}
+
 /// Shots that the causes of the change of P are computed with.
 const SHOTS: usize = 65_536;
+/// Release heights nearer than this are the same, m: 0.004 m/s in speed.
+const SAME_HEIGHT_M: f64 = 0.002;
 /// Places nearer than this are the same, m.
 const SAME_PLACE_M: f64 = 0.15;
 

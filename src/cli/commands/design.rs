@@ -12,7 +12,7 @@ use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{self, PhysicsArg, UnitsArg};
 use crate::fitting::{
     Covariance, DesignRow, FitError, Landing, POWER, Place, TWO_SIDED_95, Tracker, TrackerNoise,
-    design, landing_of, nominal_of, release_of_landing, values_of,
+    design, landing_of, nominal_of, release_of_landing, tracked_flight_noise, values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
@@ -69,40 +69,38 @@ struct TrackerOfTest {
     /// Its name or its file, and where its noise is from.
     name: (String, String),
     noise: TrackerNoise,
-    /// Whether it sees landings; else it sees releases.
-    sees_landings: bool,
+    sees: Source,
 }
 
-/// The tracker of a name or of a file. A file with an error of the depth is that of a gym sensor.
-fn tracker_named(name: &str) -> Result<TrackerOfTest, Failure> {
+/// The tracker of a name or of a file. A file with an error of the depth is that of a gym sensor,
+/// one with that of a position a camera's, unless it is known what it `sees`.
+fn tracker_named(name: &str, sees: Option<Source>) -> Result<TrackerOfTest, Failure> {
     let is_file = Tracker::named(name).is_none();
     let keys: toml::Table = if is_file && Path::new(name).exists() {
         read_text(Path::new(name))?.parse().unwrap_or_default()
     } else {
         toml::Table::new()
     };
-    if keys.contains_key("position") {
-        return Err(Failure::usage(format!(
-            "{name}: position: a test is designed for errors of releases (speed, pitch, polar) or of landings (depth, left_right, entry_angle)"
-        )));
-    }
-    let sees_landings = name == "noah" || keys.contains_key("depth");
-    let source = if sees_landings {
+    let sees = if let Some(sees) = sees {
+        sees
+    } else if name == "noah" || keys.contains_key("depth") {
         Source::Landings
+    } else if name.starts_with("optical_") || keys.contains_key("position") {
+        Source::Trajectories
     } else {
         Source::Releases
     };
-    let (noise, name) = tracker_noise(name, source)?;
-    Ok(TrackerOfTest {
-        name,
-        noise,
-        sees_landings,
-    })
+    let (noise, name) = tracker_noise(name, sees)?;
+    Ok(TrackerOfTest { name, noise, sees })
 }
 
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
-    let named = options.tracker.as_deref().map(tracker_named).transpose()?;
-    let (profile, nominal, own_tracker, own_units) = if options.profile.is_dir() {
+    let named = options
+        .tracker
+        .as_deref()
+        .map(|name| tracker_named(name, None))
+        .transpose()?;
+    let (profile, nominal, (own_tracker, sees), own_units) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let place = fit.place_numbered(options.place)?;
         let usual = nominal_of(&fit.posterior.typical().means[place]);
@@ -114,7 +112,8 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 fit.profiles[place].location().in_words(fit.units)
             ));
         }
-        (fit.profiles[place].clone(), usual, fit.tracker, fit.units)
+        let tracker = (fit.tracker, Some(fit.source));
+        (fit.profiles[place].clone(), usual, tracker, fit.units)
     } else if options.place.is_some() {
         return Err(Failure::usage(
             "--place: only the folder of a fit has places",
@@ -127,12 +126,12 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             best_nominal(&profile, quiet)?
         };
         let units = profile.output().units;
-        (profile, nominal, "lab".to_owned(), units)
+        (profile, nominal, ("lab".to_owned(), None), units)
     };
     let units = options.units.map_or(own_units, UnitSystem::from);
     let tracker = match named {
         Some(tracker) => tracker,
-        None => tracker_named(&own_tracker)?,
+        None => tracker_named(&own_tracker, sees)?,
     };
     let noise = noise(&tracker, &profile, &nominal)?;
     let bars = ProgressBars::new(quiet);
@@ -337,24 +336,23 @@ fn noise(
     profile: &Profile,
     nominal: &Nominal,
 ) -> Result<Covariance, Failure> {
-    if !tracker.sees_landings {
-        return Ok(tracker.noise.release_covariance());
-    }
     let place = Place {
         location: profile.location(),
         release_height_m: profile.shooter().release_height_m,
     };
-    let values = values_of(nominal);
-    let refuse = || Failure::usage("the usual shot does not fall through the height of the hoop");
-    let landing: Landing = landing_of(profile.simulator(), &place, &values).ok_or_else(refuse)?;
-    let simulator = profile.simulator();
-    release_of_landing(
-        simulator,
-        &place,
-        &landing,
-        &tracker.noise.landing,
-        values[3],
-    )
-    .map(|(_, covariance)| covariance)
-    .map_err(|_| refuse())
+    let (simulator, values) = (profile.simulator(), values_of(nominal));
+    match tracker.sees {
+        Source::Releases => Ok(tracker.noise.release_covariance()),
+        Source::Trajectories => tracked_flight_noise(simulator, &place, &values, &tracker.noise)
+            .map_err(|error| Failure::usage(format!("the usual shot, as tracked: {error}"))),
+        Source::Landings => {
+            let refuse =
+                || Failure::usage("the usual shot does not fall through the height of the hoop");
+            let landing: Landing = landing_of(simulator, &place, &values).ok_or_else(refuse)?;
+            let noise = &tracker.noise.landing;
+            release_of_landing(simulator, &place, &landing, noise, values[3])
+                .map(|(_, covariance)| covariance)
+                .map_err(|_| refuse())
+        }
+    }
 }

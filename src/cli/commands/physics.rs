@@ -125,7 +125,7 @@ fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String 
     });
     let error = comparison.greatest_standard_error();
     format!(
-        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. The first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere. (A profile that was fitted to landings changes with the physics: fit the shots again with --physics.)\n",
+        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. The first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere. (A profile that was fitted to landings or trajectories changes with the physics: its speeds were derived with it. Fit the shots again with --physics FILE for what remains; of drag and air that is little.)\n",
         if has_air { "with" } else { "ncaa," },
         if has_air { "it" } else { "ncaa" },
         comparison.same_shot.in_words()

@@ -127,7 +127,9 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
         100.0 * gain.low,
         100.0 * gain.high
     );
+    let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
     if let Some([speed, pitch]) = &steps.alone
+        && by_m_s >= SAME_SPEED_M_S
         && (speed.mean < 0.0 || pitch.mean < 0.0)
     {
         text += &format!(
@@ -384,7 +386,7 @@ pub fn advice_text(
     if let Some(steps) = &advice.steps {
         text += "\nstep by step, each on top of those before";
         if !steps.steps.iter().all(AdviceStep::is_sure) {
-            text += " (in brackets: too little or too unsure to be advised)";
+            text += " (in brackets: too little or too unsure to be advised alone; the next step holds it too)";
         }
         text += "\n";
         let mut from = advice.usual;

@@ -2,7 +2,7 @@
 
 use super::fit_json::FitSource;
 use super::parameters::{parameters, value_units};
-use crate::fitting::{CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES};
+use crate::fitting::{CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, p_value};
 use crate::units::UnitSystem;
 
 /// A probability as a percentage.
@@ -181,12 +181,14 @@ fn tests_text(fit: &ShooterFit) -> String {
     let least = all.iter().min_by(|a, b| a.2.total_cmp(&b.2));
     let order = least.map_or_else(String::new, |(what, name, p)| {
         format!(
-            "; least p of {} tests of the order of the shots {p:.2} ({what} of {name})",
-            all.len()
+            "; least p of {} tests of the order of the shots: {} ({what} of {name})",
+            all.len(),
+            p_value(*p)
         )
     });
     format!(
-        "Tests: normal releases (Mardia) skewness p = {:.2}, kurtosis p = {:.2}{order}.\n",
-        fit.shape.skewness_p, fit.shape.kurtosis_p
+        "Tests: normal releases (Mardia) skewness {}, kurtosis {}{order}.\n",
+        p_value(fit.shape.skewness_p),
+        p_value(fit.shape.kurtosis_p)
     )
 }

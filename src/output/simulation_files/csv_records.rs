@@ -25,6 +25,8 @@ pub struct Row {
 #[derive(Debug)]
 pub struct CsvRecords<R> {
     input: R,
+    /// What stands between two cells.
+    separator: u8,
     buffer: Vec<u8>,
     /// Where the next record starts in the buffer.
     start: usize,
@@ -57,6 +59,7 @@ impl<R: Read> CsvRecords<R> {
     pub fn new(input: R) -> io::Result<Self> {
         let mut records = Self {
             input,
+            separator: b',',
             buffer: Vec::new(),
             start: 0,
             line: 1,
@@ -72,6 +75,30 @@ impl<R: Read> CsvRecords<R> {
             records.start = 3;
         }
         Ok(records)
+    }
+
+    /// The same of a text whose cells may be separated by semicolons or tabs: where its first line
+    /// has two or more of them, and more than commas (a name may hold one).
+    ///
+    /// # Errors
+    /// The text cannot be read.
+    pub fn with_any_separator(input: R) -> io::Result<Self> {
+        let mut records = Self::new(input)?;
+        let text = &records.buffer[records.start..];
+        let line = &text[..memchr::memchr2(b'\n', b'\r', text).unwrap_or(text.len())];
+        let count = |separator| memchr::memchr_iter(separator, line).count();
+        for separator in [b';', b'\t'] {
+            if count(separator) > count(b',').max(1) {
+                records.separator = separator;
+            }
+        }
+        Ok(records)
+    }
+
+    /// What stands between two cells.
+    #[must_use]
+    pub fn separator(&self) -> u8 {
+        self.separator
     }
 
     /// Bytes read so far.
@@ -100,7 +127,10 @@ impl<R: Read> CsvRecords<R> {
     /// The end of the record at `self.start`, whose bytes are then all in the buffer; `None` at the
     /// end of the text.
     fn find_end(&mut self) -> io::Result<Option<End>> {
-        let mut scan = Scan::default();
+        let mut scan = Scan {
+            separator: self.separator,
+            ..Scan::default()
+        };
         loop {
             let record = &self.buffer[self.start..];
             if let Some(length) = scan.advance(record, self.at_end) {
@@ -220,6 +250,7 @@ impl<R: Read> CsvRecords<R> {
         let mut decoded = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
+            .delimiter(self.separator)
             .from_reader(&text[..])
             .into_byte_records();
         for row in &mut rows {
@@ -253,6 +284,7 @@ fn line_end(record: &[u8], from: usize) -> usize {
 /// The scan of one record, from its start as far as its bytes are known.
 #[derive(Default)]
 struct Scan {
+    separator: u8,
     /// Bytes that have been scanned.
     position: usize,
     /// Where the open quote is.
@@ -280,14 +312,16 @@ impl Scan {
                 }
                 // What follows decides whether this quote closes the cell. Blanks may stand
                 // between.
-                let is_blank = |byte: &&u8| matches!(byte, b' ' | b'\t');
+                let is_blank =
+                    |byte: &&u8| matches!(byte, b' ' | b'\t') && **byte != self.separator;
                 let blanks = record[at + 1..].iter().take_while(is_blank).count();
                 let closes = match record.get(at + 1 + blanks) {
                     None if !at_end => {
                         self.position = at;
                         break;
                     }
-                    None | Some(b',' | b'\n' | b'\r') => true,
+                    None | Some(b'\n' | b'\r') => true,
+                    Some(byte) if *byte == self.separator => true,
                     Some(_) => memchr::memchr2(b'\n', b'\r', &record[quote..at]).is_none(),
                 };
                 if closes {
@@ -315,7 +349,7 @@ impl Scan {
                 },
                 _ => {
                     self.position = at + 1;
-                    if at == 0 || record[at - 1] == b',' {
+                    if at == 0 || record[at - 1] == self.separator {
                         self.quote = Some(at);
                     }
                 }

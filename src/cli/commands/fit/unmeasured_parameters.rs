@@ -154,13 +154,25 @@ pub(super) fn estimate(
             usual.1 / size
         );
     }
+    let tells_nothing = low <= usual.0 / size && high >= usual.1 / size;
+    if curve.is_decided && tells_nothing {
+        text += &format!(
+            "The interval holds all that sources give ({:.2} to {:.2}{unit}): these shots do not tell more than those.\n",
+            usual.0 / size,
+            usual.1 / size
+        );
+    }
     for (value, logarithm) in &curve.points {
         text += &format!(
             "  {:>7.3}{unit}  log-likelihood {logarithm:>8.2}\n",
             value / size
         );
     }
-    if curve.is_decided && is_usual && !(parameter == UnseenParameter::Backspin && is_measured) {
+    if curve.is_decided
+        && is_usual
+        && !tells_nothing
+        && !(parameter == UnseenParameter::Backspin && is_measured)
+    {
         text += &use_it;
     }
     let curve_json = curve.points.iter().map(|(value, logarithm)| {
@@ -174,6 +186,7 @@ pub(super) fn estimate(
         "high": rounded(high),
         "is_decided": curve.is_decided,
         "is_usual": is_usual,
+        "tells_more_than_sources": curve.is_decided && !tells_nothing,
         "curve": curve_json.collect::<Value>(),
     });
     Ok(UnmeasuredParameter { text, json })

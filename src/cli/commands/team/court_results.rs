@@ -119,11 +119,16 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             }
             text += &format!(",{}", chances.preference().map_or("", Preference::name));
             let share = chances.share_of_preferred();
-            text += &share.map_or(",".to_owned(), |share| format!(",{:.0}", 100.0 * share));
+            text += &share.map_or(",".to_owned(), |share| format!(",{}", whole_percent(share)));
         }
         text.push('\n');
     }
     text
+}
+
+/// A share in percent, rounded down: 90 is at least 90 %, which counts as sure.
+fn whole_percent(share: f64) -> u32 {
+    (100.0 * share + 1e-9) as u32
 }
 
 /// A table of places and players is printed up to this size.

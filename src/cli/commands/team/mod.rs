@@ -189,7 +189,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     let header = ["player", "place", "direct", "bank", "shoot it"];
     let mut table = table_of(header.map(str::to_owned).to_vec());
     let bars = ProgressBars::new(quiet);
-    let (mut any_either, mut any_draws) = (false, false);
+    let (mut any_either, mut any_draws, mut any_nearly_other) = (false, false, false);
     let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
     let mut verdicts: Vec<(Verdict, String)> = Vec::new();
     for (path, profile) in profiles {
@@ -205,12 +205,17 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
                 })
             })
             .collect();
-        let text = |p: Option<Difference>| {
-            p.map_or("-".to_owned(), |p| {
+        let mut text = |kind: ShotKind| {
+            let is_nearly_other = shots[kind.index()]
+                .as_ref()
+                .is_ok_and(|shot| shot.share_of_other_kind(kind) > 0.5);
+            any_nearly_other |= is_nearly_other;
+            p[kind.index()].map_or("-".to_owned(), |p| {
                 format!(
-                    "{} \u{b1} {}",
+                    "{} \u{b1} {}{}",
                     in_hundred(p.value),
-                    in_hundred(p.standard_error)
+                    in_hundred(p.standard_error),
+                    if is_nearly_other { " *" } else { "" }
                 )
             })
         };
@@ -253,8 +258,8 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
                 location.distance_m / metre,
                 location.angle_rad / DEGREE_RAD
             ),
-            text(p[0]),
-            text(p[1]),
+            text(ShotKind::Direct),
+            text(ShotKind::Bank),
             advice,
         ];
         rows.push((best, row));
@@ -278,6 +283,10 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
     if any_either {
         text += "either: the two differ by less than 1 in 100, or by less than twice the error of their difference\n";
     }
+    if any_nearly_other {
+        text += "*: nearly the other kind: more than half of the makes of this bank shot do not touch the board first, or of this direct one do\n";
+    }
+    text += "\u{b1}: numerical; each profile is taken as exact (`bankshot advise` says how sure the P of a measured player is)\n";
     if any_draws {
         text += "in brackets: in how many of 100 draws of the fit this kind is the better one; from 90 on it is sure\n";
     }
