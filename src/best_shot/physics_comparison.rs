@@ -190,41 +190,88 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
             "release 3.05 cm higher",
         ],
     };
+    // The range of a basketball; of another ball a tenth to each side of its own value.
+    let drag = base.air.drag_coefficient;
+    let drags = match drag {
+        drag if (0.41..=0.50).contains(&drag) => [0.41, 0.50],
+        drag => [0.9 * drag, 1.1 * drag],
+    };
+    // A drop test is on a hard floor; a board on a mount may give way, and boards differ.
+    let board = base.restitution_on(SolidId::Board);
+    let boards = [-0.05, 0.05].map(|by| (board + by).clamp(0.01, 0.99));
+    let drag_names = drags.map(|drag| format!("drag_coefficient {drag:.2}"));
+    let board_names = boards.map(|board| format!("board_restitution {board:.2}"));
     // The altitude, the thickness of a ring and its bracket are known of every gym.
     // A release is measured from the floor, and only its height below the ring matters.
-    let changes: [(&str, bool, fn(&mut Physics)); 12] = [
-        ("no air", false, |physics| physics.air = Air::NONE),
-        (altitude, false, |physics| physics.air.density_kg_m3 = 0.98),
-        ("drag_coefficient 0.41", true, |physics| {
-            physics.air.drag_coefficient = 0.41;
-        }),
-        ("drag_coefficient 0.50", true, |physics| {
-            physics.air.drag_coefficient = 0.50;
-        }),
-        ("lift_slope 0.1", true, |physics| {
-            physics.air.lift_slope = 0.1
-        }),
-        ("a ring of no thickness", false, |physics| {
-            physics.ring_tube_diameter_m = 0.0;
-        }),
-        ("no bracket", false, |physics| physics.bracket_width_m = 0.0),
-        ("hoop_restitution 0.45", true, |physics| {
-            set_restitution(physics, 0.45);
-        }),
-        ("hoop_restitution 0.70", true, |physics| {
-            set_restitution(physics, 0.70);
-        }),
-        (lower, true, |physics| {
-            physics.hoop_height_m += 0.1 * FOOT_M;
-        }),
-        (higher, true, |physics| {
-            physics.hoop_height_m -= 0.1 * FOOT_M;
-        }),
-        ("friction 0.8", true, |physics| {
-            *physics = physics
-                .clone()
-                .with_contacts(|contact| contact.friction = 0.8);
-        }),
+    type Change<'a> = (&'a str, bool, Box<dyn Fn(&mut Physics)>);
+    let restitution = |solid: SolidId, restitution: f64| -> Box<dyn Fn(&mut Physics)> {
+        Box::new(move |physics| {
+            physics
+                .set_restitution_on(solid, restitution)
+                .expect("between 0 and 1");
+        })
+    };
+    let drag_of = |drag: f64| -> Box<dyn Fn(&mut Physics)> {
+        Box::new(move |physics| physics.air.drag_coefficient = drag)
+    };
+    let raised = |by_m: f64| -> Box<dyn Fn(&mut Physics)> {
+        Box::new(move |physics| physics.hoop_height_m += by_m)
+    };
+    let changes: Vec<Change<'_>> = vec![
+        ("no air", false, Box::new(|physics| physics.air = Air::NONE)),
+        (
+            altitude,
+            false,
+            Box::new(|physics| physics.air.density_kg_m3 = 0.98),
+        ),
+        (&drag_names[0], true, drag_of(drags[0])),
+        (&drag_names[1], true, drag_of(drags[1])),
+        (
+            "lift_slope 0.1",
+            true,
+            Box::new(|physics| physics.air.lift_slope = 0.1),
+        ),
+        (
+            "a ring of no thickness",
+            false,
+            Box::new(|physics| physics.ring_tube_diameter_m = 0.0),
+        ),
+        (
+            "no bracket",
+            false,
+            Box::new(|physics| physics.bracket_width_m = 0.0),
+        ),
+        (
+            "hoop_restitution 0.45",
+            true,
+            restitution(SolidId::Ring, 0.45),
+        ),
+        (
+            "hoop_restitution 0.70",
+            true,
+            restitution(SolidId::Ring, 0.70),
+        ),
+        (
+            &board_names[0],
+            true,
+            restitution(SolidId::Board, boards[0]),
+        ),
+        (
+            &board_names[1],
+            true,
+            restitution(SolidId::Board, boards[1]),
+        ),
+        (lower, true, raised(0.1 * FOOT_M)),
+        (higher, true, raised(-0.1 * FOOT_M)),
+        (
+            "friction 0.8",
+            true,
+            Box::new(|physics| {
+                *physics = physics
+                    .clone()
+                    .with_contacts(|contact| contact.friction = 0.8);
+            }),
+        ),
     ];
     variants.extend(changes.into_iter().map(|(name, is_unmeasured, change)| {
         let mut physics = base.clone();
@@ -235,12 +282,6 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
         }
     }));
     variants
-}
-
-fn set_restitution(physics: &mut Physics, restitution: f64) {
-    physics
-        .set_restitution_on(SolidId::Ring, restitution)
-        .expect("between 0 and 1");
 }
 
 /// The best shots of a profile under each physics. One under which the profile is not valid is left

@@ -278,40 +278,6 @@ pub(crate) fn load_sweep(path: &Path) -> Result<(SweepConfig, SourceTexts), Fail
     Ok((config, texts))
 }
 
-/// Says which keys of the shooter's file a sweep does not use.
-pub(crate) fn warn_of_unused_search(path: &Path, texts: &SourceTexts) {
-    let unused = search_keys_not_used(texts);
-    if unused.is_empty() {
-        return;
-    }
-    let (are, them) = if unused.len() == 1 {
-        ("is", "it")
-    } else {
-        ("are", "them")
-    };
-    print_remark(&format!(
-        "warning: {}: a sweep has its own [search]; {} of the shooter's file {are} not used: write {them} into the sweep",
-        path.display(),
-        unused.join(", ")
-    ));
-}
-
-/// The keys of `[search]` in the shooter's file that change what is searched, and that the sweep
-/// does not give.
-fn search_keys_not_used(texts: &SourceTexts) -> Vec<String> {
-    const PRECISION: [&str; 3] = ["standard_error", "seed", "climb_samples"];
-    let keys = |text: &str| -> Vec<String> {
-        let root = text.parse::<toml::Table>().unwrap_or_default();
-        let search = root.get("search").and_then(toml::Value::as_table);
-        search.map_or_else(Vec::new, |search| search.keys().cloned().collect())
-    };
-    let own = keys(&texts.sweep);
-    let of_shooter = texts.shooter.as_deref().map_or_else(Vec::new, keys);
-    let mut unused = of_shooter;
-    unused.retain(|key| !PRECISION.contains(&key.as_str()) && !own.contains(key));
-    unused
-}
-
 /// Reads a sweep whose shooter gives way to another one: what belongs to the shooter is left out,
 /// and the file that it names is not read.
 pub(crate) fn read_sweep_without_shooter(path: &Path) -> Result<SourceTexts, Failure> {

@@ -59,10 +59,14 @@ impl FixedOptions {
                 )));
             }
             let search = &profile.settings().search;
-            if variable == NominalVariable::Pitch
-                && let Some(words) = search.pitch_beyond_limits(value)
-            {
-                return Err(Failure::usage(format!("--pitch: \"{text}\" {words}")));
+            let beyond = match variable {
+                NominalVariable::Speed => search.speed_beyond_limit(value),
+                NominalVariable::Pitch => search.pitch_beyond_limits(value),
+                _ => None,
+            };
+            if let Some(words) = beyond {
+                let flag = variable.name();
+                return Err(Failure::usage(format!("--{flag}: \"{text}\" {words}")));
             }
             let most = profile.shooter().max_backspin_rad_s;
             if variable == NominalVariable::Backspin && value > most {

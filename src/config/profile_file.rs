@@ -86,8 +86,8 @@ pub(crate) fn read_settings_of(
     diagnostics: &mut Vec<Diagnostic>,
 ) -> ReadSettings {
     settings.grid = read_grid(root, diagnostics);
-    settings.search = read_search(root, diagnostics);
-    settings.output = read_output(root, diagnostics);
+    settings.search = read_search(root, &settings.search, diagnostics);
+    settings.output = read_output(root, settings.output.units, diagnostics);
     for error in settings.errors() {
         // A placeholder can be out of range too, but its key has been reported.
         let is_reported = diagnostics[before..]

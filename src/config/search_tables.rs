@@ -25,16 +25,25 @@ pub(super) fn read_grid(
     grid
 }
 
+/// The search. What limits the shooter (the variables to choose, pitch angles, speed) is that of
+/// `shooter` where the table does not say it.
 pub(super) fn read_search(
     root: &mut TableReader<'_, '_>,
+    shooter: &SearchSettings,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> SearchSettings {
     let mut table = root.table("search", diagnostics);
     let search = SearchSettings {
-        choice: read_choice(&mut table, diagnostics),
-        pitch_min_rad: table.quantity("pitch_min", Dimension::Angle, diagnostics),
-        pitch_max_rad: table.quantity("pitch_max", Dimension::Angle, diagnostics),
-        speed_max_m_s: table.quantity("speed_max", Dimension::Speed, diagnostics),
+        choice: read_choice(&mut table, diagnostics).unwrap_or(shooter.choice),
+        pitch_min_rad: table
+            .quantity("pitch_min", Dimension::Angle, diagnostics)
+            .or(shooter.pitch_min_rad),
+        pitch_max_rad: table
+            .quantity("pitch_max", Dimension::Angle, diagnostics)
+            .or(shooter.pitch_max_rad),
+        speed_max_m_s: table
+            .quantity("speed_max", Dimension::Speed, diagnostics)
+            .or(shooter.speed_max_m_s),
         standard_error: table.quantity("standard_error", Dimension::Number, diagnostics),
         climb_samples: table
             .count("climb_samples", 64..=65536, diagnostics)
@@ -45,10 +54,11 @@ pub(super) fn read_search(
     search
 }
 
-fn read_choice(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>) -> SearchChoice {
-    let Some(names) = table.texts("choose", diagnostics) else {
-        return SearchChoice::default();
-    };
+fn read_choice(
+    table: &mut TableReader<'_, '_>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<SearchChoice> {
+    let names = table.texts("choose", diagnostics)?;
     let known = NominalVariable::SEARCHABLE.map(NominalVariable::name);
     let unknown = names.iter().find(|name| !known.contains(&name.as_str()));
     if names.is_empty() || unknown.is_some() {
@@ -61,26 +71,32 @@ fn read_choice(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic
         });
         let message = format!("must name one or more of {}{what}", known.join(", "));
         diagnostics.push(table.diagnostic("choose", message));
-        return SearchChoice::default();
+        return None;
     }
     let chosen: Vec<NominalVariable> = NominalVariable::SEARCHABLE
         .into_iter()
         .filter(|variable| names.iter().any(|name| name == variable.name()))
         .collect();
-    SearchChoice::only(&chosen)
+    Some(SearchChoice::only(&chosen))
 }
 
+/// The output; in `units`, where the table does not say it.
 pub(super) fn read_output(
     root: &mut TableReader<'_, '_>,
+    units: UnitSystem,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> OutputSettings {
     let mut table = root.table("output", diagnostics);
-    let mut output = OutputSettings::default();
+    let mut output = OutputSettings {
+        units,
+        ..OutputSettings::default()
+    };
     if let Some(folder) = table.text("folder", diagnostics) {
         output.folder = folder;
     }
     match table.text("units", diagnostics).as_deref() {
-        None | Some("imperial") => {}
+        None => {}
+        Some("imperial") => output.units = UnitSystem::Imperial,
         Some("metric") => output.units = UnitSystem::Metric,
         Some(_) => {
             diagnostics.push(table.diagnostic("units", "must be \"imperial\" or \"metric\""));

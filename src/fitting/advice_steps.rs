@@ -235,10 +235,20 @@ impl<'a> Shooting<'a> {
             .collect();
         let own_speed = on_the_way[0].0;
         let most = on_the_way.iter().map(|(.., p)| *p).fold(0.0, f64::max);
-        let second = on_the_way
-            .into_iter()
-            .find(|(.., p)| *p >= most - TOLERANCE)
-            .map_or((best[0], best[1]), |(speed, angle, _)| (speed, angle));
+        let enough = most - TOLERANCE;
+        let first = on_the_way.iter().position(|(.., p)| *p >= enough);
+        let second = match first {
+            None => (best[0], best[1]),
+            Some(0) => (own_speed, usual[1]),
+            Some(k) => {
+                // Between two angles that were tried, so that shooters who hardly differ are told
+                // to do the same.
+                let (before, after) = (on_the_way[k - 1], on_the_way[k]);
+                let part = (enough - before.2) / (after.2 - before.2);
+                let between = |from: f64, to: f64| from + part * (to - from);
+                (between(before.0, after.0), between(before.1, after.1))
+            }
+        };
         (own_speed, second)
     }
 

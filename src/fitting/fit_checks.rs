@@ -195,13 +195,13 @@ fn drift_in_words(name: &str, by: f64) -> String {
     }
 }
 
-/// `p = 0.0031`, or `p < 0.0001`.
+/// `p = 0.22`, `p = 0.0031`, or `p < 0.0001`.
 #[must_use]
 pub fn p_value(p: f64) -> String {
-    if p < 1e-4 {
-        "p < 0.0001".to_owned()
-    } else {
-        format!("p = {p:.4}")
+    match p {
+        p if p < 1e-4 => "p < 0.0001".to_owned(),
+        p if p < 0.01 => format!("p = {p:.4}"),
+        p => format!("p = {p:.2}"),
     }
 }
 

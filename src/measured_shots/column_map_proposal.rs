@@ -185,7 +185,8 @@ pub(super) fn map_proposal(columns: &Columns) -> String {
         text += "\n  release_height is that of the ball when it leaves the hand: leave it out if the \
                  column has the player's height";
     }
-    text += "\n  without --physics the shots are taken to be at the men's college ball and hoop (ncaa)";
+    text +=
+        "\n  without --physics the shots are taken to be at the men's college ball and hoop (ncaa)";
     let is_known = |quantity: Quantity| {
         taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
     };

@@ -212,6 +212,7 @@ fn shooter(
         merged_heights_m: None,
         shots: Vec::new(),
         sessions: Vec::new(),
+        shot_names: Vec::new(),
         rejected,
         spin,
         speed_unit: unit,

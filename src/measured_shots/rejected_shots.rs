@@ -70,6 +70,7 @@ pub(super) fn reject_shots(simulator: &Simulator, shooter: &mut ShooterShots) {
         .retain(|shot| filter(&mut rejected, Some(shot.row)));
     shooter.rejected = rejected;
     retain_by(&mut shooter.sessions, &keep);
+    retain_by(&mut shooter.shot_names, &keep);
     retain_by(&mut shooter.tracks, &keep);
     retain_by(&mut shooter.chi_squares, &keep);
     // A place that lost all its shots is none.

@@ -199,6 +199,10 @@ impl RowReader<'_> {
             match (self.measured_row(cells), made) {
                 (Ok((place, measured)), Ok(made)) => raw.push(RawShot {
                     row,
+                    name: self
+                        .label(cells, Label::Shot)
+                        .unwrap_or_default()
+                        .to_owned(),
                     session: self
                         .label(cells, Label::Session)
                         .unwrap_or_default()

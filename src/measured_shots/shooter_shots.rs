@@ -54,6 +54,8 @@ pub struct ShooterShots {
     pub shots: Vec<MeasuredRelease>,
     /// The session of each; empty if the file does not say.
     pub sessions: Vec<String>,
+    /// The name or number of each; empty if the file does not say.
+    pub shot_names: Vec<String>,
     /// Rows that are kept out, and why.
     pub rejected: Vec<(u64, String)>,
     /// Where the backspin comes from.
@@ -72,6 +74,7 @@ pub struct ShooterShots {
 pub(super) struct RawShot {
     pub(super) row: u64,
     pub(super) session: String,
+    pub(super) name: String,
     pub(super) made: Option<bool>,
     pub(super) place: Place,
     pub(super) measured: Raw,

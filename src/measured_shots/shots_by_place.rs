@@ -112,6 +112,7 @@ pub(super) fn group_by_place(
             }
         };
         shooter.sessions.push(shot.session);
+        shooter.shot_names.push(shot.name);
         shooter.shots.push(MeasuredRelease {
             row: shot.row,
             place,

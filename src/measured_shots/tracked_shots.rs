@@ -35,16 +35,15 @@ pub(super) fn tracked_shots(
     let tracks: Vec<(
         u64,
         String,
+        String,
         Result<(Vec<TrackedPoint>, Option<bool>), String>,
     )> = by_shot
         .iter()
         .map(|(_, rows)| {
             let (first, cells) = rows[0];
-            let session = reader
-                .label(cells, Label::Session)
-                .unwrap_or_default()
-                .to_owned();
-            (first, session, track(reader, rows, z0))
+            let label = |label| reader.label(cells, label).unwrap_or_default().to_owned();
+            let (session, name) = (label(Label::Session), label(Label::Shot));
+            (first, session, name, track(reader, rows, z0))
         })
         .collect();
     let noise = &reader.options.noise;
@@ -54,7 +53,7 @@ pub(super) fn tracked_shots(
         .and_then(|(_, cells)| reader.label(cells, Label::Shooter))
         .unwrap_or_default();
     let height = reader.options.release_height_m(shooter).unwrap_or_else(|| {
-        let begins = tracks.par_iter().filter_map(|(_, _, track)| {
+        let begins = tracks.par_iter().filter_map(|(_, _, _, track)| {
             let (points, _) = track.as_ref().ok()?;
             let fit = fit_flight(reader.simulator, points, noise, LOW_RELEASE_M, backspin).ok()?;
             Some(fit.begins_at_m)
@@ -67,7 +66,7 @@ pub(super) fn tracked_shots(
     });
     let fits: Vec<Result<RawShot, (u64, String)>> = tracks
         .into_par_iter()
-        .map(|(row, session, track)| {
+        .map(|(row, session, name, track)| {
             let (points, made) = track.map_err(|reason| (row, reason))?;
             let fit = fit_flight(reader.simulator, &points, noise, height, backspin)
                 .map_err(|error| (row, format!("trajectory: {error}")))?;
@@ -75,6 +74,7 @@ pub(super) fn tracked_shots(
             Ok(RawShot {
                 row,
                 session,
+                name,
                 made,
                 place: fit.place,
                 measured: Raw::Flight(Box::new(fit), used),

@@ -72,14 +72,23 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
             text += &format!("Aim at {aim}{of}.\n");
         }
     }
-    let held: Vec<&str> = [
+    let held: Vec<String> = [
         NominalVariable::Speed,
         NominalVariable::Pitch,
         NominalVariable::Backspin,
     ]
     .into_iter()
     .filter(|variable| !profile.search().choice.includes(*variable))
-    .map(NominalVariable::name)
+    .map(|variable| {
+        let is_given = variable != NominalVariable::Backspin
+            || profile.settings().nominal.backspin_rad_s.is_some();
+        let note = if is_given {
+            ""
+        } else {
+            " (0 rev/s, as [nominal] has none)"
+        };
+        format!("{}{note}", variable.name())
+    })
     .collect();
     if !held.is_empty() {
         text += &format!("Given, not searched for: {}.\n", held.join(" and "));

@@ -4,7 +4,7 @@ use super::invalid_setting::SettingChecks;
 use super::nominal::NominalOverrides;
 use super::release_errors::MAX_SPEED_M_S;
 use super::release_variable::NominalVariable;
-use crate::units::DEGREE_RAD;
+use crate::units::{DEGREE_RAD, FOOT_M};
 use serde::{Serialize, Serializer};
 use std::ops::RangeInclusive;
 
@@ -220,6 +220,19 @@ impl SearchSettings {
     #[must_use]
     pub fn seed(&self) -> u64 {
         self.seed.unwrap_or(Search::DEFAULT_SEED)
+    }
+
+    /// How a speed breaks the limit that is set, such as `is more than search.speed_max (9 m/s)`;
+    /// `None` if it does not.
+    #[must_use]
+    pub fn speed_beyond_limit(&self, speed_m_s: f64) -> Option<String> {
+        let most = self.speed_max_m_s.filter(|most| speed_m_s > most + 1e-9)?;
+        let round = |speed: f64| (speed * 1e4).round() / 1e4;
+        Some(format!(
+            "is more than search.speed_max ({} ft/s, {} m/s)",
+            round(most / FOOT_M),
+            round(most)
+        ))
     }
 
     /// How a pitch angle breaks the limits that are set, such as `is more than search.pitch_max

@@ -90,6 +90,8 @@ impl ResultTables {
             let first = first.into_iter().chain(self.place_name(line));
             let cells = line.cells.iter().map(|cell| match cell {
                 Cell::Null => String::new(),
+                // Not in ninety zeros.
+                Cell::Real(value) if *value != 0.0 && value.abs() < 1e-7 => format!("{value:e}"),
                 Cell::Real(value) => value.to_string(),
                 Cell::Integer(value) => value.to_string(),
                 Cell::Text(text) => text.clone(),

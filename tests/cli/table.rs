@@ -567,6 +567,11 @@ fn contract_the_pitch_limits_of_a_profile_hold() {
     let table = ["table", "--distances", "12 ft", "--pitch", "62 deg"];
     run(&table).exits(2).says(too_much);
     run(&["best", "--pitch", "62 deg"]).exits(2).says(too_much);
+    let fast = format!("{ROBOT}speed_max = \"9 m/s\"\n");
+    write_file(&folder, "robot.toml", &fast);
+    run(&["best", "--speed", "9.1 m/s"])
+        .exits(2)
+        .says("is more than search.speed_max (29.5276 ft/s, 9 m/s)");
     let fixed = format!("{ROBOT}{limits}choose = [\"speed\"]\n[nominal]\npitch = \"62 deg\"\n");
     write_file(&folder, "robot.toml", &fixed);
     run(&["check"])

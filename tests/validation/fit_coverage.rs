@@ -6,13 +6,15 @@
 
 use bankshot::dynamics::Simulator;
 use bankshot::fitting::{
-    Covariance, Draw, FitOptions, Interval, MeasuredRelease, Place, PopulationPrior, Posterior,
-    SpinSource, Tails, Tracker, UnseenParameter, Values, WeightedShots, design, fit,
-    fitted_profile, is_speed_scatter_possible, landing_of, likelihood_curve, nominal_of,
-    release_of_landing, simulated_test, tails_of, usual_probabilities,
+    Covariance, Draw, DrawProbabilities, FitOptions, Interval, MeasuredRelease, Place,
+    PopulationPrior, Posterior, SpinSource, Tails, Tracker, UnseenParameter, Values, WeightedShots,
+    advise, compare_probabilities, compare_sessions, design, fit, fitted_profile,
+    is_speed_scatter_possible, landing_of, likelihood_curve, nominal_of, release_of_landing,
+    simulated_test, tails_of, usual_probabilities,
 };
 use bankshot::math::normal_distribution::quantile;
 use bankshot::model::Preset;
+use bankshot::output::fit_files::session_changes_text::{Decision, SessionChange};
 use bankshot::probability::Silent;
 use bankshot::shooter::Location;
 use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
@@ -665,6 +667,173 @@ fn campaign_design_agrees_with_repeated_tests() {
         }
     }
     assert!(failures.is_empty(), "{failures:?}");
+}
+
+/// Every value that `compare-sessions` looks at, of two posteriors with their P.
+fn session_changes(
+    posteriors: [&Posterior; 2],
+    probabilities: [&DrawProbabilities; 2],
+    shots: usize,
+) -> Vec<SessionChange> {
+    let change = |name: &str, comparison| SessionChange {
+        name: name.to_owned(),
+        unit: "",
+        size: 1.0,
+        comparison,
+    };
+    let mut changes = vec![change(
+        "P",
+        compare_probabilities(probabilities, [shots, shots]),
+    )];
+    for (name, value) in quantities() {
+        changes.push(change(name, compare_sessions(posteriors, value)));
+    }
+    changes
+}
+
+/// Two sessions of an unchanged shooter: how often does `compare-sessions` say that something
+/// changed? With room for the nine values it looks at, at most in 5 % of the pairs, and for P in 5
+/// %. And how often does it see a release angle that changed by its standard deviation over a
+/// third, and scatter in speed that fell by a third?
+#[test]
+#[ignore = "five minutes: cargo test --test validation campaign_compare_sessions -- --ignored --nocapture"]
+fn campaign_compare_sessions_seldom_sees_what_did_not_change() {
+    let repetitions: u64 =
+        std::env::var("BANKSHOT_REPETITIONS").map_or(600, |n| n.parse().unwrap());
+    let physics = Preset::named("ncaa").unwrap().physics();
+    let simulator = Simulator::new(&physics).unwrap();
+    let (place, _) = place(0);
+    let cell = cell(60, Noise::Noah, 1);
+    let session = |truth: &Draw, seed: u64, random: &mut ChaCha12Rng| {
+        let shots = shots(&cell, truth, &simulator, random);
+        let options = FitOptions {
+            spin: SpinSource::Assumed,
+            seed,
+            ..FitOptions::default()
+        };
+        let posterior = fit(&shots, 1, &options).unwrap();
+        let profile = fitted_profile("test", &physics, &posterior.typical(), &place).unwrap();
+        let p = usual_probabilities(&profile, &posterior, 0, P_SHOTS);
+        (posterior, p)
+    };
+    // Of an unchanged shooter: some value, P. Of a changed one: the angle, the scatter in speed.
+    let seen: Vec<[bool; 4]> = (0..repetitions)
+        .into_par_iter()
+        .map(|repetition| {
+            let mut random = ChaCha12Rng::seed_from_u64(77_000 + repetition);
+            let truth = shooter(
+                (1, GOOD_AIMS),
+                PRIOR.median_sd,
+                [0.1; 3],
+                [0.0; 2],
+                &mut random,
+            );
+            let mut sds = truth.sds;
+            sds[0] /= 1.5;
+            let mut mean = truth.means[0];
+            mean[1] += truth.sds[1] / 3.0;
+            let coefficients = [sds[0], 0.0, 0.0];
+            let changed = Draw::new(vec![mean], sds, truth.correlation, coefficients);
+            let [first, second, third] =
+                [&truth, &truth, &changed].map(|truth| session(truth, 1, &mut random));
+            let made = |after: &(Posterior, DrawProbabilities)| -> Vec<bool> {
+                let changes =
+                    session_changes([&first.0, &after.0], [&first.1, &after.1], cell.shots);
+                let tested = changes.len() - 1;
+                let decisions = changes.iter().map(|change| change.decision(tested));
+                decisions
+                    .map(|decision| decision == Decision::Made)
+                    .collect()
+            };
+            let (same, other) = (made(&second), made(&third));
+            let index = |name| 1 + quantities().iter().position(|(of, _)| *of == name).unwrap();
+            [
+                same[1..].contains(&true),
+                same[0],
+                other[index("pitch_mean")],
+                other[index("speed_sd")],
+            ]
+        })
+        .collect();
+    let shares: [f64; 4] =
+        [0, 1, 2, 3].map(|k| seen.iter().filter(|s| s[k]).count() as f64 / seen.len() as f64);
+    let [value, p, angle, scatter] = shares.map(|share| 100.0 * share);
+    println!(
+        "of {repetitions} pairs of 60 shots: unchanged, some value {value:.1} %, P {p:.1} %; changed, angle {angle:.0} %, scatter of the speed {scatter:.0} %"
+    );
+    // Four standard errors: one false alarm in 16,000.
+    let most = 0.05 + 4.0 * (0.05 * 0.95 / repetitions as f64).sqrt();
+    assert!(shares[0] < most && shares[1] < most, "{shares:?}");
+}
+
+/// The gain that `advise` promises from the changes it is sure of, against the true gain of a
+/// shooter who makes them.
+#[test]
+#[ignore = "ten minutes: cargo test --test validation campaign_advice -- --ignored --nocapture"]
+fn campaign_advice_covers_the_true_gain() {
+    let repetitions: u64 =
+        std::env::var("BANKSHOT_REPETITIONS").map_or(200, |n| n.parse().unwrap());
+    let physics = Preset::named("ncaa").unwrap().physics();
+    let simulator = Simulator::new(&physics).unwrap();
+    let (place, _) = place(0);
+    let cell = cell(60, Noise::Noah, 1);
+    // Covered, promised, true; without a sure change there is none.
+    let gains: Vec<Option<(bool, f64, f64)>> = (0..repetitions)
+        .map(|repetition| {
+            let mut random = ChaCha12Rng::seed_from_u64(88_000 + repetition);
+            // Aims that can be improved: twice as far from the best ones as usual.
+            let aims = GOOD_AIMS.map(|aim| 2.0 * aim);
+            let truth = shooter((1, aims), PRIOR.median_sd, [0.1; 3], [0.0; 2], &mut random);
+            let shots = shots(&cell, &truth, &simulator, &mut random);
+            let options = FitOptions {
+                spin: SpinSource::Assumed,
+                seed: repetition,
+                ..FitOptions::default()
+            };
+            let posterior = fit(&shots, 1, &options).unwrap();
+            let profile = fitted_profile("test", &physics, &posterior.typical(), &place).unwrap();
+            let steps = advise(&profile, &posterior, 0, &Silent).unwrap().steps?;
+            if !steps.is_changed.contains(&true) {
+                return None;
+            }
+            let usual = truth.means[0];
+            let changed: Values = std::array::from_fn(|i| {
+                if steps.is_changed[i] {
+                    steps.advised[i]
+                } else {
+                    usual[i]
+                }
+            });
+            let own = fitted_profile("truth", &physics, &truth, &place).unwrap();
+            let draws = std::slice::from_ref(&truth);
+            let p = |mean: Values| {
+                let shots =
+                    WeightedShots::simulate(&own, (draws, 0), &[mean], 4 * P_SHOTS, repetition);
+                shots
+                    .probabilities(draws, |_| mean, |draw| draw.factor_at(0))
+                    .of_draws[0]
+            };
+            let gain = p(changed) - p(usual);
+            let covers = (steps.gain.low..=steps.gain.high).contains(&gain);
+            Some((covers, steps.gain.mean, gain))
+        })
+        .collect();
+    let advised: Vec<_> = gains.into_iter().flatten().collect();
+    let count = advised.len() as f64;
+    let covered = advised.iter().filter(|gain| gain.0).count() as f64 / count;
+    let promised = advised.iter().map(|gain| gain.1).sum::<f64>() / count;
+    let true_gain = advised.iter().map(|gain| gain.2).sum::<f64>() / count;
+    println!(
+        "{count} of {repetitions} shooters were advised a change: covered {:.1} %, promised {:.2} points, true {:.2}",
+        100.0 * covered,
+        100.0 * promised,
+        100.0 * true_gain
+    );
+    // Four standard errors: one false alarm in 16,000.
+    assert!(
+        covered > 0.95 - 4.0 * (0.05 * 0.95 / count).sqrt(),
+        "{covered}"
+    );
 }
 
 /// The typical posterior spin is the population's.

@@ -259,6 +259,7 @@ mod tests {
             entry_rad: None,
             tolerances: [[0.0; 2]; 2],
             other_kind: None,
+            board_aim_m: None,
         };
         ShotTable {
             kind: TableKind::One(kind),

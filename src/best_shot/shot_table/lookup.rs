@@ -53,6 +53,9 @@ pub struct TableShot {
     pub tolerances: [[f64; 2]; 2],
     /// P of the other kind's optimum that climbs alone find; `None` where no shot of it is made.
     pub other_kind: Option<f64>,
+    /// Where the ball's centre is when an error-free bank shot touches the board: to the right of
+    /// its middle and above the hoop, m. `None` for a direct shot.
+    pub board_aim_m: Option<(f64, f64)>,
 }
 
 /// A table of best shots.

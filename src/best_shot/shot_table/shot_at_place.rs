@@ -84,6 +84,10 @@ pub(super) fn table_shot(
         entry_rad,
         tolerances,
         other_kind: None,
+        board_aim_m: outcome
+            .board_point_m
+            .filter(|_| kind == ShotKind::Bank)
+            .map(|point| (point.1, point.2)),
     }
 }
 

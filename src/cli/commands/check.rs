@@ -1,8 +1,6 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use crate::cli::config_files::{
-    load_profile, load_profile_with_text, load_sweep, read_text, warn_of_unused_search,
-};
+use crate::cli::config_files::{load_profile, load_profile_with_text, load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
@@ -40,10 +38,7 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
     }
     let path = options.profile.display();
     if is_sweep(&read_text(&options.profile)?) {
-        let (config, texts) = load_sweep(&options.profile)?;
-        if !quiet {
-            warn_of_unused_search(&options.profile, &texts);
-        }
+        let (config, _) = load_sweep(&options.profile)?;
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
@@ -161,10 +156,18 @@ fn physics_text(physics: &Physics, named: Option<&str>, units: UnitSystem) -> St
     let (preset, of_preset) = presets
         .min_by_key(|(_, other)| differing(other))
         .expect("there are presets");
-    let mut text = format!("physics: {} ({})\n", preset.name, preset.description);
+    let changed = if differing(&of_preset) > 0 {
+        ", changed"
+    } else {
+        ""
+    };
+    let mut text = format!(
+        "physics: {} ({}){changed}\n",
+        preset.name, preset.description
+    );
     for (own, usual) in values.iter().zip(&of_preset) {
         let source = if own.value != usual.value {
-            format!("from the profile ({}: {})", preset.name, usual.value)
+            format!("as given ({}: {})", preset.name, usual.value)
         } else if preset.name == "paper" {
             "the paper's".to_owned()
         } else {

@@ -1,7 +1,7 @@
 //! `bankshot sweep` and `bankshot merge`: compute the jobs, and write the tables.
 
 use super::sweep_summary::{highlights, job_summary, missing_shards};
-use crate::cli::config_files::{load_sweep, warn_of_unused_search};
+use crate::cli::config_files::load_sweep;
 use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
@@ -70,9 +70,6 @@ static SAVED_JOBS: AtomicUsize = AtomicUsize::new(0);
 
 pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
     let (config, texts) = load_sweep(&options.sweep)?;
-    if !quiet {
-        warn_of_unused_search(&options.sweep, &texts);
-    }
     let draws = options.draws.as_deref().map(fit_folder::read).transpose()?;
     let jobs = Jobs::new(&config);
     let shard = options.shard.unwrap_or(Shard::WHOLE);

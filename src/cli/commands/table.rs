@@ -200,7 +200,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             .iter()
             .all(|output| output.format != TableFormat::Text)
         {
-            for note in notes(&table, units) {
+            for note in notes(&table, &profile, units) {
                 print_remark(&note);
             }
         }

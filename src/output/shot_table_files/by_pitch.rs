@@ -7,7 +7,7 @@ use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::{number, object, provenance};
-use crate::shooter::{Profile, ShotKind};
+use crate::shooter::{NominalVariable, Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;
 
@@ -64,13 +64,17 @@ pub fn by_pitch_text(
     };
     text += &wrapped(&in_words(rows, (best_row, best), kind, units));
     text += &wrapped(&physics_note(profile, units));
-    text += &wrapped(
-        "At each pitch angle the speed, the aim and the spin are the best ones (--backspin keeps \
-         one); the errors are taken to be the same at all angles. aim: positive to the left. entry: \
+    let spin = if profile.search().choice.includes(NominalVariable::Backspin) {
+        "the speed, the aim and the spin are the best ones (--backspin keeps one)"
+    } else {
+        "the speed and the aim are the best ones, and the spin is the given one"
+    };
+    text += &wrapped(&format!(
+        "At each pitch angle {spin}; the errors are taken to be the same at all angles. aim: positive to the left. entry: \
          -, if it meets the ring on its way up. less: than the highest P. margin: by how much speed \
          and pitch can be off, down and up, one at a time and with all else exact, until the shot \
          first misses.",
-    );
+    ));
     let speed_unit = format!("{long}/s");
     let titles = titles(&speed_unit, kind.other().name());
     let widths: Vec<usize> = std::iter::once(5)

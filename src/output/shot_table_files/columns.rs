@@ -8,6 +8,7 @@ pub(super) type TableColumn = (String, usize, fn(&TableShot) -> f64, f64);
 
 pub(super) fn columns(kind: TableKind, units: UnitSystem) -> Vec<TableColumn> {
     let (long, metre) = units.length();
+    let (short, short_m) = units.short_length();
     let in_unit = |name: &str, unit: &str| {
         if unit.is_empty() {
             name.to_owned()
@@ -80,6 +81,18 @@ pub(super) fn columns(kind: TableKind, units: UnitSystem) -> Vec<TableColumn> {
             1.0,
         ),
         (in_unit("makes_off_board_first", ""), 2, |s| s.banked, 1.0),
+        (
+            in_unit("board_aim_across", short),
+            1,
+            |s| s.board_aim_m.map_or(f64::NAN, |aim| aim.0),
+            short_m,
+        ),
+        (
+            in_unit("board_aim_above_hoop", short),
+            1,
+            |s| s.board_aim_m.map_or(f64::NAN, |aim| aim.1),
+            short_m,
+        ),
     ]
 }
 

@@ -106,7 +106,7 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
             "greatest_error",
             greatest(table.most_wrong().map(|check| check.error().abs())),
         ),
-        named("notes", notes(table, units).into()),
+        named("notes", notes(table, profile, units).into()),
     ]);
     object(record)
 }

@@ -8,13 +8,14 @@ use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 /// What a reader of the table must know: what interpolation costs, which nodes were added, where
 /// shots are not clean, and where the other kind is better.
 #[must_use]
-pub fn notes(table: &ShotTable, units: UnitSystem) -> Vec<String> {
+pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<String> {
     let notes = [
         kinds_note(table, units),
         range_note(table, units),
         Some(check_note(table, units)),
         added_note(table, units),
         jump_note(table, units),
+        limit_note(table, profile, units),
         bounce_note(table, units),
         nearly_other_kind_note(table, units),
         unlikely_note(table, units),
@@ -308,7 +309,38 @@ fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
             }
         })
         .collect();
-    (!texts.is_empty()).then(|| format!("The better kind: {}.", texts.join(", ")))
+    // Without checks the borders are only tried between the rows.
+    let about = if table.checks.is_empty() {
+        ", about"
+    } else {
+        ""
+    };
+    (!texts.is_empty()).then(|| format!("The better kind{about}: {}.", texts.join(", ")))
+}
+
+/// Where the best pitch angle is a limit of the launcher.
+fn limit_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option<String> {
+    let search = &profile.settings().search;
+    let limits = [
+        ("pitch_min", "flatter", search.pitch_min_rad),
+        ("pitch_max", "steeper", search.pitch_max_rad),
+    ];
+    let texts = limits.into_iter().filter_map(|(key, words, limit_rad)| {
+        let limit_rad = limit_rad?;
+        let places = Places::of(table, |shot| {
+            (shot.nominal.pitch_rad - limit_rad).abs() < 1e-9
+        });
+        (!places.is_empty()).then(|| {
+            format!(
+                "In {} the pitch is {key} ({} deg); a {words} shot may be better: {}.",
+                places.count_text(),
+                short(limit_rad / DEGREE_RAD),
+                places.text(table, units)
+            )
+        })
+    });
+    let texts: Vec<String> = texts.collect();
+    (!texts.is_empty()).then(|| texts.join(" "))
 }
 
 /// How many shots touch more than they should.

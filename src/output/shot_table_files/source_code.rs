@@ -137,7 +137,7 @@ pub fn source_code(
     ];
     let inside = example_distance(&table.distances_m, metre);
     about.push(example(language, class, (names[0], &inside)));
-    about.extend(notes(table, units));
+    about.extend(notes(table, profile, units));
     let comment = |prefix: &str| {
         let options = textwrap::Options::new(100 - prefix.len() - 1);
         let lines = about.iter().flat_map(|line| textwrap::wrap(line, &options));
@@ -329,7 +329,8 @@ inline std::array<double, @VALUES@> look_up(double distance, double angle = angl
             const double* shot = shots[(a + i) * count + d + j];
             for (std::size_t k = 0; k < @LINEAR@; ++k) result[k] += weight * shot[k];
             for (std::size_t k = @LINEAR@; k < result.size(); ++k) {
-                if (!(shot[k] > result[k])) result[k] = shot[k];
+                // A NaN stays, whichever comes first.
+                if (shot[k] < result[k] || std::isnan(shot[k])) result[k] = shot[k];
             }
         }
     }
@@ -368,7 +369,7 @@ def look_up(distance, angle=ANGLES[0]):
                 for k, value in enumerate(shot):
                     if k < @LINEAR@:
                         result[k] += weight * value
-                    elif not value > result[k]:
+                    elif value < result[k] or math.isnan(value):  # a NaN stays
                         result[k] = value
     return result
 ";

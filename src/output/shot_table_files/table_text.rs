@@ -148,7 +148,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         cells.extend(columns.iter().map(|column| (column.cell)(shot)));
         text += &line(cells.iter().map(String::as_str), &widths);
     }
-    let notes = notes(table, units);
+    let notes = notes(table, profile, units);
     text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
 }
 

@@ -27,9 +27,10 @@ pub(super) fn write(
     run_folder::prepare(folder, RunKind::Fit)?;
     let units = options.measured.unit_system();
     let source = file.source(shots);
+    let labels = shots.sessions.iter().zip(&shots.shot_names);
     let rows = shots.shots.iter().map(|shot| shot.row);
-    let sessions = rows
-        .zip(shots.sessions.iter().map(String::as_str))
+    let labels = rows
+        .zip(labels.map(|(session, shot)| [session.as_str(), shot.as_str()]))
         .collect();
     let mut contents: Vec<(String, Vec<u8>)> = vec![
         (
@@ -42,7 +43,7 @@ pub(super) fn write(
         ),
         (
             "shots.csv".to_owned(),
-            shots_csv(fit, &sessions, &shots.rejected, units),
+            shots_csv(fit, &labels, &shots.rejected, units),
         ),
     ];
     for place in 0..fit.places.len() {
