@@ -18,7 +18,7 @@ if [ $# -eq 0 ]; then
   rm -r "$figures"
 fi
 draw tutorial_before '24.15 ft/s' '51.1 deg' '2.5 rev/s'
-draw tutorial_after '24.40 ft/s' '55.0 deg' '2.5 rev/s'
+draw tutorial_after '24.37 ft/s' '54.6 deg' '2.5 rev/s'
 fit=$(mktemp -d)
 "$bankshot" fit docs/data/gym_sensor.csv --out "$fit" --quiet >/dev/null
 cp "$fit/plots/make_zone.svg" "$fit/plots/reliability.svg" "$folder"
