@@ -47,8 +47,8 @@ pub(crate) struct MeasuredShotsOptions {
     /// `compare-sessions` takes two, and compares them.
     #[arg(long, value_name = "NAME")]
     pub(crate) session: Vec<String>,
-    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre, y to the right of
-    /// who faces the hoop) or court_94x50 (from a corner). z is upwards.
+    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre, y to the right
+    /// of who faces the hoop) or court_94x50 (from a corner). z is upwards.
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
     pub(crate) frame: String,
     /// Instead of --frame: where the hoop's centre is in the coordinates of the file, and the

@@ -69,7 +69,7 @@ mod tests {
                 values_at_height(&simulator, &place, &values, height_m).unwrap();
             let gained = 2.0 * physics.gravity_m_s2 * (height_m - 2.1);
             assert!((v * v - (7.4 * 7.4 - gained)).abs() < 1e-6);
-            assert!((v * pitch.cos() - 7.4 * 0.9_f64.cos()).abs() < 1e-8);
+            assert!((v * libm::cos(pitch) - 7.4 * libm::cos(0.9)).abs() < 1e-8);
             assert!((polar - 0.28).abs() < 1e-12 && spin == 14.0);
         }
         assert_eq!(values_at_height(&simulator, &place, &values, 9.0), None);

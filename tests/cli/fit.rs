@@ -420,6 +420,39 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
         "shooter,shots,made,place,distance_ft,court_angle_deg,release_height_ft,probability,low,high,"
     ));
     assert_eq!(table.lines().count(), 3);
+    // A height for each shooter, where the file has none.
+    let lacks: String = fs::read_to_string(&path)
+        .unwrap()
+        .lines()
+        .map(|line| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            cells.remove(5);
+            cells.join(",") + "\n"
+        })
+        .collect();
+    let lacks = write_file(&folder, "heights.csv", &lacks);
+    let with = |heights: &[&str]| {
+        let flags: Vec<&str> = heights
+            .iter()
+            .flat_map(|h| ["--release-height", h])
+            .collect();
+        fit(
+            lacks.to_str().unwrap(),
+            &folder.path().join("of_heights"),
+            &flags,
+        )
+    };
+    with(&["Ann=7 ft"])
+        .exits(2)
+        .says("--release-height gives none for Bob");
+    with(&["Ann=7 ft", "Bib=7 ft", "6 ft"])
+        .exits(2)
+        .says("has no shooter \"Bib\" for --release-height; it has Ann, Bob");
+    with(&["6 ft", "7 ft"]).exits(2).says("is given twice");
+    with(&["Ann=7 ft", "6.8 ft"]).exits(0);
+    let table = fs::read_to_string(folder.path().join("of_heights/shooters.csv")).unwrap();
+    let height = |row: usize| table.lines().nth(row).unwrap().split(',').nth(6).unwrap();
+    assert_eq!((height(1), height(2)), ("7.000", "6.800"));
     // One of them, by name.
     let one = folder.path().join("one");
     let answer = fit(path.to_str().unwrap(), &one, &["--shooter", "Ann"]).exits(0);

@@ -225,6 +225,19 @@ int main() {
 }
 "#;
 
+/// A place of a table has no shot: nothing is known beside it, whichever place comes first.
+const PYTHON_WITHOUT_FIRST_SHOT: &str = r#"
+import math, t
+for place in (0, 1):
+    shots = t.SHOTS
+    t.SHOTS = list(shots)
+    t.SHOTS[place] = [math.nan] * len(shots[place])
+    for distance in (10.5, 11.5):
+        assert all(math.isnan(value) for value in t.look_up(distance)), t.look_up(distance)
+    t.SHOTS = shots
+print(*t.look_up(11.5, 0.0)); print(*t.look_up(9.0))
+"#;
+
 const JAVA_MAIN: &str = r#"
 public class Main {
     public static void main(String[] arguments) {
@@ -275,6 +288,7 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
             ],
             "python3",
         ),
+        ("python3", vec!["-c", PYTHON_WITHOUT_FIRST_SHOT], "python3"),
         ("sh", vec!["-c", "c++ -std=c++11 -o t t.cpp && ./t"], "c++"),
         (
             "sh",
@@ -548,7 +562,7 @@ fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
 fn contract_the_pitch_limits_of_a_profile_hold() {
     let folder = TempDir::new().unwrap();
     let limits = "pitch_min = \"58 deg\"\npitch_max = \"61 deg\"\n";
-    let profile = write_file(&folder, "robot.toml", &format!("{ROBOT}{limits}"));
+    let profile = write_file(&folder, "robot.toml", format!("{ROBOT}{limits}"));
     let run = |words: &[&str]| {
         let mut command = bankshot();
         let command = command.arg(words[0]).arg(&profile).args(&words[1..]);

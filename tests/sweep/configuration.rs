@@ -1,6 +1,8 @@
 //! The files of a sweep: what is refused and how, and when a folder holds another sweep.
 
 use crate::support::{SWEEP, TestFolder, assert_code, assert_printed, bankshot, printed, tables};
+use bankshot::sweep::{SourceTexts, sweep_toml::parse_sweep};
+use bankshot::units::UnitSystem;
 use std::fs;
 
 #[test]
@@ -55,6 +57,32 @@ fn contract_another_version_of_the_program_is_refused_and_named() {
         assert_printed(&output, "program.version: the folder has \"9.9.9\"");
     }
     assert_eq!(tables(&out), bytes);
+}
+
+/// A launcher's limits and units are in its file. The sweep's own keys go first.
+#[test]
+fn contract_the_limits_of_the_shooters_file_hold_in_a_sweep() {
+    let (sweep, rest) = SWEEP.split_at(SWEEP.find("[shooter]").unwrap());
+    let (shooter, settings) = rest.split_at(rest.find("[grid]").unwrap());
+    let limits = "[search]\nchoose = [\"speed\", \"pitch\"]\npitch_min = \"50 deg\"\n\
+                  pitch_max = \"60 deg\"\nspeed_max = \"30 ft/s\"\nstandard_error = 0.05\n\
+                  [location]\ndistance = \"10 ft\"\nangle = \"0 deg\"\n[output]\nunits = \"metric\"\n";
+    let own = settings.replace("[search]", "[search]\npitch_max = \"58 deg\"");
+    assert_ne!(own, settings);
+    let texts = SourceTexts {
+        sweep: format!("{sweep}shooter = \"launcher.toml\"\n{own}"),
+        shooter: Some(format!("{shooter}{limits}")),
+        places: None,
+    };
+    let settings = parse_sweep(&texts, "sweep.toml").unwrap().settings;
+    let search = &settings.search;
+    let degrees = |rad: Option<f64>| (rad.unwrap().to_degrees() * 1e6).round() / 1e6;
+    assert_eq!(degrees(search.pitch_min_rad), 50.0);
+    assert_eq!(degrees(search.pitch_max_rad), 58.0);
+    assert!((search.speed_max_m_s.unwrap() - 9.144).abs() < 1e-9);
+    assert_eq!(search.choice.iter().count(), 2);
+    assert_eq!(search.standard_error, Some(0.02));
+    assert_eq!(settings.output.units, UnitSystem::Metric);
 }
 
 /// A table that belongs to the shooter's file is refused once, not also as unknown.

@@ -1,8 +1,7 @@
 //! What a fit took as known, for programs: the tracker's errors and the prior.
 
-use super::fit_json::FitSource;
 use super::parameters::value_units;
-use crate::fitting::{Spread, VALUE_NAMES};
+use crate::fitting::{PopulationPrior, Spread, TrackerNoise, VALUE_NAMES};
 use crate::output::json_object::{number, object};
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, UnitSystem};
 use serde_json::Value;
@@ -20,15 +19,15 @@ fn quantity(name: &str, (unit, size): (&str, f64), value: f64) -> Value {
     ])
 }
 
-/// Standard deviations of the tracker's errors in what was measured; of tracked flights those of a
-/// coordinate, with the correlation from frame to frame.
-pub(super) fn tracker_errors_json(source: &FitSource<'_>, units: UnitSystem) -> Value {
-    let (noise, of_value) = (&source.noise, value_units(units));
+/// Standard deviations of the tracker's errors in what was measured (`kind`); of tracked flights
+/// those of a coordinate, with the correlation from frame to frame.
+pub(super) fn tracker_errors_json(kind: &str, noise: &TrackerNoise, units: UnitSystem) -> Value {
+    let of_value = value_units(units);
     let (small, long) = match units {
         UnitSystem::Imperial => (("in", INCH_M), ("ft", FOOT_M)),
         UnitSystem::Metric => (("cm", 0.01), ("m", 1.0)),
     };
-    match source.kind {
+    match kind {
         "releases" => (0..VALUE_NAMES.len())
             .map(|i| {
                 let name = format!("{}_sd", VALUE_NAMES[i]);
@@ -55,8 +54,8 @@ pub(super) fn tracker_errors_json(source: &FitSource<'_>, units: UnitSystem) -> 
 /// The prior: normal distributions of the logarithms of the standard deviations, of Fisher's z of
 /// the correlations, of the speed scatter's growth, and of a backspin that was not measured. That
 /// of the means is flat.
-pub(super) fn prior_json(source: &FitSource<'_>, units: UnitSystem) -> Value {
-    let (prior, of_value) = (&source.prior, value_units(units));
+pub(super) fn prior_json(prior: &PopulationPrior, units: UnitSystem) -> Value {
+    let of_value = value_units(units);
     let spread = |spread: &Spread, size: f64| {
         object(vec![
             named("mean", number(spread.mean / size)),

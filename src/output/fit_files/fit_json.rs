@@ -214,7 +214,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             ]),
         ),
         named("weight_of_the_population", object(weights.collect())),
-        named("prior", prior_json(source, units)),
+        named("prior", prior_json(&source.prior, units)),
         named(
             "source",
             object(vec![
@@ -223,7 +223,10 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
                 named("file_blake3", source.file_blake3.clone().into()),
                 named("tracker", source.tracker.0.clone().into()),
                 named("tracker_noise", source.tracker.1.clone().into()),
-                named("tracker_errors", tracker_errors_json(source, units)),
+                named(
+                    "tracker_errors",
+                    tracker_errors_json(source.kind, &source.noise, units),
+                ),
                 named("physics", source.physics.clone().into()),
                 named("names_the_shooter", source.is_shooter_named.into()),
             ]),

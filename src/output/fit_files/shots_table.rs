@@ -5,8 +5,8 @@ use crate::fitting::{ShooterFit, VALUE_NAMES, landing_of};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use std::collections::BTreeMap;
 
-/// The bytes of the table. `labels` are the session and the name of the shots by row, `rejected` the
-/// rows kept out.
+/// The bytes of the table. `labels` are the session and the name of the shots by row, `rejected`
+/// the rows kept out.
 #[must_use]
 pub fn shots_csv(
     fit: &ShooterFit,
