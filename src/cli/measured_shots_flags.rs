@@ -123,26 +123,34 @@ fn quantity(
     .transpose()
 }
 
-/// Keeps the rows of one shooter; of all, if none is named.
-fn keep_shooter(table: &mut Table, columns: &Columns, wanted: Option<&str>) -> Result<(), String> {
-    let Some(wanted) = wanted else {
-        return Ok(());
-    };
+/// The shooters that a table names; one without a name, if it has no column of them.
+fn shooter_of(columns: &Columns, cells: &[String]) -> String {
     let index = columns.label(Label::Shooter);
-    let shooter = |cells: &[String]| {
-        let cell = index.and_then(|index| cells.get(index));
-        cell.map_or("", |cell| cell.trim()).to_owned()
-    };
-    let known: BTreeSet<String> = table.rows.iter().map(|(_, cells)| shooter(cells)).collect();
-    if !known.contains(wanted) {
-        let all = match index {
-            None => "no column shooter (name it with --map 'shooter=COLUMN')".to_owned(),
-            Some(_) => known.into_iter().collect::<Vec<_>>().join(", "),
-        };
-        return Err(format!("has no shooter \"{wanted}\"; it has {all}"));
+    let cell = index.and_then(|index| cells.get(index));
+    cell.map_or("", |cell| cell.trim()).to_owned()
+}
+
+/// Refuses a shooter whom the table does not have; `flag` names them.
+fn check_shooter(
+    table: &Table,
+    columns: &Columns,
+    (flag, wanted): (&str, &str),
+) -> Result<(), String> {
+    let all = table
+        .rows
+        .iter()
+        .map(|(_, cells)| shooter_of(columns, cells));
+    let known: BTreeSet<String> = all.collect();
+    if known.contains(wanted) {
+        return Ok(());
     }
-    table.rows.retain(|(_, cells)| shooter(cells) == wanted);
-    Ok(())
+    let all = match columns.label(Label::Shooter) {
+        None => "no column shooter (name it with --map 'shooter=COLUMN')".to_owned(),
+        Some(_) => listed(known.iter().map(String::as_str)),
+    };
+    Err(format!(
+        "has no shooter \"{wanted}\" for {flag}; it has {all}"
+    ))
 }
 
 /// Keeps the rows of some sessions; of all, if none is named.
@@ -175,18 +183,19 @@ fn keep_sessions(table: &mut Table, columns: &Columns, wanted: &[String]) -> Res
 
 /// The names of shooters, for a message.
 fn names_of(shooters: &[ShooterShots]) -> String {
+    listed(shooters.iter().map(|shooter| shooter.name.as_str()))
+}
+
+/// Names in a list, not all of them if they are many.
+fn listed<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
     /// More names than this are not listed.
     const MOST_LISTED: usize = 12;
-    let names: Vec<&str> = shooters
-        .iter()
-        .take(MOST_LISTED)
-        .map(|shooter| shooter.name.as_str())
-        .collect();
-    let more = if shooters.len() > MOST_LISTED {
+    let more = if names.len() > MOST_LISTED {
         ", ..."
     } else {
         ""
     };
+    let names: Vec<&str> = names.take(MOST_LISTED).collect();
     format!("{}{more}", names.join(", "))
 }
 
@@ -277,8 +286,21 @@ impl MeasuredShotsOptions {
         let mut table = Table::read(path).map_err(refuse)?;
         let columns = Columns::new(&table.header, &self.maps()?)
             .map_err(|errors| refuse(errors.join("\n")))?;
+        let release_heights_m = self.release_heights_m()?;
+        let named = release_heights_m.iter().filter_map(|(name, _)| {
+            let name = name.as_deref()?;
+            Some(("--release-height", name))
+        });
+        let wanted = self.shooter.iter().map(|name| ("--shooter", name.as_str()));
+        for shooter in named.chain(wanted) {
+            check_shooter(&table, &columns, shooter).map_err(refuse)?;
+        }
+        if let Some(name) = &self.shooter {
+            table
+                .rows
+                .retain(|(_, cells)| shooter_of(&columns, cells) == *name);
+        }
         keep_sessions(&mut table, &columns, sessions).map_err(refuse)?;
-        keep_shooter(&mut table, &columns, self.shooter.as_deref()).map_err(refuse)?;
         let source = Source::of(&columns).map_err(refuse)?;
         let physics_name = self
             .physics
@@ -292,7 +314,7 @@ impl MeasuredShotsOptions {
             frame: self.frame()?,
             distance_m: quantity("distance", self.distance.as_ref(), Dimension::Length)?,
             court_angle_rad: quantity("angle", self.angle.as_ref(), Dimension::Angle)?,
-            release_heights_m: self.release_heights_m()?,
+            release_heights_m,
             backspin_rad_s,
             noise,
         };

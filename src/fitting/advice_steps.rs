@@ -28,6 +28,8 @@ const TOLERANCE: f64 = 0.005;
 /// Nobody can throw harder or softer, or aim to a side, by less than this on purpose: m/s, rad.
 pub const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 const SAME_AIM_RAD: f64 = 0.05 * DEGREE_RAD;
+/// The same for the release angle, rad.
+const SAME_PITCH_RAD: f64 = 0.1 * DEGREE_RAD;
 /// The least gain in P that is worth a change.
 const WORTH_A_CHANGE: f64 = 0.005;
 
@@ -266,7 +268,7 @@ impl<'a> Shooting<'a> {
             change = none.with(0, own_speed);
             order.push((Cause::SPEED, change));
         }
-        if angle != usual[1] {
+        if (angle - usual[1]).abs() >= SAME_PITCH_RAD {
             change = change.with(0, speed).with(1, angle);
             order.push((Cause::PITCH, change));
         }

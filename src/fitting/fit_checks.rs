@@ -152,7 +152,7 @@ impl std::fmt::Display for FitWarning {
             }
             Self::Drift(name, p, by) => write!(
                 out,
-                "{name} drifts by {} from the first shot to the last ({}): the last shots are not as the mean, which P and advice are about",
+                "{name} drifts by {} from the first shot to the last ({}): the last shots differ from the mean, on which P and the advice are based",
                 drift_in_words(name, *by),
                 p_value(*p)
             ),

@@ -105,25 +105,11 @@ fn check_options(reader: &RowReader<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Refuses a height for a shooter that the file does not have, and a shooter without one.
+/// Refuses a shooter without a height, where others have one.
 fn check_named_heights(reader: &RowReader<'_>, shooters: &[&String]) -> Result<(), String> {
-    let heights = &reader.options.release_heights_m;
-    let listed = || {
-        let names = shooters.iter().map(|name| name.as_str());
-        names.collect::<Vec<_>>().join(", ")
-    };
-    let named = heights.iter().filter_map(|(name, _)| name.as_ref());
-    for name in named {
-        if !shooters.contains(&name) {
-            return Err(format!(
-                "has no shooter \"{name}\" for --release-height; it has {}",
-                listed()
-            ));
-        }
-    }
     let lacks = |name: &&&String| reader.options.release_height_m(name).is_none();
     match shooters.iter().find(lacks) {
-        Some(name) if !heights.is_empty() => Err(format!(
+        Some(name) if !reader.options.release_heights_m.is_empty() => Err(format!(
             "--release-height gives none for {name}: add '{name}=7 ft', or '7 ft' for all others"
         )),
         _ => Ok(()),

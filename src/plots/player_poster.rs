@@ -7,7 +7,6 @@ use super::court_map::{CourtMap, MapStyle};
 use super::svg::{Anchor, Plot, Svg};
 use super::sweep_results::SweepResults;
 use crate::analysis::sensitivity::Difference;
-use crate::sweep::columns;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 use crate::units::UnitSystem;
 
@@ -113,7 +112,12 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         let corner = (0.0, MAP_TOP);
         let no_key = ColourKey::Legend(&[]);
         results.draw_on(&map, &mut svg, corner, "", &no_key, &|place| {
-            Some(pale(place.best()?.real(columns::PROBABILITY)?))
+            let chances = results.chances();
+            let told = chances
+                .iter()
+                .find(|known| known.place == place.place)?
+                .told();
+            Some(pale(told?.value))
         });
         map.draw_outline(&mut svg, corner, &outlined);
         map.draw_numbers(&mut svg, corner, &numbers);

@@ -309,6 +309,13 @@ impl SearchSettings {
         if omits(NominalVariable::Speed) && nominal.speed_m_s.is_none() {
             checks.refuse(KEY, "leaves speed out, so [nominal] must give it");
         }
+        let speed = nominal.speed_m_s.filter(|_| omits(NominalVariable::Speed));
+        if let Some(words) = speed.and_then(|speed| self.speed_beyond_limit(speed)) {
+            checks.refuse(
+                "nominal.speed",
+                format!("{words} (search.choose leaves speed out, so every shot has this one)"),
+            );
+        }
         if omits(NominalVariable::Pitch) {
             match nominal.pitch_rad {
                 Some(pitch) if PITCH_RANGE_RAD.contains(&pitch) => {

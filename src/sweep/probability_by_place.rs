@@ -209,3 +209,31 @@ impl PlaceProbabilities {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bank shot that the draws leave in doubt is not told, nor is its chance.
+    #[test]
+    fn contract_a_doubtful_bank_shot_is_not_told() {
+        let p = |value: f64| {
+            Some(Difference {
+                value,
+                standard_error: 0.001,
+            })
+        };
+        let place = |bank_is_better| PlaceProbabilities {
+            place: CourtPlace { x_m: 3.0, y_m: 0.0 },
+            name: None,
+            direct: p(0.70),
+            bank: p(0.74),
+            nominals: [None; 2],
+            bank_is_better,
+            board_aim_m: None,
+        };
+        for (share, told) in [(None, 0.74), (Some(0.95), 0.74), (Some(0.6), 0.70)] {
+            assert_eq!(place(share).told().unwrap().value, told, "{share:?}");
+        }
+    }
+}

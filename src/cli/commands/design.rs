@@ -341,14 +341,13 @@ fn noise(
         release_height_m: profile.shooter().release_height_m,
     };
     let (simulator, values) = (profile.simulator(), values_of(nominal));
+    let refuse = || Failure::usage("the usual shot does not fall through the height of the hoop");
+    let landing: Landing = landing_of(simulator, &place, &values).ok_or_else(refuse)?;
     match tracker.sees {
         Source::Releases => Ok(tracker.noise.release_covariance()),
         Source::Trajectories => tracked_flight_noise(simulator, &place, &values, &tracker.noise)
             .map_err(|error| Failure::usage(format!("the usual shot, as tracked: {error}"))),
         Source::Landings => {
-            let refuse =
-                || Failure::usage("the usual shot does not fall through the height of the hoop");
-            let landing: Landing = landing_of(simulator, &place, &values).ok_or_else(refuse)?;
             let noise = &tracker.noise.landing;
             release_of_landing(simulator, &place, &landing, noise, values[3])
                 .map(|(_, covariance)| covariance)

@@ -20,8 +20,8 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Searches the best shots under nearly twenty physics: one to four minutes on two cores. What nobody measured in this gym (how soft the \
-ring is, the friction, the drag) is changed to other likely values; \"together\" is, for \
+Searches the best shots under 23 physics: one to four minutes on two cores. What nobody measured in this gym (how soft the \
+ring and the board are, the friction, the drag, the height) is changed to other likely values; \"together\" is, for \
 the changes that lower P and for those that raise it, the root of the sum of squares, of each quantity the change that does most.
 
 Examples:

@@ -386,7 +386,15 @@ pub fn advice_text(
     if let Some(steps) = &advice.steps {
         text += "\nstep by step, each on top of those before";
         if !steps.steps.iter().all(AdviceStep::is_sure) {
-            text += " (in brackets: too little or too unsure to be advised alone; the next step holds it too)";
+            text += " (in brackets: too little or too unsure to be advised";
+            let speed_then_angle = steps.steps.windows(2).any(|pair| {
+                let causes = [pair[0].cause, pair[1].cause];
+                causes == [Cause::SPEED, Cause::PITCH] && !pair[0].is_sure() && pair[1].is_sure()
+            });
+            if speed_then_angle {
+                text += " alone; the new angle comes with a speed of its own";
+            }
+            text += ")";
         }
         text += "\n";
         let mut from = advice.usual;

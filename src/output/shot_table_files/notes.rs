@@ -318,21 +318,21 @@ fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     (!texts.is_empty()).then(|| format!("The better kind{about}: {}.", texts.join(", ")))
 }
 
-/// Where the best pitch angle is a limit of the launcher.
+/// Where the pitch angle is a limit of the launcher.
 fn limit_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option<String> {
     let search = &profile.settings().search;
     let limits = [
-        ("pitch_min", "flatter", search.pitch_min_rad),
-        ("pitch_max", "steeper", search.pitch_max_rad),
+        ("pitch_min", search.pitch_min_rad),
+        ("pitch_max", search.pitch_max_rad),
     ];
-    let texts = limits.into_iter().filter_map(|(key, words, limit_rad)| {
+    let texts = limits.into_iter().filter_map(|(key, limit_rad)| {
         let limit_rad = limit_rad?;
         let places = Places::of(table, |shot| {
             (shot.nominal.pitch_rad - limit_rad).abs() < 1e-9
         });
         (!places.is_empty()).then(|| {
             format!(
-                "In {} the pitch is {key} ({} deg); a {words} shot may be better: {}.",
+                "In {} the pitch is the limit {key} ({} deg): {}.",
                 places.count_text(),
                 short(limit_rad / DEGREE_RAD),
                 places.text(table, units)

@@ -78,15 +78,26 @@ impl<R: Read> CsvRecords<R> {
     }
 
     /// The same of a text whose cells may be separated by semicolons or tabs: where its first line
-    /// has two or more of them, and more than commas (a name may hold one).
+    /// that is not empty has two or more of them outside quotes, and more than commas (a name may
+    /// hold one).
     ///
     /// # Errors
     /// The text cannot be read.
     pub fn with_any_separator(input: R) -> io::Result<Self> {
         let mut records = Self::new(input)?;
         let text = &records.buffer[records.start..];
-        let line = &text[..memchr::memchr2(b'\n', b'\r', text).unwrap_or(text.len())];
-        let count = |separator| memchr::memchr_iter(separator, line).count();
+        let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+        let mut lines = text.split(is_end);
+        let line = lines.find(|line| !line.trim_ascii().is_empty());
+        // Every other part between quotes is inside them.
+        let parts = line.unwrap_or_default().split(|byte| *byte == b'"');
+        let outside: Vec<&[u8]> = parts.step_by(2).collect();
+        let count = |separator| -> usize {
+            let counts = outside
+                .iter()
+                .map(|part| memchr::memchr_iter(separator, part).count());
+            counts.sum()
+        };
         for separator in [b';', b'\t'] {
             if count(separator) > count(b',').max(1) {
                 records.separator = separator;
@@ -471,5 +482,39 @@ mod tests {
                 .is_err_and(|reason| reason.contains("longer than"))
         );
         assert_eq!(found[2].number, 3);
+    }
+
+    /// A separator in quotes belongs to its cell, and a comma in a name does not make a table of
+    /// commas.
+    #[test]
+    fn contract_semicolons_and_tabs_separate_cells() {
+        let cells_of = |text: &str| -> Vec<Vec<String>> {
+            let mut records = CsvRecords::with_any_separator(text.as_bytes()).unwrap();
+            let rows = records.next_rows(10, 1000).unwrap().into_iter();
+            rows.filter_map(|row| row.cells.ok())
+                .map(|cells| {
+                    cells
+                        .iter()
+                        .map(|c| String::from_utf8_lossy(c).into())
+                        .collect()
+                })
+                .collect()
+        };
+        for (text, expected) in [
+            (
+                "\na;\"b;, c\";d\n1,5;2;3\n",
+                [["a", "b;, c", "d"], ["1,5", "2", "3"]],
+            ),
+            (
+                "a\t\"b\tc\"\td\n\"1\"\t2\t3\n",
+                [["a", "b\tc", "d"], ["1", "2", "3"]],
+            ),
+            (
+                "a,\"b;c;d\",e\n1,2,3\n",
+                [["a", "b;c;d", "e"], ["1", "2", "3"]],
+            ),
+        ] {
+            assert_eq!(cells_of(text), expected, "{text:?}");
+        }
     }
 }

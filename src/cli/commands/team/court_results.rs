@@ -127,7 +127,7 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
 }
 
 /// A share in percent, rounded down: 90 is at least 90 %, which counts as sure.
-fn whole_percent(share: f64) -> u32 {
+pub(super) fn whole_percent(share: f64) -> u32 {
     (100.0 * share + 1e-9) as u32
 }
 

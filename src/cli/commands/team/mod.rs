@@ -36,6 +36,7 @@ use std::path::{Path, PathBuf};
 
 use court_results::{
     LONGEST_NAME, PlayerSweep, best_players, in_hundred, table_of, team_csv, team_page, team_text,
+    whole_percent,
 };
 
 #[derive(Args, Debug)]
@@ -235,7 +236,7 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
                 Some(Preference::Bank) => bank_is_better,
                 _ => 1.0 - bank_is_better,
             };
-            advice += &format!(" ({:.0} %)", 100.0 * share);
+            advice += &format!(" ({} %)", whole_percent(share));
             is_sure = share >= SURE;
             any_draws = true;
         }
