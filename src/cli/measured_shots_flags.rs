@@ -130,11 +130,11 @@ fn shooter_of(columns: &Columns, cells: &[String]) -> String {
     cell.map_or("", |cell| cell.trim()).to_owned()
 }
 
-/// Refuses a shooter whom the table does not have; `flag` names them.
+/// Refuses a shooter whom the table does not have. `wanted_for`: by what they are named.
 fn check_shooter(
     table: &Table,
     columns: &Columns,
-    (flag, wanted): (&str, &str),
+    (wanted, wanted_for): (&str, &str),
 ) -> Result<(), String> {
     let all = table
         .rows
@@ -149,7 +149,7 @@ fn check_shooter(
         Some(_) => listed(known.iter().map(String::as_str)),
     };
     Err(format!(
-        "has no shooter \"{wanted}\" for {flag}; it has {all}"
+        "has no shooter \"{wanted}\"{wanted_for}; it has {all}"
     ))
 }
 
@@ -289,9 +289,9 @@ impl MeasuredShotsOptions {
         let release_heights_m = self.release_heights_m()?;
         let named = release_heights_m.iter().filter_map(|(name, _)| {
             let name = name.as_deref()?;
-            Some(("--release-height", name))
+            Some((name, " for --release-height"))
         });
-        let wanted = self.shooter.iter().map(|name| ("--shooter", name.as_str()));
+        let wanted = self.shooter.iter().map(|name| (name.as_str(), ""));
         for shooter in named.chain(wanted) {
             check_shooter(&table, &columns, shooter).map_err(refuse)?;
         }
