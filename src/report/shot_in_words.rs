@@ -37,8 +37,8 @@ impl ReportShot {
             self.shot.probability,
             nominal.speed_m_s / unit_m,
             nominal.pitch_rad / DEGREE_RAD,
-            // Adding 0 turns a negative zero into zero.
-            nominal.polar_rad / DEGREE_RAD + 0.0,
+            // Rounded first, and 0 added: no negative zero.
+            libm::round(10.0 * nominal.polar_rad / DEGREE_RAD) / 10.0 + 0.0,
             nominal.backspin_rad_s / REV_RAD
         )
     }

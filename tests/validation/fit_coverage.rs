@@ -696,7 +696,7 @@ fn session_changes(
 /// %. And how often does it see a release angle that changed by its standard deviation over a
 /// third, and scatter in speed that fell by a third?
 #[test]
-#[ignore = "five minutes: cargo test --test validation campaign_compare_sessions -- --ignored --nocapture"]
+#[ignore = "four minutes: cargo test --test validation campaign_compare_sessions -- --ignored --nocapture"]
 fn campaign_compare_sessions_seldom_sees_what_did_not_change() {
     let repetitions: u64 =
         std::env::var("BANKSHOT_REPETITIONS").map_or(600, |n| n.parse().unwrap());
@@ -769,7 +769,7 @@ fn campaign_compare_sessions_seldom_sees_what_did_not_change() {
 /// The gain that `advise` promises from the changes it is sure of, against the true gain of a
 /// shooter who makes them.
 #[test]
-#[ignore = "ten minutes: cargo test --test validation campaign_advice -- --ignored --nocapture"]
+#[ignore = "five minutes: cargo test --test validation campaign_advice -- --ignored --nocapture"]
 fn campaign_advice_covers_the_true_gain() {
     let repetitions: u64 =
         std::env::var("BANKSHOT_REPETITIONS").map_or(200, |n| n.parse().unwrap());

@@ -242,7 +242,14 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
         return text + "no place where a bank shot is better by 1 in 100.\n";
     }
     text += "bank it from\n";
-    let words = |chances: &PlaceProbabilities| chances.in_words_with_mirror(&bank, units);
+    // A place stands for its mirror image too where both are sure, or both are not.
+    let words = |chances: &PlaceProbabilities| {
+        let alike = bank
+            .iter()
+            .filter(|other| other.is_sure() == chances.is_sure());
+        let alike: Vec<&PlaceProbabilities> = alike.copied().collect();
+        chances.in_words_with_mirror(&alike, units)
+    };
     let mut listed: Vec<String> = Vec::new();
     for chances in &bank {
         if listed.contains(&words(chances)) {
