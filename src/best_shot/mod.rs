@@ -12,7 +12,8 @@ pub use crate::shooter::ShotKind;
 pub use best_by_pitch::{ShotAtPitch, best_by_pitch};
 pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
 pub use physics_comparison::{
-    PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, compare_physics, physics_variants,
+    PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, SameShotProbability, compare_physics,
+    physics_variants,
 };
 pub use search::{find, find_kinds};
 pub use shot_table::{

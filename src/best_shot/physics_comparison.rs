@@ -5,7 +5,7 @@ use super::search::find_kinds;
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, SolidId};
-use crate::probability::{Estimate, Progress, Sampler, Silent};
+use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{FOOT_M, UnitSystem};
 use std::collections::BTreeMap;
@@ -33,9 +33,18 @@ pub struct PhysicsRow {
     /// Where the undisturbed path of the best direct shot falls past the hoop's centre, m.
     pub aim_past_centre_m: Option<f64>,
     /// P of [`PhysicsComparison::same_shot`].
-    pub same_shot: Option<Estimate>,
+    pub same_shot: Option<SameShotProbability>,
     /// As [`PhysicsVariant::is_unmeasured`].
     pub is_unmeasured: bool,
+}
+
+/// P of one shot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SameShotProbability {
+    /// P.
+    pub probability: f64,
+    /// Its numerical standard error.
+    pub standard_error: f64,
 }
 
 /// The best shots of a profile under each physics, and one shot under all of them.
@@ -43,13 +52,27 @@ pub struct PhysicsRow {
 pub struct PhysicsComparison {
     /// One for each physics.
     pub rows: Vec<PhysicsRow>,
-    /// The shot that is released the same way in every row.
+    /// The shot that is the same in every row.
     pub same_shot: SameShot,
     /// The row that single changes start from: the profile's own physics, or `ncaa`.
     pub base: usize,
 }
 
 impl PhysicsComparison {
+    /// The same with another shot that is the same in every row.
+    #[must_use]
+    pub fn with_same_shot(
+        mut self,
+        same_shot: SameShot,
+        of_rows: impl IntoIterator<Item = Option<SameShotProbability>>,
+    ) -> Self {
+        self.same_shot = same_shot;
+        for (row, probability) in self.rows.iter_mut().zip(of_rows) {
+            row.same_shot = probability;
+        }
+        self
+    }
+
     /// What the single changes that nobody measured in this gym do to a P of a row: their names and
     /// P less that of the base, the largest first.
     pub fn unmeasured_changes(&self, p: impl Fn(&PhysicsRow) -> Option<f64>) -> Vec<(&str, f64)> {
@@ -68,10 +91,7 @@ impl PhysicsComparison {
         let errors = self.rows.iter().flat_map(|row| {
             let of_best =
                 |shot: &Result<BestShot, NoShot>| Some(shot.as_ref().ok()?.estimate.standard_error);
-            let same = row
-                .same_shot
-                .as_ref()
-                .map(|estimate| estimate.standard_error);
+            let same = row.same_shot.map(|shot| shot.standard_error);
             [of_best(&row.direct), of_best(&row.bank), same]
         });
         errors.flatten().fold(0.0, f64::max)
@@ -110,8 +130,9 @@ impl PhysicsComparison {
         );
         if !same.is_empty() {
             text += &format!(
-                " To {}, which is not aimed again: {} ({}).",
+                " To {}, {}: {} ({}).",
                 self.same_shot.in_words(),
+                self.same_shot.what_stays(),
                 list(&same),
                 together(&same)
             );
@@ -143,6 +164,8 @@ pub enum SameShot {
     OfProfile,
     /// The best shot of the first row, of either kind.
     BestOfFirstRow,
+    /// The usual shot of a fit, as the tracker saw it fall to the hoop.
+    AsMeasured,
 }
 
 impl SameShot {
@@ -152,6 +175,16 @@ impl SameShot {
         match self {
             Self::OfProfile => "the usual shot (the profile's [nominal] table)",
             Self::BestOfFirstRow => "the best shot of the first row",
+            Self::AsMeasured => "the usual shot",
+        }
+    }
+
+    /// What of it is the same under each physics, in words.
+    #[must_use]
+    pub fn what_stays(self) -> &'static str {
+        match self {
+            Self::OfProfile | Self::BestOfFirstRow => "released the same way everywhere",
+            Self::AsMeasured => "which falls to the hoop as it was measured",
         }
     }
 }
@@ -329,7 +362,11 @@ pub fn compare_physics(
         let search = other.search();
         let same_shot = own.or(first).map(|shot| {
             let sampler = Sampler::new(&other);
-            sampler.estimate(&shot, search.standard_error, search.seed, &Silent)
+            let estimate = sampler.estimate(&shot, search.standard_error, search.seed, &Silent);
+            SameShotProbability {
+                probability: estimate.probability,
+                standard_error: estimate.standard_error,
+            }
         });
         rows.push(PhysicsRow {
             name: variant.name.clone(),

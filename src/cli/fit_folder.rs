@@ -73,6 +73,14 @@ pub(crate) fn index_of_place(number: Option<u32>, places: usize) -> Result<usize
     Ok(number - 1)
 }
 
+/// The file of the profile at a place, by its index.
+pub(crate) fn profile_file(place: usize) -> String {
+    match place {
+        0 => "profile.toml".to_owned(),
+        _ => format!("profile_place_{}.toml", place + 1),
+    }
+}
+
 /// Refuses options that only a file of measured shots has a use for.
 pub(crate) fn refuse_options_of_files(
     folder: &Path,

@@ -12,7 +12,7 @@ use crate::probability::Progress;
 use crate::shooter::{NominalVariable, Profile, SearchChoice, ShotKind};
 
 /// Draws that advice is computed for, at most.
-const DRAWS: usize = 400;
+pub(super) const DRAWS: usize = 400;
 /// The factor on a standard deviation for "10 % less scatter".
 const TRAINED: f64 = 0.9;
 
@@ -98,6 +98,12 @@ pub fn usual_probabilities(
     )
 }
 
+/// At most so many draws, evenly over all.
+pub(super) fn thinned(posterior: &Posterior, most: usize) -> Vec<Draw> {
+    let step = posterior.draws.len().div_ceil(most);
+    posterior.draws.iter().step_by(step).cloned().collect()
+}
+
 /// Advice from the posterior at one of its places; `profile` is that of [`super::fitted_profile`]
 /// there.
 ///
@@ -110,8 +116,7 @@ pub fn advise(
     progress: &dyn Progress,
 ) -> Result<Advice, BestShotError> {
     let typical = posterior.typical();
-    let step = posterior.draws.len().div_ceil(DRAWS);
-    let draws: Vec<Draw> = posterior.draws.iter().step_by(step).cloned().collect();
+    let draws = thinned(posterior, DRAWS);
     let mut shooting = Shooting::new(profile, &draws, &typical, place);
     let usual_p = shooting.with(Change::default()).probabilities.clone();
     let keeps_backspin = posterior.spin != SpinSource::Measured;

@@ -28,6 +28,7 @@ mod prior;
 mod session_comparison;
 mod session_trends;
 mod shooter_fit;
+mod shots_under_physics;
 mod student_posterior;
 mod test_design;
 mod tracked_flight_noise;
@@ -63,7 +64,8 @@ pub use session_comparison::{
 };
 pub use session_trends::{SessionTrend, session_names, trends};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
-pub use test_design::{DesignRow, design, simulated_test};
+pub use shots_under_physics::{FittedShots, Measured, ShotsUnderPhysics};
+pub use test_design::{DesignRow, SessionError, design, simulated_test};
 pub use tracked_flight_noise::tracked_flight_noise;
 pub use tracker_noise::{Tracker, TrackerNoise};
 pub use unmeasured_parameter_likelihood::{LikelihoodCurve, UnseenParameter, likelihood_curve};

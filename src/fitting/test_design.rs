@@ -4,6 +4,7 @@ use super::advice::usual_probabilities;
 use super::fitted_profile::fitted_profile;
 use super::measured_release::{Covariance, MeasuredRelease, Place, Values};
 use super::posterior::{FitError, FitOptions, SpinSource, Tails, fit};
+use super::session_comparison::POWER;
 use crate::math::normal_distribution::quantile;
 use crate::probability::{Progress, Sampler};
 use crate::shooter::{Nominal, Profile, ReleaseDistribution};
@@ -26,6 +27,51 @@ pub struct DesignRow {
     pub probability_error: f64,
     /// Standard deviation of P from counting makes.
     pub counting_error: f64,
+}
+
+impl DesignRow {
+    /// The mean of the relative errors of the three standard deviations.
+    #[must_use]
+    pub fn sd_error(&self) -> f64 {
+        self.sd_errors.iter().sum::<f64>() / self.sd_errors.len() as f64
+    }
+}
+
+/// A test that is there already, or is to be: how far it knows something. `error` is what one shot
+/// alone would know it to; the error falls with the square root of the shots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SessionError {
+    /// Standard deviation of one shot.
+    pub of_one_shot: f64,
+    /// Shots of the session.
+    pub shots: f64,
+}
+
+impl SessionError {
+    /// The standard deviation of the session.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        self.of_one_shot / self.shots.sqrt()
+    }
+
+    /// How many shots a second session needs to show a change since this one at the level of 95 %
+    /// with a power of 80 %, where each of its shots tells `ratio` times this one's error; `None`
+    /// if no number suffices.
+    #[must_use]
+    pub fn second_session(&self, change: f64, ratio: f64) -> Option<f64> {
+        let own = self.error();
+        let seen = change / POWER;
+        let left = seen * seen - own * own;
+        let of_one_shot = ratio * self.of_one_shot;
+        (left > 0.0).then(|| of_one_shot * of_one_shot / left)
+    }
+
+    /// How many shots two equal sessions need each.
+    #[must_use]
+    pub fn each_session(of_one_shot: f64, change: f64, ratio: f64) -> f64 {
+        let needed = POWER * of_one_shot * libm::hypot(1.0, ratio) / change;
+        needed * needed
+    }
 }
 
 /// A simulated test: shots of a profile with a tracker's errors.
@@ -146,4 +192,30 @@ pub fn design(
     let rows = rows.collect();
     progress.end();
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Authority: the variance of a difference is the sum of the variances.
+    #[test]
+    fn contract_a_second_session_of_the_needed_size_shows_the_change() {
+        let first = SessionError {
+            of_one_shot: 0.4,
+            shots: 60.0,
+        };
+        let shots = first.second_session(0.2, 0.8).unwrap();
+        let difference = libm::hypot(first.error(), 0.8 * 0.4 / shots.sqrt());
+        assert!((difference * POWER - 0.2).abs() < 1e-12);
+        // As many as in the first, where that is the size of both.
+        let each = SessionError::each_session(0.4, 0.2, 1.0);
+        let equal = SessionError {
+            shots: each,
+            ..first
+        };
+        assert!((equal.second_session(0.2, 1.0).unwrap() - each).abs() < 1e-9);
+        // The first session alone is less sure than the change.
+        assert_eq!(first.second_session(0.1, 1.0), None);
+    }
 }

@@ -64,8 +64,9 @@ pub fn draw(name: &str, comparison: &PhysicsComparison) -> Plot {
     svg.footnote(
         (20.0, bottom + 64.0),
         &format!(
-            "Bar: {}, released the same way under each physics.",
-            comparison.same_shot.in_words()
+            "Bar: {}, {}.",
+            comparison.same_shot.in_words(),
+            comparison.same_shot.what_stays()
         ),
     );
     Plot {
@@ -100,7 +101,7 @@ fn draw_key(svg: &mut Svg) {
     let entries = [
         (LEFT, "best direct shot"),
         (LEFT + 160.0, "best bank shot"),
-        (LEFT + 310.0, "one shot, released the same way"),
+        (LEFT + 310.0, "one shot, the same under each physics"),
     ];
     svg.circle((entries[0].0, y), 5.0, &format!("fill=\"{DIRECT_COLOUR}\""));
     svg.circle((entries[1].0, y), 5.0, &format!("fill=\"{BANK_COLOUR}\""));

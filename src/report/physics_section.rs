@@ -31,17 +31,18 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
             number(direct.map(|shot| shot.nominal.pitch_rad / DEGREE_RAD), 1),
             number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
             number(bank.map(|shot| shot.estimate.probability), 3),
-            number(row.same_shot.as_ref().map(|p| p.probability), 3),
+            number(row.same_shot.map(|p| p.probability), 3),
         ]
     };
     HtmlTable {
         caption: "How much rests on the physics".to_owned(),
         note: format!(
-            "{}Same shot: {}, released the same way everywhere.",
+            "{}Same shot: {}, {}.",
             comparison
                 .in_words()
                 .map_or_else(String::new, |words| words + " "),
-            comparison.same_shot.in_words()
+            comparison.same_shot.in_words(),
+            comparison.same_shot.what_stays()
         ),
         columns: columns.to_vec(),
         rows: comparison

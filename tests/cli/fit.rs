@@ -775,6 +775,56 @@ fn contract_design_says_what_a_test_will_tell() {
         .unwrap();
     let error = row["probability_error"].as_f64().unwrap();
     assert!((error / 0.04 - 1.0).abs() < 0.2, "{answer}");
+    // Two equal sessions: 1.96 + 0.84 standard deviations of a difference.
+    let change = row["least_change_of_probability"].as_f64().unwrap();
+    assert!((change / (2.8016 * std::f64::consts::SQRT_2 * error) - 1.0).abs() < 1e-3);
+    // A second session against one that is there.
+    let second = Answer::of(
+        bankshot()
+            .args(["design", "configs/free_throw.toml", "--quiet"])
+            .args(flags)
+            .args(["--first", "50"]),
+    );
+    let text = second.exits(0).stdout().to_owned();
+    assert!(
+        text.contains("since the 50 shots of the first session") && text.contains("never, "),
+        "{text}"
+    );
+}
+
+/// What was measured stays the same under each physics: how the ball falls to the hoop.
+#[test]
+fn contract_the_advice_is_told_under_each_physics() {
+    let folder = TempDir::new().unwrap();
+    fit("docs/data/gym_sensor.csv", folder.path(), &[]).exits(0);
+    let profile = folder.path().join("profile.toml");
+    let text = fs::read_to_string(&profile).unwrap();
+    let text = format!("{text}\n[search]\nstandard_error = 0.01\nchoose = [\"speed\"]\n");
+    fs::write(&profile, text).unwrap();
+    let physics = |extra: &[&str]| {
+        let mut command = bankshot();
+        command.arg("physics").arg(folder.path()).args(extra);
+        Answer::of(command.args(["--json", "--quiet"]))
+    };
+    physics(&["--place", "2"])
+        .exits(2)
+        .says("--place 2: there is one place");
+    let answer = physics(&[]).exits(0).json();
+    let row = |name: &str| {
+        let mut rows = answer.as_array().unwrap().iter();
+        let row = rows.find(|row| row["physics"].as_str().unwrap().ends_with(name));
+        row.unwrap_or_else(|| panic!("{name}"))["fit"].clone()
+    };
+    let usual = |name: &str| row(name)["usual_probability"]["mean"].as_f64().unwrap();
+    let gain = |name: &str| row(name)["gain"]["mean"].as_f64().unwrap();
+    // The profile's own physics is that of the fit, a preset.
+    assert!((usual("the profile's") - usual("ncaa")).abs() < 1e-6);
+    assert!(gain("the profile's") > 0.0);
+    // A release that was taken for higher than it is makes other speeds, and the same landings.
+    let lower = usual("release 0.1 ft lower");
+    assert!((lower - usual("ncaa")).abs() < 0.01, "{lower}");
+    // A soft ring holds more shots than a hard one.
+    assert!(usual("hoop_restitution 0.45") > usual("hoop_restitution 0.70") + 0.02);
 }
 
 /// Two shooters from two places. Then the same shots as those of one shooter in two sessions: the

@@ -11,8 +11,9 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{self, PhysicsArg, UnitsArg};
 use crate::fitting::{
-    Covariance, DesignRow, FitError, Landing, POWER, Place, TWO_SIDED_95, Tracker, TrackerNoise,
-    design, landing_of, nominal_of, release_of_landing, tracked_flight_noise, values_of,
+    Covariance, DesignRow, FitError, Landing, POWER, Place, SessionError, TWO_SIDED_95, Tracker,
+    TrackerNoise, design, landing_of, nominal_of, release_of_landing, tracked_flight_noise,
+    values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
@@ -27,6 +28,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "\
 Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual \
 shot comes from the flags, then from the profile's [nominal] table, else it is the best one; of a fit's folder it is the measured one. It takes a minute or two.
+
+It also says how many shots show that the shooter has changed: of a fit's folder, in a second session against the shots that were fitted; of a profile, in each of two equal sessions, or with --first N in a second one against N shots.
 
 Examples:
   bankshot design results/gym-sensor-fit --tracker noah --target 3
@@ -49,6 +52,10 @@ pub(crate) struct DesignOptions {
     /// Of a fit with several places, the number of the place [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
+    /// Shots of a first session: ask what a second one shows against it [default: those of the fit;
+    /// of a profile, as many as in the second].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(10..=5000))]
+    pub(crate) first: Option<u32>,
     /// Also ask how many shots make P known to this many points: as one standard deviation, and as
     /// a 95 % interval of so many points to each side.
     #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
@@ -100,6 +107,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         .as_deref()
         .map(|name| tracker_named(name, None))
         .transpose()?;
+    let mut first = options.first.map(|shots| shots as usize);
     let (profile, nominal, (own_tracker, sees), own_units) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let place = fit.place_numbered(options.place)?;
@@ -112,6 +120,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 fit.profiles[place].location().in_words(fit.units)
             ));
         }
+        first = first.or(Some(fit.posterior.shots));
         let tracker = (fit.tracker, Some(fit.source));
         (fit.profiles[place].clone(), usual, tracker, fit.units)
     } else if options.place.is_some() {
@@ -152,7 +161,12 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             message: error.to_string(),
         })
     };
-    let sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
+    let mut sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
+    if let Some(first) = first.filter(|first| (10..=MOST_SHOTS).contains(first)) {
+        sizes.push(first);
+        sizes.sort_unstable();
+        sizes.dedup();
+    }
     let mut rows = simulate(&sizes)?;
     let mut needed = None;
     let mut added = None;
@@ -167,10 +181,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     }
     if options.json {
         let name = &profile.shooter().name;
-        return print_answer(&format!("{:#}\n", json(name, &tracker, &rows, needed)));
+        return print_answer(&format!(
+            "{:#}\n",
+            json(name, &tracker, (&rows, first), needed)
+        ));
     }
     let mut text = format!(
-        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^26}\n{:>6} {:>9} {:>9} {:>9}  {:>12} {:>12}\n",
+        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>13}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>13}\n",
         profile.shooter().name,
         tracker.name.0,
         tracker.name.1,
@@ -178,30 +195,29 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         "",
         "scatter is known to",
         "P is known to (points)",
+        "P changed by",
         "shots",
         "speed",
         "pitch",
         "polar",
         "by the fit",
-        "by counting"
+        "by counting",
+        "shows (points)"
     );
     for row in &rows {
         let [speed, pitch, polar] = row.sd_errors.map(|error| 100.0 * error);
         text += &format!(
-            "{:>6} {:>7.1} % {:>7.1} % {:>7.1} %  {:>12.1} {:>12.1}\n",
+            "{:>6} {:>7.1} % {:>7.1} % {:>7.1} %  {:>11.1} {:>12.1}  {:>13.1}\n",
             row.shots,
             speed,
             pitch,
             polar,
             100.0 * row.probability_error,
-            100.0 * row.counting_error
+            100.0 * row.counting_error,
+            100.0 * least_change(&rows, row, first)
         );
     }
-    text += &format!(
-        "\n{}\n{}\n",
-        shots_for_a_fall(&rows),
-        shots_for_a_change(&rows)
-    );
+    text += &format!("\n{}\n", shots_for_changes(&rows, first));
     if let Some((points, shots)) = needed {
         let in_words = |shots: usize| match shots {
             MOST_SHOTS.. => format!("More than {MOST_SHOTS}"),
@@ -257,33 +273,62 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
 
-/// How many shots show that P changed from one session to the next.
-fn shots_for_a_change(rows: &[DesignRow]) -> String {
-    let shots = [5.0, 10.0].map(|points| {
-        let error = points / 100.0 / (POWER * std::f64::consts::SQRT_2);
-        two_digits(shots_for(rows, error) as f64)
+/// The least change of P that shows between a first session of so many shots (without them, of as
+/// many as in the row) and one of the row's size: at the level of 95 %, with a power of 80 %.
+fn least_change(rows: &[DesignRow], row: &DesignRow, first: Option<usize>) -> f64 {
+    let before = first.map_or(row.probability_error, |shots| {
+        known_after(rows, shots, |row| row.probability_error).error()
     });
-    format!(
-        "To see P change by 5 or 10 points takes about {} or {} shots in each. (A player also differs from day to day: that is not in these numbers.)",
-        shots[0], shots[1]
-    )
+    POWER * libm::hypot(before, row.probability_error)
 }
 
-/// How many shots show that a scatter fell from one session to the next.
-fn shots_for_a_fall(rows: &[DesignRow]) -> String {
-    // The relative error of a standard deviation falls with the square root of the shots.
-    let of_one_shot = rows.last().map_or(0.0, |row| {
-        let mean = row.sd_errors.iter().sum::<f64>() / row.sd_errors.len() as f64;
-        mean * (row.shots as f64).sqrt()
-    });
-    let shots = [0.1, 0.2, 0.3].map(|fall| {
-        let error = of_one_shot * libm::hypot(1.0, 1.0 - fall);
-        let needed = POWER * error / fall;
-        two_digits(needed * needed)
-    });
+/// How far a session of so many shots knows something, from the row of the nearest size.
+fn known_after(
+    rows: &[DesignRow],
+    shots: usize,
+    error: impl Fn(&DesignRow) -> f64,
+) -> SessionError {
+    let nearest = rows.iter().min_by_key(|row| row.shots.abs_diff(shots));
+    SessionError {
+        of_one_shot: nearest.map_or(0.0, |row| error(row) * (row.shots as f64).sqrt()),
+        shots: shots as f64,
+    }
+}
+
+/// How many shots show that P or a scatter has changed.
+fn shots_for_changes(rows: &[DesignRow], first: Option<usize>) -> String {
+    let falls = [0.1, 0.2, 0.3];
+    let changes = [0.05, 0.1, 0.2];
+    let most = rows.last().map_or(0, |row| row.shots);
+    let Some(first) = first else {
+        let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
+        let of_falls =
+            falls.map(|fall| two_digits(SessionError::each_session(scatter, fall, 1.0 - fall)));
+        let of_changes = [changes[0], changes[1]].map(|change| {
+            let error = change / (POWER * std::f64::consts::SQRT_2);
+            two_digits(shots_for(rows, error) as f64)
+        });
+        return format!(
+            "To see one scatter (speed, pitch or polar) fall by 10, 20 or 30 % between two sessions takes about {}, {} or {} shots in each (95 % level, power 80 %).\nTo see P change by 5 or 10 points takes about {} or {} shots in each. (A player also differs from day to day: that is not in these numbers.)",
+            of_falls[0], of_falls[1], of_falls[2], of_changes[0], of_changes[1]
+        );
+    };
+    let p = known_after(rows, first, |row| row.probability_error);
+    let scatter = known_after(rows, first, DesignRow::sd_error);
+    let in_words = |shots: Option<f64>| match shots {
+        None => "never".to_owned(),
+        Some(shots) if shots > MOST_SHOTS as f64 => format!("more than {MOST_SHOTS}"),
+        Some(shots) => format!("about {}", two_digits(shots.max(2.0))),
+    };
+    let of_changes = changes.map(|change| in_words(p.second_session(change, 1.0)));
+    let of_falls = falls.map(|fall| in_words(scatter.second_session(fall, 1.0 - fall)));
+    let hidden = |error: &SessionError| 100.0 * POWER * error.error();
     format!(
-        "To see one scatter (speed, pitch or polar) fall by 10, 20 or 30 % between two sessions takes about {}, {} or {} shots in each (95 % level, power 80 %).",
-        shots[0], shots[1], shots[2]
+        "How many further shots show a change since the {first} shots of the first session (95 % level, power 80 %):\n  P changed by 5, 10 or 20 points       {}\n  one scatter lower by 10, 20 or 30 %   {}\nHowever many follow, the first session alone hides changes of P below {:.1} points and of a scatter below {:.0} %. (A player also differs from day to day: that is not in these numbers.)",
+        of_changes.join(", "),
+        of_falls.join(", "),
+        hidden(&p),
+        hidden(&scatter)
     )
 }
 
@@ -304,7 +349,7 @@ fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
 fn json(
     name: &str,
     tracker: &TrackerOfTest,
-    rows: &[DesignRow],
+    (rows, first): (&[DesignRow], Option<usize>),
     needed: Option<(f64, usize)>,
 ) -> Value {
     let listed = rows.iter().map(|row| {
@@ -316,12 +361,14 @@ fn json(
             "polar_sd_relative_error": polar,
             "probability_error": number(row.probability_error),
             "counting_error": number(row.counting_error),
+            "least_change_of_probability": number(least_change(rows, row, first)),
         })
     });
     json!({
         "shooter": name,
         "tracker": tracker.name.0,
         "tracker_noise": tracker.name.1,
+        "first_session_shots": first,
         "tests": listed.collect::<Value>(),
         "target": needed.map(|(points, shots)| json!({
             "probability_error": number(points / 100.0),

@@ -1,16 +1,23 @@
 //! `bankshot physics`: how much of the answer rests on the physics.
 
 use crate::best_shot::{
-    BestShot, NoShot, PhysicsComparison, PhysicsRow, compare_physics, physics_variants,
+    BestShot, NoShot, PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, SameShotProbability,
+    compare_physics, physics_variants,
 };
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
-use crate::cli::fit_folder;
+use crate::cli::fit_folder::{self, FitFolder};
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
+use crate::fitting::{FittedShots, Interval, Measured, ShotsUnderPhysics, advise};
+use crate::measured_shots::source::Source;
+use crate::output::fit_files::advice_text::changes_in_words;
+use crate::output::fit_files::fit_json::interval_json;
+use crate::output::json_object::object;
 use crate::plots::physics_probabilities;
+use crate::probability::{Progress, Silent};
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
@@ -22,7 +29,8 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Searches the best shots under 23 physics: one to four minutes on two cores. What nobody measured in this gym (how soft the \
 ring and the board are, the friction, the drag, the height) is changed to other likely values; \"together\" is, for \
-the changes that lower P and for those that raise it, the root of the sum of squares, of each quantity the change that does most.
+the changes that lower P and for those that raise it, the root of the sum of squares, of each quantity the change that does most. \
+Of the folder of a fit it also says what the advice of `bankshot advise` gains under each physics.
 
 Examples:
   bankshot physics player.toml
@@ -32,6 +40,9 @@ pub(crate) struct PhysicsOptions {
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
+    /// Of a fit with several places, the number of the place [default: 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) place: Option<u32>,
     /// Draw P under each physics (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -44,19 +55,25 @@ pub(crate) struct PhysicsOptions {
 }
 
 pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> {
-    // A fit names its folder; its profile is in it.
-    let of_fit = options.profile.join("profile.toml");
-    let path = if options.profile.join("fit.json").is_file() {
-        &of_fit
-    } else {
-        &options.profile
-    };
-    let mut profile = load_profile(path, &options.physics, quiet)?;
-    let units_of_fit = if path == &of_fit {
-        Some(fit_folder::read(&options.profile)?.units)
+    let fit = if options.profile.is_dir() {
+        Some(fit_folder::read(&options.profile)?)
+    } else if options.place.is_some() {
+        return Err(Failure::usage(
+            "--place: only the folder of a fit has places",
+        ));
     } else {
         None
     };
+    let place = fit
+        .as_ref()
+        .map_or(Ok(0), |fit| fit.place_numbered(options.place))?;
+    // A fit names its folder; its profiles are in it.
+    let path = match &fit {
+        Some(_) => options.profile.join(fit_folder::profile_file(place)),
+        None => options.profile.clone(),
+    };
+    let mut profile = load_profile(&path, &options.physics, quiet)?;
+    let units_of_fit = fit.as_ref().map(|fit| fit.units);
     if let Some(units) = options.units.map(Into::into).or(units_of_fit) {
         profile = profile.with(|settings| settings.output.units = units)?;
     }
@@ -64,7 +81,28 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         PlotType::of(path)?;
     }
     let variants = physics_variants(profile.physics(), profile.output().units);
-    let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+    let bars = ProgressBars::new(quiet);
+    let mut comparison = compare_physics(&profile, &variants, &bars)?;
+    let fitted = match &fit {
+        Some(fit) => Some(FittedRows::new(
+            (fit, place),
+            &variants,
+            &comparison,
+            &bars,
+        )?),
+        None => None,
+    };
+    if let Some(fitted) = &fitted
+        && fitted.measured == Measured::Landing
+    {
+        let of_rows = fitted.rows.iter().map(|row| {
+            row.as_ref().map(|row| SameShotProbability {
+                probability: row.usual.mean,
+                standard_error: row.standard_error,
+            })
+        });
+        comparison = comparison.with_same_shot(SameShot::AsMeasured, of_rows);
+    }
     if let Some(path) = &options.plot {
         let plot = physics_probabilities::draw(&profile.shooter().name, &comparison);
         plot_files::write_one(path, &plot)?;
@@ -73,13 +111,106 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         }
     }
     if options.json {
-        print_answer(&format!("{:#}\n", rows_json(&comparison.rows)))
+        let rows = rows_json(&comparison.rows, fitted.as_ref());
+        print_answer(&format!("{rows:#}\n"))
     } else {
-        print_prose(&comparison_text(&profile, &comparison))
+        print_prose(&comparison_text(&profile, &comparison, fitted.as_ref()))
     }
 }
 
-fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String {
+/// A fit under each physics of a comparison.
+struct FittedRows {
+    /// The advised changes, in words; empty where nothing is advised.
+    changes: String,
+    measured: Measured,
+    /// One for each row of the comparison.
+    rows: Vec<Option<ShotsUnderPhysics>>,
+}
+
+impl FittedRows {
+    fn new(
+        (fit, place): (&FitFolder, usize),
+        variants: &[PhysicsVariant],
+        comparison: &PhysicsComparison,
+        bars: &ProgressBars,
+    ) -> Result<Self, Failure> {
+        let profile = &fit.profiles[place];
+        let advice = advise(profile, &fit.posterior, place, &Silent)?;
+        let measured = match fit.source {
+            Source::Releases => Measured::Release,
+            Source::Landings | Source::Trajectories => Measured::Landing,
+        };
+        let shots = FittedShots::new((profile, &fit.posterior, place), &advice, measured);
+        bars.begin("the advice under each physics", variants.len() as u64);
+        let rows = comparison.rows.iter().map(|row| {
+            bars.advance(1);
+            // A variant under which the profile is not valid has no row.
+            let variant = variants.iter().find(|variant| variant.name == row.name)?;
+            shots.under(&variant.physics)
+        });
+        let rows = rows.collect();
+        bars.end();
+        Ok(Self {
+            changes: changes_in_words(&advice, profile.location().angle_rad, fit.units),
+            measured,
+            rows,
+        })
+    }
+
+    /// What the advice gains in a row.
+    fn gain(&self, row: usize) -> Option<Interval> {
+        let [_, gain] = self.rows[row]?.advised?;
+        Some(gain)
+    }
+
+    /// What it gains under the physics of the profile, and under those that nobody measured in this
+    /// gym.
+    fn in_words(&self, comparison: &PhysicsComparison) -> String {
+        if self.changes.is_empty() {
+            return "`bankshot advise` advises no change to this shooter.\n".to_owned();
+        }
+        let points = |gain: &Interval| {
+            // Rounded first, and 0 added: no negative zero.
+            let [mean, low, high] =
+                [gain.mean, gain.low, gain.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
+            format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
+        };
+        let mut text = format!("The advice ({})", self.changes);
+        if let Some(own) = self.gain(0) {
+            text += &format!(" gains {} under the first row's physics", points(&own));
+        }
+        let rows = comparison.rows.iter().enumerate();
+        let unmeasured = rows.filter(|(_, row)| row.is_unmeasured);
+        let gains: Vec<(&str, Interval)> = unmeasured
+            .filter_map(|(i, row)| Some((row.name.as_str(), self.gain(i)?)))
+            .collect();
+        let by_mean = |a: &&(&str, Interval), b: &&(&str, Interval)| a.1.mean.total_cmp(&b.1.mean);
+        let ends = [gains.iter().min_by(by_mean), gains.iter().max_by(by_mean)];
+        if let [Some(least), Some(most)] = ends {
+            text += &format!(
+                "; of the changes that nobody measured, least {} {}, most {} {}",
+                least.0,
+                points(&least.1),
+                most.0,
+                points(&most.1)
+            );
+        }
+        text += match self.measured {
+            Measured::Release => ". The measured release is the same in every row.\n",
+            Measured::Landing => {
+                ". What was measured is how the ball falls to the hoop: it does so in every row, and the release is the one that leads there.\n"
+            }
+        };
+        text
+    }
+}
+
+fn comparison_text(
+    profile: &Profile,
+    comparison: &PhysicsComparison,
+    fitted: Option<&FittedRows>,
+) -> String {
+    let advised = fitted.filter(|fitted| !fitted.changes.is_empty());
     let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let units = profile.output().units;
     let (long, metre) = units.length();
@@ -96,7 +227,10 @@ fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String 
         "pitch\ndeg".to_owned(),
         format!("past\n{short}"),
         "bank\nP".to_owned(),
-        "same\nshot P".to_owned(),
+        match advised {
+            Some(_) => "advice\ngains".to_owned(),
+            None => "same\nshot P".to_owned(),
+        },
     ]);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -105,7 +239,7 @@ fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String 
         Ok(shot) => format!("{:.3}", shot.estimate.probability),
         Err(_) => "none".to_owned(),
     };
-    for row in &comparison.rows {
+    for (i, row) in comparison.rows.iter().enumerate() {
         let nominal = row.direct.as_ref().ok().map(|shot| shot.nominal);
         let number = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
@@ -117,22 +251,38 @@ fn comparison_text(profile: &Profile, comparison: &PhysicsComparison) -> String 
             number(nominal.map(|shot| shot.pitch_rad / DEGREE_RAD), 1),
             number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
             p(&row.bank),
-            number(row.same_shot.as_ref().map(|p| p.probability), 3),
+            match advised {
+                Some(advised) => advised
+                    .gain(i)
+                    .map_or("-".to_owned(), |gain| format!("{:+.1}", 100.0 * gain.mean)),
+                None => number(row.same_shot.map(|p| p.probability), 3),
+            },
         ]);
     }
     let summary = comparison.in_words().map_or_else(String::new, |words| {
         format!("{words} `bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed.\n")
     });
     let error = comparison.greatest_standard_error();
+    let last_column = match advised {
+        Some(_) => "what the advice adds to P, in makes of 100.\n".to_owned(),
+        None => format!(
+            "the P of {}, {}.\n",
+            comparison.same_shot.in_words(),
+            comparison.same_shot.what_stays()
+        ),
+    };
+    let of_fit = match fitted {
+        Some(fitted) => fitted.in_words(comparison),
+        None => "(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
+    };
     format!(
-        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. The first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is the P of {}, released the same way everywhere. (A profile that was fitted to landings or trajectories changes with the physics: its speeds were derived with it. Fit the shots again with --physics FILE for what remains; of drag and air that is little.)\n",
+        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. The first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
         if has_air { "with" } else { "ncaa," },
         if has_air { "it" } else { "ncaa" },
-        comparison.same_shot.in_words()
     )
 }
 
-fn rows_json(rows: &[PhysicsRow]) -> Value {
+fn rows_json(rows: &[PhysicsRow], fitted: Option<&FittedRows>) -> Value {
     let shot = |shot: &Result<BestShot, NoShot>| match shot {
         Ok(shot) => json!({
             "probability": shot.estimate.probability,
@@ -144,14 +294,30 @@ fn rows_json(rows: &[PhysicsRow]) -> Value {
         }),
         Err(reason) => json!({ "none": reason.to_string() }),
     };
+    let of_fit = |i: usize| {
+        let row = fitted.and_then(|fitted| fitted.rows[i].as_ref());
+        row.map(|row| {
+            let [advised, gain] = match &row.advised {
+                Some(advised) => advised.map(|p| object(interval_json(&p))),
+                None => [Value::Null, Value::Null],
+            };
+            json!({
+                "usual_probability": object(interval_json(&row.usual)),
+                "advised_probability": advised,
+                "gain": gain,
+            })
+        })
+    };
     rows.iter()
-        .map(|row| {
+        .enumerate()
+        .map(|(i, row)| {
             json!({
                 "physics": row.name,
                 "direct": shot(&row.direct),
                 "bank": shot(&row.bank),
                 "aim_past_centre_m": row.aim_past_centre_m,
-                "same_shot_probability": row.same_shot.as_ref().map(|p| p.probability),
+                "same_shot_probability": row.same_shot.map(|p| p.probability),
+                "fit": of_fit(i),
             })
         })
         .collect()

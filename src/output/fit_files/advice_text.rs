@@ -115,6 +115,18 @@ impl ChangeWords {
     }
 }
 
+/// The changes that are advised, in words: "release 2.1 deg steeper and throw 0.30 ft/s harder".
+#[must_use]
+pub fn changes_in_words(advice: &Advice, court_angle_rad: f64, units: UnitSystem) -> String {
+    let words = ChangeWords {
+        units,
+        court_angle_rad,
+    };
+    advice.steps.as_ref().map_or_else(String::new, |steps| {
+        words.of_releases(&advice.usual, &steps.advised)
+    })
+}
+
 /// What to change, in words.
 fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -> String {
     let p = advice.usual_probability.mean;

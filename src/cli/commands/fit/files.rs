@@ -3,6 +3,7 @@
 use super::options::FitOptions;
 use super::unmeasured_parameters::{UnmeasuredParameter, with_free};
 use crate::cli::failure::Failure;
+use crate::cli::fit_folder::profile_file;
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::plot_files;
 use crate::cli::run_folder::{self, RunKind};
@@ -47,12 +48,8 @@ pub(super) fn write(
         ),
     ];
     for place in 0..fit.places.len() {
-        let name = match place {
-            0 => "profile.toml".to_owned(),
-            _ => format!("profile_place_{}.toml", place + 1),
-        };
         let toml = fitted_profile_toml(fit, place, &source, &file.physics_toml, units);
-        contents.push((name, toml.into_bytes()));
+        contents.push((profile_file(place), toml.into_bytes()));
     }
     remove_further_places(folder, fit.places.len());
     for (name, bytes) in contents {
@@ -70,7 +67,7 @@ pub(super) fn write(
 /// Removes the profiles and plots of places that an earlier fit had beyond these.
 fn remove_further_places(folder: &Path, places: usize) {
     for number in places + 1.. {
-        let profile = folder.join(format!("profile_place_{number}.toml"));
+        let profile = folder.join(profile_file(number - 1));
         if !profile.exists() {
             return;
         }

@@ -101,10 +101,8 @@ fn files_of_players(paths: &[PathBuf], place: Option<u32>) -> Vec<PathBuf> {
         }
     });
     fits.map(|path| {
-        let profile = match place {
-            None | Some(1) => path.join("profile.toml"),
-            Some(number) => path.join(format!("profile_place_{number}.toml")),
-        };
+        let number = place.unwrap_or(1) as usize;
+        let profile = path.join(fit_folder::profile_file(number - 1));
         if profile.is_file() || (path.is_dir() && place.is_some()) {
             profile
         } else {
