@@ -2,6 +2,7 @@
 
 use super::advice_steps::{AdviceSteps, Cause, Change, ChangedShots, Shooting};
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
+use super::fitted_profile::with_backspin_kept;
 use super::interval::Interval;
 use super::landing::{Landing, landing_of};
 use super::measured_release::{Place, VALUE_NAMES, Values, nominal_of, values_of};
@@ -9,7 +10,7 @@ use super::posterior::{Draw, Posterior, SpinSource};
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::{BestShot, BestShotError, find_kinds};
 use crate::probability::Progress;
-use crate::shooter::{NominalVariable, Profile, SearchChoice, ShotKind};
+use crate::shooter::{Profile, ShotKind};
 
 /// Draws that advice is computed for, at most.
 pub(super) const DRAWS: usize = 400;
@@ -206,20 +207,6 @@ fn nearest_kind(usual: &Values, sds: &Values, bests: &[Option<Values>; 2]) -> Op
         true => ShotKind::Bank,
         false => ShotKind::Direct,
     })
-}
-
-/// A profile whose search does not change the backspin.
-fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
-    profile
-        .with(|settings| {
-            let chosen = settings.search.choice.iter();
-            let others: Vec<NominalVariable> = chosen
-                .filter(|chosen| *chosen != NominalVariable::Backspin)
-                .collect();
-            settings.search.choice = SearchChoice::only(&others);
-            settings.nominal.backspin_rad_s = Some(backspin_rad_s);
-        })
-        .unwrap_or_else(|_| profile.clone())
 }
 
 /// What 10 % less scatter of each value gains about the advised release, `mean`.

@@ -3,7 +3,9 @@
 use super::measured_release::Place;
 use super::posterior::Draw;
 use crate::model::Physics;
-use crate::shooter::{Profile, ProfileError, ProfileSettings, Shooter};
+use crate::shooter::{
+    NominalVariable, Profile, ProfileError, ProfileSettings, SearchChoice, Shooter,
+};
 use crate::units::REV_RAD;
 
 /// The search tries nominal backspins up to this, or to that of the shooter where it is greater,
@@ -30,4 +32,18 @@ pub fn fitted_profile(
     });
     settings.physics = physics.clone();
     settings.at(place.location)
+}
+
+/// A profile whose search does not change the backspin: one that was not measured is kept.
+pub(super) fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
+    profile
+        .with(|settings| {
+            let chosen = settings.search.choice.iter();
+            let others: Vec<NominalVariable> = chosen
+                .filter(|chosen| *chosen != NominalVariable::Backspin)
+                .collect();
+            settings.search.choice = SearchChoice::only(&others);
+            settings.nominal.backspin_rad_s = Some(backspin_rad_s);
+        })
+        .unwrap_or_else(|_| profile.clone())
 }

@@ -6,7 +6,7 @@ use super::expected_makes::{ExpectedMakes, expected_makes};
 use super::fit_checks::{
     FitWarning, FlightResiduals, ShapeTest, TestError, check_releases, shape_test, warnings,
 };
-use super::fitted_profile::fitted_profile;
+use super::fitted_profile::{fitted_profile, with_backspin_kept};
 use super::measured_release::{MeasuredRelease, Place, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
 use super::session_trends::{SessionTrend, trends};
@@ -101,8 +101,15 @@ pub fn fit_shooter(
     let profiles = test
         .places
         .iter()
-        .map(|place| fitted_profile(test.name, physics, &typical, place))
-        .collect::<Result<Vec<_>, _>>()?;
+        .enumerate()
+        .map(|(i, place)| {
+            let profile = fitted_profile(test.name, physics, &typical, place)?;
+            Ok(match options.spin {
+                SpinSource::Measured => profile,
+                _ => with_backspin_kept(&profile, typical.means[i][3]),
+            })
+        })
+        .collect::<Result<Vec<_>, ProfileError>>()?;
     let probabilities = (0..test.places.len())
         .map(|place| usual_probabilities(&profiles[place], &posterior, place, USUAL_SHOTS))
         .collect();

@@ -63,6 +63,8 @@ impl Table {
             }
             for row in rows {
                 match row.cells {
+                    // A spreadsheet's note on the separator, above the names.
+                    Ok(cells) if table.header.is_empty() && cells.get(0) == Some(b"sep=") => {}
                     Ok(cells) if table.header.is_empty() => table.header = text(&cells, separator),
                     Ok(cells) => table.rows.push((row.number, text(&cells, separator))),
                     Err(reason) if reason == "is empty" => {}

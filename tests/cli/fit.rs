@@ -352,6 +352,8 @@ fn contract_semicolons_with_decimal_commas_are_read() {
     };
     let commas = fitted("commas", &text, &[]);
     assert_eq!(fitted("semicolons", &semicolons, &map), commas);
+    let named = format!("sep=;\r\n{semicolons}");
+    assert_eq!(fitted("separator", &named, &map), commas);
     assert_eq!(fitted("tabs", &text.replace(',', "\t"), &[]), commas);
 }
 
@@ -799,8 +801,11 @@ fn contract_the_advice_is_told_under_each_physics() {
     fit("docs/data/gym_sensor.csv", folder.path(), &[]).exits(0);
     let profile = folder.path().join("profile.toml");
     let text = fs::read_to_string(&profile).unwrap();
-    let text = format!("{text}\n[search]\nstandard_error = 0.01\nchoose = [\"speed\"]\n");
-    fs::write(&profile, text).unwrap();
+    // The backspin was not measured, and is kept.
+    let choice = "choose = [\"speed\", \"pitch\", \"polar\"]\n";
+    assert!(text.contains(choice), "{text}");
+    let quick = "standard_error = 0.01\nchoose = [\"speed\"]\n";
+    fs::write(&profile, text.replace(choice, quick)).unwrap();
     let physics = |extra: &[&str]| {
         let mut command = bankshot();
         command.arg("physics").arg(folder.path()).args(extra);

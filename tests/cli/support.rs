@@ -112,7 +112,17 @@ pub(crate) fn make_search_small(fit: &Path) {
             .is_some_and(|extension| extension == "toml")
         {
             let profile = fs::read_to_string(&path).unwrap();
-            fs::write(path, profile + &small).unwrap();
+            // What the fit says of the search stays.
+            let own = "choose = [\"speed\", \"pitch\", \"polar\"]\n";
+            let small = match profile.split_once(own) {
+                Some((before, after)) => {
+                    let settings = small.replace("[search]\n", &format!("[search]\n{own}"));
+                    let before = before.replace("[search]\n", "");
+                    before + after + &settings
+                }
+                None => profile + &small,
+            };
+            fs::write(path, small).unwrap();
             profiles += 1;
         }
     }

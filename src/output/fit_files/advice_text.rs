@@ -427,7 +427,7 @@ pub fn advice_text(
     }
     if advice.spin != SpinSource::Measured {
         text += &format!(
-            "  The backspin was not measured: {:.1} rev/s is {}, and kept. `best`, `team` and `compare` choose the backspin too, so their P can be greater.\n",
+            "  The backspin was not measured: {:.1} rev/s is {}, and kept (so do `best` and `team`, by `choose` in the profile).\n",
             advice.usual[3] / value_units(units)[3].1,
             advice.spin.name()
         );

@@ -74,7 +74,7 @@ pub fn fitted_profile_toml(
         place.release_height_m / metre
     ));
     line(format!(
-        "max_backspin = \"{:.3} rev/s\"  # assumed; a search for the best shot goes up to it",
+        "max_backspin = \"{:.3} rev/s\"  # assumed; a search that chooses the backspin goes up to it",
         shooter.max_backspin_rad_s / REV_RAD
     ));
     line(String::new());
@@ -140,7 +140,22 @@ pub fn fitted_profile_toml(
         place.location.angle_rad / DEGREE_RAD
     ));
     line(String::new());
-    line("# The usual shot. A search for the best shot does not look at it.".to_owned());
+    let keeps_backspin = fit.posterior.spin != SpinSource::Measured;
+    if keeps_backspin {
+        line("[search]".to_owned());
+        line("# The backspin was not measured: a search keeps that of the usual shot. With \"backspin\" in".to_owned());
+        line("# the list it tries others, up to max_backspin.".to_owned());
+        line("choose = [\"speed\", \"pitch\", \"polar\"]".to_owned());
+        line(String::new());
+    }
+    line(format!(
+        "# The usual shot. A search for the best shot {}.",
+        if keeps_backspin {
+            "looks at its backspin alone"
+        } else {
+            "does not look at it"
+        }
+    ));
     line("[nominal]".to_owned());
     let units_of = value_units(units);
     for (i, name) in VALUE_NAMES.iter().enumerate() {

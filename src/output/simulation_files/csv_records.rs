@@ -89,6 +89,13 @@ impl<R: Read> CsvRecords<R> {
         let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
         let mut lines = text.split(is_end);
         let line = lines.find(|line| !line.trim_ascii().is_empty());
+        // A spreadsheet may say it above the names.
+        if let Some([separator @ (b',' | b';' | b'\t')]) =
+            line.and_then(|line| line.strip_prefix(b"sep="))
+        {
+            records.separator = *separator;
+            return Ok(records);
+        }
         // Every other part between quotes is inside them.
         let parts = line.unwrap_or_default().split(|byte| *byte == b'"');
         let outside: Vec<&[u8]> = parts.step_by(2).collect();
