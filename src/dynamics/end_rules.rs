@@ -45,21 +45,21 @@ impl<T: Real> ShotEndFlags<T> {
         }
     }
 
-    /// Applies `f` to each mask, in the order of [`first_ending`].
+    /// The masks in the order of [`first_ending`].
     #[inline(always)]
-    pub(crate) fn map<Value>(&self, f: impl Fn(T::Mask) -> Value) -> [Value; 3] {
-        [f(self.behind_board), f(self.fell), f(self.too_late)]
+    pub(crate) fn masks(&self) -> [T::Mask; 3] {
+        [self.behind_board, self.fell, self.too_late]
     }
 }
 
 impl<T: Real<Mask = bool>> ShotEndFlags<T> {
     /// How the shot ended, if it did.
     pub(crate) fn ending(self) -> Option<Ending> {
-        first_ending(self.map(|rule| rule))
+        first_ending(self.masks())
     }
 }
 
-/// How a shot ended, if it did, from the values of [`ShotEndFlags::map`]. If several rules apply,
+/// How a shot ended, if it did, from the values of [`ShotEndFlags::masks`]. If several rules apply,
 /// the first one counts.
 #[inline(always)]
 pub(crate) fn first_ending([behind_board, fell, too_late]: [bool; 3]) -> Option<Ending> {

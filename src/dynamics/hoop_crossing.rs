@@ -9,6 +9,7 @@
 
 use super::flight::FlightSegment;
 use crate::math::real::Real;
+use crate::math::real_record::{RealRecord, RecordReader, RecordWriter};
 use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;
 
@@ -19,6 +20,22 @@ pub(crate) struct HoopCrossing<T: Real = f64> {
     pub(crate) has_been_above: T::Mask,
     /// The centre has risen through the hoop from below.
     pub(crate) rose_through: T::Mask,
+}
+
+impl<T: Real> RealRecord<T> for HoopCrossing<T> {
+    #[inline(always)]
+    fn read(from: &mut impl RecordReader<T>) -> Self {
+        Self {
+            has_been_above: from.truth(),
+            rose_through: from.truth(),
+        }
+    }
+
+    #[inline(always)]
+    fn write(&self, to: &mut impl RecordWriter<T>) {
+        to.truth(self.has_been_above);
+        to.truth(self.rose_through);
+    }
 }
 
 impl<T: Real> HoopCrossing<T> {

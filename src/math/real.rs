@@ -119,9 +119,6 @@ pub(crate) type LaneBits = u32;
 pub(crate) const MAX_F64_LANES: usize = 16;
 pub(crate) const MAX_LANES: usize = LaneBits::BITS as usize;
 
-/// One number for each lane that there can be.
-pub(crate) type LaneArray = [f64; MAX_F64_LANES];
-
 /// What a lane holds: `f64` or `f32`.
 pub(crate) trait LaneElement: Copy + Default {
     /// Rounded to the nearest.

@@ -100,17 +100,19 @@ impl<T: SimdReal> SimdReal for Unrolled<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::real::LaneArray;
+    use crate::math::real::MAX_F64_LANES;
     use crate::math::simd::F64x8;
     use fearless_simd::{Level, Simd};
 
     fn check<S: Simd>(simd: S) {
         type Wide<S> = Unrolled<F64x8<S>>;
-        let from = |f: &dyn Fn(f64) -> f64| -> LaneArray { std::array::from_fn(|i| f(i as f64)) };
+        let from = |f: &dyn Fn(f64) -> f64| -> [f64; MAX_F64_LANES] {
+            std::array::from_fn(|i| f(i as f64))
+        };
         let (a, b) = (from(&|i| i - 7.5), from(&|i| 3.0 / (i + 1.0)));
         let [x, y] = [&a, &b].map(|values| Wide::<S>::load(simd, values));
         let less = Wide::<S>::mask_to_bits(x.lt(y));
-        let mut found: LaneArray = [0.0; 16];
+        let mut found: [f64; MAX_F64_LANES] = [0.0; 16];
         for (result, f) in [
             (x + y, (|a, b| a + b) as fn(f64, f64) -> f64),
             (x - y, |a, b| a - b),

@@ -2,6 +2,7 @@
 
 use super::ball_params::BallParams;
 use crate::math::real::Real;
+use crate::math::real_record::{RealRecord, RecordReader, RecordWriter};
 use crate::math::vector::{RealVector, Vec3};
 
 /// The nine state variables: position of the ball's centre, its velocity and its angular velocity.
@@ -33,6 +34,26 @@ impl<T: Real> StateDerivative<T> {
             acceleration_m_s2: self.acceleration_m_s2 + other.acceleration_m_s2,
             angular_acceleration_rad_s2: self.angular_acceleration_rad_s2
                 + other.angular_acceleration_rad_s2,
+        }
+    }
+}
+
+impl<T: Real> RealRecord<T> for BallState<T> {
+    #[inline(always)]
+    fn read(from: &mut impl RecordReader<T>) -> Self {
+        Self {
+            position_m: Vec3::new(from.number(), from.number(), from.number()),
+            velocity_m_s: Vec3::new(from.number(), from.number(), from.number()),
+            spin_rad_s: Vec3::new(from.number(), from.number(), from.number()),
+        }
+    }
+
+    #[inline(always)]
+    fn write(&self, to: &mut impl RecordWriter<T>) {
+        for v in [&self.position_m, &self.velocity_m_s, &self.spin_rad_s] {
+            to.number(v.x);
+            to.number(v.y);
+            to.number(v.z);
         }
     }
 }

@@ -1,34 +1,36 @@
 //! The contacts of a batch with one solid: the shots of a block step together.
 
-use super::batch_state::Batch;
-use super::contact_frame_block::{ContactFrameBlock, ContactShots};
+use super::batch_state::{Batch, ContactRecord};
+use super::lane_block::{LaneBlock, bit, bits_in, lanes_in};
 use super::workspace::Phase;
-use super::world_frame_block::{bit, lanes_in};
 use crate::dynamics::contact::contact_frame_step::Contact;
-use crate::dynamics::contact::friction::FrictionState;
-use crate::dynamics::contact::other_solid_touch::{GapAtEnd, has_arrived, passed};
-use crate::dynamics::end_rules::ShotEndFlags;
-use crate::dynamics::integrators::event_driven::ContactState;
+use crate::dynamics::integrators::shot_in_frame::{FRAME_NUMBERS, FRAME_TRUTHS, ShotInFrame};
+use crate::dynamics::integrators::shot_progress::{ContactState, ShotProgress};
 use crate::dynamics::outcome::Ending;
-use crate::math::real::{LaneBits, LaneElement, Mask, SimdReal};
-use crate::model::SolidId;
+use crate::math::real::{LaneBits, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
-use crate::model::solids::Solid;
+use crate::model::solids::{FramedPart, Solid};
 use fearless_simd::Simd;
 
-/// What happened in the lanes of a step.
-struct StepResult {
-    separates: LaneBits,
-    /// On the other solid.
-    arrived: LaneBits,
-    /// Where the solid does not act.
-    beside: LaneBits,
-    /// Beyond the part of the solid that the frame describes.
-    leaves_frame: LaneBits,
-    /// The flags of the rules that end a shot.
-    ends: [LaneBits; 3],
-    made: LaneBits,
-    given_up: LaneBits,
+/// Shots on a part of a solid in lanes.
+#[derive(Clone, Copy)]
+struct OnPart {
+    part: FramedPart,
+    time_limit_s: f64,
+}
+
+impl ContactRecord for OnPart {
+    type OfShot = ShotInFrame<f64>;
+
+    #[inline(always)]
+    fn read(&self, shot: &mut ShotProgress) -> ShotInFrame<f64> {
+        ShotInFrame::of(shot, self.part.solid(), self.time_limit_s)
+    }
+
+    #[inline(always)]
+    fn write(&self, shot: &mut ShotProgress, record: ShotInFrame<f64>) {
+        record.write_to(shot, self.part);
+    }
 }
 
 impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
@@ -40,7 +42,6 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         A: Solid<T>,
         B: Solid<T>,
     {
-        let phase = Phase::InFrame(A::PART);
         let oscillator = &self.limits.oscillators[A::PART as usize].map(
             #[inline(always)]
             |value| T::broadcast(self.simd, value),
@@ -50,137 +51,64 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             solid,
             oscillator,
         };
-        let mut block = ContactFrameBlock::<T::Element>::new(A::PART);
-        loop {
-            let free = T::ALL & !block.occupied();
-            let (slots, queue) = self.workspace.slots_and_queue(phase);
-            let limit = self.limits.time_limit_s;
-            block.fill(free, limit, slots, || queue.pop());
-            if block.occupied() == 0 {
-                return;
-            }
-            if block.occupied() != T::ALL && self.workspace.other_phase_fills(T::LANES, phase) {
-                self.suspend_contacts(&mut block);
-                return;
-            }
-            let given_up = block.count_step(self.limits.max_steps);
-            let result = step_lanes(&contact, other, &mut block, self.simd, given_up);
-            self.finish_contacts(&mut block, B::ID, &result);
-            let occupied = block.occupied().count_ones() as usize;
-            if self.workspace.others_go_first(phase, occupied, T::LANES) {
-                self.suspend_contacts(&mut block);
-                return;
-            }
-        }
+        let on = OnPart {
+            part: A::PART,
+            time_limit_s: self.limits.time_limit_s,
+        };
+        self.run_contacts::<T, FRAME_NUMBERS, FRAME_TRUTHS>(
+            (Phase::InFrame(A::PART), T::LANES),
+            on,
+            #[inline(always)]
+            |batch, block, given_up| batch.step_on(on, &contact, other, block, given_up),
+        );
     }
 
-    /// Takes all shots of a block out of their lanes and queues them again.
+    /// Steps every lane, and takes the shots whose contact has ended out of their lanes.
     #[inline(always)]
-    fn suspend_contacts<E: LaneElement>(&mut self, block: &mut ContactFrameBlock<E>) {
-        let phase = Phase::InFrame(block.part());
-        for lane in lanes_in(block.occupied()) {
-            let slot = block.slot(lane);
-            block.remove(lane, &mut self.workspace.slots[slot as usize]);
-            self.workspace.queue_mut(phase).push(slot);
-        }
-    }
-
-    /// Takes the shots whose contact has ended out of their lanes.
-    #[inline(always)]
-    fn finish_contacts<E: LaneElement>(
+    fn step_on<T: SimdReal<Simd = S>, A: Solid<T>, B: Solid<T>>(
         &mut self,
-        block: &mut ContactFrameBlock<E>,
-        other: SolidId,
-        result: &StepResult,
+        on: OnPart,
+        contact: &Contact<'_, T, A>,
+        other: &B,
+        block: &mut LaneBlock<T::Element, FRAME_NUMBERS, FRAME_TRUTHS>,
+        given_up: LaneBits,
     ) {
-        let [a, b, c] = result.ends;
-        let ended = a | b | c;
-        let done = (result.separates
-            | result.arrived
-            | result.beside
-            | result.leaves_frame
-            | ended
-            | result.given_up)
-            & block.occupied();
-        for lane in lanes_in(done) {
-            let slot = block.slot(lane);
+        let shots: ShotInFrame<T> = block.load(self.simd);
+        let (next, step) = shots.step(contact, other, T::mask_from_bits(self.simd, given_up));
+        block.store(&next);
+        let accepted = T::mask_to_bits(step.accepted);
+        let [a, b, c] = step.ends.masks();
+        let ends = [
+            bits_in::<T>(accepted, a),
+            bits_in::<T>(accepted, b),
+            bits_in::<T>(accepted, c),
+        ];
+        let ended = ends[0] | ends[1] | ends[2];
+        let made = bits_in::<T>(ended, step.made);
+        let separates = bits_in::<T>(accepted, step.separates);
+        let arrived = bits_in::<T>(accepted, step.arrived);
+        let leaves_solid = bits_in::<T>(accepted, step.leaves_solid);
+        let leaves_frame = bits_in::<T>(accepted, step.leaves_frame);
+        let done = ended | separates | arrived | leaves_solid | leaves_frame | given_up;
+        for lane in lanes_in(done & block.occupied()) {
+            let write = |shot: &mut ShotProgress, own| on.write(shot, own);
+            let slot = block.take(lane, &mut self.workspace.slots, write);
             let shot = &mut self.workspace.slots[slot as usize];
-            block.remove(lane, shot);
-            if bit(result.given_up, lane) {
+            if bit(given_up, lane) {
                 self.workspace.finish(slot, Ending::Unresolved, false);
             } else if bit(ended, lane) {
-                let made = bit(result.made, lane);
-                self.finish_shot_in_contact(slot, result.ends.map(|rule| bit(rule, lane)), made);
-            } else if bit(result.separates, lane) {
+                let rules = ends.map(|rule| bit(rule, lane));
+                self.finish_shot_in_contact(slot, rules, bit(made, lane));
+            } else if bit(separates | (leaves_solid & !arrived), lane) {
                 shot.end_single_contact(ContactState::Free);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
-            } else if bit(result.arrived, lane) {
-                shot.arrive(self.params, other);
+            } else if bit(arrived, lane) {
+                shot.arrive(self.params, B::ID);
                 self.workspace.queue_mut(Phase::InWorld).push(slot);
-            } else if !bit(result.beside, lane) {
-                shot.leave_frame(self.params, block.part().solid());
-                self.workspace.enqueue(slot);
             } else {
-                shot.end_single_contact(ContactState::Free);
-                self.workspace.queue_mut(Phase::Flight).push(slot);
+                shot.leave_frame(self.params, A::ID);
+                self.workspace.enqueue(slot);
             }
         }
-    }
-}
-
-/// Steps every lane.
-#[inline(always)]
-fn step_lanes<T: SimdReal, A: Solid<T>, B: Solid<T>>(
-    contact: &Contact<'_, T, A>,
-    other: &B,
-    block: &mut ContactFrameBlock<T::Element>,
-    simd: T::Simd,
-    given_up: LaneBits,
-) -> StepResult {
-    let (params, solid) = (contact.params, contact.solid);
-    let shots = block.load::<T>(simd);
-    let step = contact.step(&shots.motion, &shots.friction, shots.step_fraction);
-    let after = solid.to_world(&params.ball, &step.motion);
-    let path = (shots.motion.speed_bound() + step.motion.speed_bound()) * step.dt;
-    let end = GapAtEnd::new(params, other, &after, path);
-    let (mut repeats, mut fraction) = (end.is_near, params.one());
-    if end.is_near.any() {
-        let before = solid.to_world(&params.ball, &shots.motion);
-        (repeats, fraction) = passed(params, other, &before, &end, step.dt);
-    }
-    let rejected = repeats | T::mask_from_bits(simd, given_up);
-    let mut next = ContactShots {
-        motion: step.motion,
-        friction: step.friction,
-        step_fraction: params.one(),
-        contact_time_s: shots.contact_time_s + step.dt,
-        crossing: shots.crossing,
-    };
-    let was_below = solid.is_below_hoop(&shots.motion);
-    next.crossing
-        .after_step(params, was_below, &after, !rejected);
-    let mut accepted = T::ALL;
-    if T::mask_to_bits(rejected) != 0 {
-        accepted = T::mask_to_bits(!rejected);
-        let repeated_fraction = contact.fraction_of_longest(fraction * step.dt);
-        next.motion = shots.motion.select(rejected, next.motion);
-        next.friction = FrictionState::select(shots.friction, rejected, next.friction);
-        next.step_fraction = repeated_fraction.select(repeats, next.step_fraction);
-        next.contact_time_s = shots.contact_time_s.select(rejected, next.contact_time_s);
-    }
-    let too_late = block.allowed_times_s::<T>(simd).lt(next.contact_time_s);
-    let ends = ShotEndFlags::new(params, &after, too_late);
-    block.store(&next);
-    StepResult {
-        separates: T::mask_to_bits(step.separates) & accepted,
-        arrived: T::mask_to_bits(has_arrived(params, other, &after)) & accepted,
-        beside: T::mask_to_bits(!solid.acts(&after)) & accepted,
-        leaves_frame: T::mask_to_bits(!solid.is_in_frame(&after)) & accepted,
-        ends: ends.map(
-            #[inline(always)]
-            |rule| T::mask_to_bits(rule) & accepted,
-        ),
-        made: T::mask_to_bits(next.crossing.is_made(params, &after)),
-        given_up,
     }
 }

@@ -1,8 +1,9 @@
 //! The free flights of a batch that are parabolas, a block at a time.
 
 use super::batch_state::Batch;
+use super::flight_block::FlightBlock;
+use super::lane_block::{bit, lanes_in, set_bit};
 use super::workspace::Phase;
-use super::world_frame_block::{LaneShots, WorldFrameBlock, bit, lanes_in, set_bit};
 use crate::dynamics::contact::friction::FrictionState;
 use crate::dynamics::end_rules::{flight_ending, rose_to_ring};
 use crate::dynamics::flight::FlightEvents;
@@ -11,7 +12,6 @@ use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::math::real::{LaneBits, MAX_F64_LANES, SimdReal};
 use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::solids::FramedPart;
-use crate::model::solids::Solid;
 use crate::model::{BallState, SolidId};
 use fearless_simd::Simd;
 
@@ -50,7 +50,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_all<T: SimdReal<Simd = S, Element = f64>>(&mut self) {
         let params = &self.lane_params::<T>();
         let queue = self.workspace.take_flights();
-        let mut block = WorldFrameBlock::new();
+        let mut block = FlightBlock::new();
         for slots in queue.chunks(T::LANES) {
             // Lanes without a shot repeat the last one.
             let last = slots[slots.len() - 1];
@@ -68,14 +68,14 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     fn fly_first_arcs<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();
-        let mut block = WorldFrameBlock::new();
+        let mut block = FlightBlock::new();
         loop {
             let shots = self.workspace.next_starts(T::LANES);
             if shots.is_empty() {
                 return;
             }
             let starts = &starts[shots.clone()];
-            block.fill_at_release(starts);
+            block.fill_at_release(self.params, starts);
             let end = self.fly_lanes(params, &mut block);
             self.finish_first_flights(&mut block, (shots.start, starts), T::ALL, &end);
         }
@@ -87,7 +87,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     pub(super) fn finish_first_flights(
         &mut self,
-        block: &mut WorldFrameBlock,
+        block: &mut FlightBlock,
         (first, starts): (usize, &[BallState]),
         ended: LaneBits,
         end: &FlightEnd,
@@ -119,7 +119,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 .occupy(self.params, first + lane, &starts[lane]);
             slots[lane] = slot;
             if !bit(ended, lane) {
-                block.remove(lane, &mut self.workspace.slots[slot as usize]);
+                block.remove(lane, &mut self.workspace.slots[slot as usize], false);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
             }
         }
@@ -131,10 +131,9 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_lanes<T: SimdReal<Simd = S, Element = f64>>(
         &self,
         params: &ModelParams<T>,
-        block: &mut WorldFrameBlock,
+        block: &mut FlightBlock,
     ) -> FlightEnd {
-        let mut shots = block.load::<T>(self.simd);
-        block.leave_ring(self.simd, params, &mut shots.state);
+        let mut shots = block.load::<T>(self.simd, params);
         let start = shots.state;
         let flight = FlightEvents::new(params, &start);
         let dt = flight.first_end();
@@ -153,8 +152,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             rose: T::mask_to_bits(rose_to_ring(params, &shots.state)),
             behind_board: 0,
         };
-        block.store(&shots);
-        store_ring_motions(params, block, &shots, &end);
+        block.store(params, &shots, end.ring_motions() & !end.needs_scalar);
         end
     }
 
@@ -163,7 +161,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     #[inline(always)]
     pub(super) fn finish_flights(
         &mut self,
-        block: &mut WorldFrameBlock,
+        block: &mut FlightBlock,
         slots: &[u32],
         real_lanes: LaneBits,
         end: &FlightEnd,
@@ -173,16 +171,12 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             let shot = &mut self.workspace.slots[slots[lane] as usize];
             if bit(end.needs_scalar, lane) || shot.phases >= MAX_PHASES {
                 remaining &= !(1 << lane);
-                block.vacate(lane);
+                block.lanes.vacate(lane);
                 self.run_scalar(slots[lane]);
                 continue;
             }
             shot.phases += 1;
-            if bit(end.ring_motions(), lane) {
-                block.remove_on_ring(lane, shot);
-            } else {
-                block.remove(lane, shot);
-            }
+            block.remove(lane, shot, bit(end.ring_motions(), lane));
         }
         let new_friction = FrictionState::new(self.params);
         for solid in [SolidId::Ring, SolidId::Board] {
@@ -232,22 +226,8 @@ impl FlightEnd {
     }
 
     /// The shots that have their motion in the frame of the ring.
-    fn ring_motions(&self) -> LaneBits {
+    pub(super) fn ring_motions(&self) -> LaneBits {
         let ring = SolidId::Ring.index();
         self.touches[ring] & self.in_frame[ring]
-    }
-}
-
-/// Stores the shots that have reached the ring in its frame.
-#[inline(always)]
-pub(super) fn store_ring_motions<T: SimdReal<Element = f64>>(
-    params: &ModelParams<T>,
-    block: &mut WorldFrameBlock,
-    shots: &LaneShots<T>,
-    end: &FlightEnd,
-) {
-    if end.ring_motions() & !end.needs_scalar != 0 {
-        let motion = params.ring.to_contact(&params.ball, &shots.state);
-        block.store_ring_motion(&motion);
     }
 }

@@ -2,9 +2,9 @@
 //! (Flights with lift are left to the scalar code.)
 
 use super::batch_state::Batch;
-use super::parabola_flight_phase::{FlightEnd, store_ring_motions};
+use super::flight_block::{FlightBlock, FlyingShots};
+use super::parabola_flight_phase::FlightEnd;
 use super::workspace::Phase;
-use super::world_frame_block::{LaneShots, WorldFrameBlock};
 use crate::dynamics::end_rules::rose_to_ring;
 use crate::dynamics::flight::{drag_segment, far_segment, is_far};
 use crate::math::real::{Mask, SimdReal};
@@ -40,14 +40,14 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_in_segments<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();
         let mut queue = self.workspace.take_flights();
-        let mut first_flights = WorldFrameBlock::new();
-        let mut later_flights = WorldFrameBlock::new();
+        let mut first_flights = FlightBlock::new();
+        let mut later_flights = FlightBlock::new();
         loop {
             let numbers = self.workspace.next_starts(T::LANES);
             let starts = &starts[numbers.clone()];
             let at_release = !numbers.is_empty();
             let block = if at_release {
-                first_flights.fill_at_release(starts);
+                first_flights.fill_at_release(self.params, starts);
                 &mut first_flights
             } else {
                 queue.append(self.workspace.queue_mut(Phase::Flight));
@@ -56,33 +56,30 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                         self.run_scalar(slot);
                     }
                 }
-                let free = T::ALL & !later_flights.occupied();
+                let free = T::ALL & !later_flights.lanes.occupied();
                 let shots_in_progress = &mut self.workspace.slots;
                 later_flights.fill(free, self.params, shots_in_progress, || queue.pop());
-                if later_flights.occupied() == 0 {
+                if later_flights.lanes.occupied() == 0 {
                     break;
                 }
                 &mut later_flights
             };
-            let mut shots = block.load::<T>(self.simd);
+            let mut shots = block.load::<T>(self.simd, params);
             let mut flight = SegmentedFlight::new(params);
             if at_release {
                 self.fly_far_segments(params, &mut shots);
-            } else {
-                block.leave_ring(self.simd, params, &mut shots.state);
             }
             if !params.ball.has_lift {
                 self.fly_one_segment(params, &mut shots, &mut flight);
             }
-            block.store_without_frames(&shots);
             let end = flight.end(params, &shots);
-            store_ring_motions(params, block, &shots, &end);
+            block.store(params, &shots, end.ring_motions() & !end.needs_scalar);
             let ended = !T::mask_to_bits(flight.flying);
             if at_release {
                 self.finish_first_flights(block, (numbers.start, starts), ended, &end);
             } else {
-                let slots = block.slots();
-                self.finish_flights(block, &slots, ended & block.occupied(), &end);
+                let slots = block.lanes.slots();
+                self.finish_flights(block, &slots, ended & block.lanes.occupied(), &end);
             }
         }
         self.workspace.return_queue(queue);
@@ -94,7 +91,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_far_segments<T: SimdReal<Simd = S, Element = f64>>(
         &self,
         params: &ModelParams<T>,
-        shots: &mut LaneShots<T>,
+        shots: &mut FlyingShots<T>,
     ) {
         let time_limit = params.splat(self.limits.time_limit_s);
         let mut far = params.splat_mask(!params.ball.has_lift);
@@ -116,7 +113,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
     fn fly_one_segment<T: SimdReal<Simd = S, Element = f64>>(
         &self,
         params: &ModelParams<T>,
-        shots: &mut LaneShots<T>,
+        shots: &mut FlyingShots<T>,
         flight: &mut SegmentedFlight<T>,
     ) {
         let flying = flight.flying;
@@ -156,7 +153,7 @@ impl<T: SimdReal> SegmentedFlight<T> {
     }
 
     #[inline(always)]
-    fn end(&self, params: &ModelParams<T>, shots: &LaneShots<T>) -> FlightEnd {
+    fn end(&self, params: &ModelParams<T>, shots: &FlyingShots<T>) -> FlightEnd {
         let [on_board, on_ring] = self.touches;
         FlightEnd {
             needs_scalar: T::mask_to_bits(self.needs_scalar),

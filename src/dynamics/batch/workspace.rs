@@ -1,6 +1,6 @@
 //! The memory of a batch: the shots in progress, and the queues in which they wait.
 
-use crate::dynamics::integrators::event_driven::{ContactState, ShotProgress};
+use crate::dynamics::integrators::shot_progress::{ContactState, ShotProgress};
 use crate::dynamics::outcome::{ContactSequence, Ending, Verdict};
 use crate::model::BallState;
 use crate::model::constants_per_ball_mass::ModelParams;

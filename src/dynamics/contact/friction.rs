@@ -1,6 +1,7 @@
 //! How friction acts at a contact, and when it changes.
 
 use crate::math::real::{Mask, Real};
+use crate::math::real_record::{RealRecord, RecordReader, RecordWriter};
 use crate::model::constants_per_ball_mass::ModelParams;
 
 /// A slip speed up to this counts as zero, m/s.
@@ -44,6 +45,24 @@ impl<T: Real> FrictionState<T> {
             rolling_failed: Mask::select(self.rolling_failed, condition, other.rolling_failed),
             slip_tolerance: self.slip_tolerance.select(condition, other.slip_tolerance),
         }
+    }
+}
+
+impl<T: Real> RealRecord<T> for FrictionState<T> {
+    #[inline(always)]
+    fn read(from: &mut impl RecordReader<T>) -> Self {
+        Self {
+            rolling: from.truth(),
+            rolling_failed: from.truth(),
+            slip_tolerance: from.number(),
+        }
+    }
+
+    #[inline(always)]
+    fn write(&self, to: &mut impl RecordWriter<T>) {
+        to.truth(self.rolling);
+        to.truth(self.rolling_failed);
+        to.number(self.slip_tolerance);
     }
 }
 

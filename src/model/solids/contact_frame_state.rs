@@ -2,6 +2,7 @@
 
 use super::contact_kinematics::ContactVector;
 use crate::math::real::Real;
+use crate::math::real_record::{RealRecord, RecordReader, RecordWriter};
 use crate::math::vector::{Vec2, Vec3};
 use crate::model::ball_params::BallParams;
 
@@ -24,42 +25,44 @@ pub(crate) struct ContactFrameState<T = f64> {
 }
 
 /// Number of values of a [`ContactFrameState`].
-pub(crate) const CONTACT_VALUES: usize = 12;
+pub(crate) const CONTACT_NUMBERS: usize = 12;
 
-impl<T: Real> ContactFrameState<T> {
-    /// The values in order.
+impl ContactFrameState {
+    pub(crate) const ZERO: Self = Self {
+        compression: 0.0,
+        velocity: ContactVector::new(0.0, 0.0, 0.0),
+        spin: ContactVector::new(0.0, 0.0, 0.0),
+        coordinates: [0.0; 3],
+        start: [0.0; 2],
+    };
+}
+
+impl<T: Real> RealRecord<T> for ContactFrameState<T> {
     #[inline(always)]
-    pub(crate) fn to_array(self) -> [T; CONTACT_VALUES] {
-        let (v, w) = (self.velocity, self.spin);
-        let [p_0, p_1, p_2] = self.coordinates;
-        let [s_0, s_1] = self.start;
-        [
-            self.compression,
-            v.normal,
-            v.tangent.x,
-            v.tangent.y,
-            w.normal,
-            w.tangent.x,
-            w.tangent.y,
-            p_0,
-            p_1,
-            p_2,
-            s_0,
-            s_1,
-        ]
+    fn read(from: &mut impl RecordReader<T>) -> Self {
+        Self {
+            compression: from.number(),
+            velocity: ContactVector::new(from.number(), from.number(), from.number()),
+            spin: ContactVector::new(from.number(), from.number(), from.number()),
+            coordinates: [from.number(), from.number(), from.number()],
+            start: [from.number(), from.number()],
+        }
     }
 
-    /// From the values in order.
     #[inline(always)]
-    pub(crate) fn from_array(values: [T; CONTACT_VALUES]) -> Self {
-        let [u, vn, v1, v2, wn, w1, w2, p_0, p_1, p_2, s_0, s_1] = values;
-        Self {
-            compression: u,
-            velocity: ContactVector::new(vn, v1, v2),
-            spin: ContactVector::new(wn, w1, w2),
-            coordinates: [p_0, p_1, p_2],
-            start: [s_0, s_1],
+    fn write(&self, to: &mut impl RecordWriter<T>) {
+        to.number(self.compression);
+        for v in [&self.velocity, &self.spin] {
+            to.number(v.normal);
+            to.number(v.tangent.x);
+            to.number(v.tangent.y);
         }
+        let ([p_0, p_1, p_2], [s_0, s_1]) = (self.coordinates, self.start);
+        to.number(p_0);
+        to.number(p_1);
+        to.number(p_2);
+        to.number(s_0);
+        to.number(s_1);
     }
 }
 
@@ -86,7 +89,17 @@ impl<T: Real> ContactFrameState<T> {
     /// The same in another number type.
     #[inline(always)]
     pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U) -> ContactFrameState<U> {
-        ContactFrameState::from_array(self.to_array().map(convert))
+        let along = |v: &ContactVector<T>| {
+            let (normal, t) = (convert(v.normal), v.tangent);
+            ContactVector::new(normal, convert(t.x), convert(t.y))
+        };
+        ContactFrameState {
+            compression: convert(self.compression),
+            velocity: along(&self.velocity),
+            spin: along(&self.spin),
+            coordinates: self.coordinates.map(&convert),
+            start: self.start.map(&convert),
+        }
     }
 
     /// A bound of the speed of the centre.

@@ -30,7 +30,7 @@ mod solid;
 pub(crate) use board::Board;
 pub(crate) use board_edges::BoardEdges;
 pub(crate) use contact_frame_state::{
-    CONTACT_VALUES, ContactDistances, ContactFrameState, FrameTurn,
+    CONTACT_NUMBERS, ContactDistances, ContactFrameState, FrameTurn,
 };
 pub(crate) use contact_kinematics::{ContactKinematics, ContactVector};
 pub(crate) use material::Material;
