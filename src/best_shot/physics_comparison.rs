@@ -244,6 +244,16 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
                 .expect("between 0 and 1");
         })
     };
+    // At the same restitution: the ball stays on the ring for a shorter or a longer time.
+    let stiffness = |times: f64| -> Box<dyn Fn(&mut Physics)> {
+        Box::new(move |physics| {
+            let restitution = physics.restitution_on(SolidId::Ring);
+            physics.hoop_contact.stiffness_n_m *= times;
+            physics
+                .set_restitution_on(SolidId::Ring, restitution)
+                .expect("the one that it had");
+        })
+    };
     let drag_of = |drag: f64| -> Box<dyn Fn(&mut Physics)> {
         Box::new(move |physics| physics.air.drag_coefficient = drag)
     };
@@ -284,6 +294,8 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
             true,
             restitution(SolidId::Ring, 0.70),
         ),
+        ("hoop_stiffness half", true, stiffness(0.5)),
+        ("hoop_stiffness double", true, stiffness(2.0)),
         (
             &board_names[0],
             true,
@@ -306,14 +318,19 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
             }),
         ),
     ];
-    variants.extend(changes.into_iter().map(|(name, is_unmeasured, change)| {
-        let mut physics = base.clone();
-        change(&mut physics);
-        PhysicsVariant {
-            is_unmeasured,
-            ..variant(&format!("{with} {name}"), &physics)
-        }
-    }));
+    variants.extend(
+        changes
+            .into_iter()
+            .filter_map(|(name, is_unmeasured, change)| {
+                let mut physics = base.clone();
+                change(&mut physics);
+                // What the base has already is no change.
+                (physics != base).then(|| PhysicsVariant {
+                    is_unmeasured,
+                    ..variant(&format!("{with} {name}"), &physics)
+                })
+            }),
+    );
     variants
 }
 

@@ -32,7 +32,7 @@ pub enum TestError {
     /// The trajectories cannot be flights measured with the tracker's noise: the ratio of the seen
     /// to the expected root mean square of their residuals.
     #[error(
-        "the trajectories scatter {0:.1} times as much about the fitted flights as the tracker should: they are not flights that this tracker measured. Look at the units, the frame rate and the hoop (--frame), and give the tracker's noise with --tracker FILE"
+        "the trajectories scatter {0:.1} times as much about the fitted flights as the tracker should: they are not flights that this tracker measured. Look at the units, the frame rate and the hoop (--frame). If these are right, its error of a position is about {0:.1} times what the tracker says: give that with --tracker FILE"
     )]
     OtherTracker(f64),
     /// A value is the same in every shot.
@@ -118,7 +118,7 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::OtherNoise(ratio) => write!(
                 out,
-                "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE",
+                "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE, about so many times as much",
                 ratio.sqrt()
             ),
             Self::NotNormal([skewness, kurtosis], sessions_differ) => write!(

@@ -55,14 +55,13 @@ impl SessionError {
     }
 
     /// How many shots a second session needs to show a change since this one at the level of 95 %
-    /// with a power of 80 %, where each of its shots tells `ratio` times this one's error; `None`
-    /// if no number suffices.
+    /// with a power of 80 %, where `of_one_shot` is the error of one of its shots; `None` if no
+    /// number suffices.
     #[must_use]
-    pub fn second_session(&self, change: f64, ratio: f64) -> Option<f64> {
+    pub fn second_session(&self, change: f64, of_one_shot: f64) -> Option<f64> {
         let own = self.error();
         let seen = change / POWER;
         let left = seen * seen - own * own;
-        let of_one_shot = ratio * self.of_one_shot;
         (left > 0.0).then(|| of_one_shot * of_one_shot / left)
     }
 
@@ -205,7 +204,7 @@ mod tests {
             of_one_shot: 0.4,
             shots: 60.0,
         };
-        let shots = first.second_session(0.2, 0.8).unwrap();
+        let shots = first.second_session(0.2, 0.8 * 0.4).unwrap();
         let difference = libm::hypot(first.error(), 0.8 * 0.4 / shots.sqrt());
         assert!((difference * POWER - 0.2).abs() < 1e-12);
         // As many as in the first, where that is the size of both.
@@ -214,8 +213,8 @@ mod tests {
             shots: each,
             ..first
         };
-        assert!((equal.second_session(0.2, 1.0).unwrap() - each).abs() < 1e-9);
+        assert!((equal.second_session(0.2, 0.4).unwrap() - each).abs() < 1e-9);
         // The first session alone is less sure than the change.
-        assert_eq!(first.second_session(0.1, 1.0), None);
+        assert_eq!(first.second_session(0.1, 0.4), None);
     }
 }

@@ -11,9 +11,11 @@ use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 /// A shot that is farther than this from the hoop's centre where it falls through its height is not
 /// aimed at it, m.
 pub(super) const FARTHEST_LANDING_M: f64 = 1.5;
-/// Depths of a shot at the hoop: up to a foot and a half before and behind the ring, m. Were long
-/// shots kept out, a long shooter would look better than they are.
-const DEPTHS_M: (f64, f64) = (-18.0 * INCH_M, 36.0 * INCH_M);
+/// Depths of a shot at the hoop: up to four feet before and behind the ring, m. Were short and long
+/// shots kept out, a shooter who misses by far would look better than they are.
+const DEPTHS_M: (f64, f64) = (-48.0 * INCH_M, 66.0 * INCH_M);
+/// Entry angles of a shot at the hoop, deg: those of shots that fall far short are flat.
+const ENTRY_ANGLES_DEG: (f64, f64) = (5.0, 85.0);
 /// The end of the reason of a row without a value.
 pub(super) const IS_MISSING: &str = "is missing";
 
@@ -136,7 +138,7 @@ impl RowReader<'_> {
             };
             if !(DEPTHS_M.0..=DEPTHS_M.1).contains(&landing.depth_m) {
                 return Err(format!(
-                    "{}: {:.1} in is no shot at this hoop (0 in is the front of the ring, 18 in its back; -18 to 36 are read)",
+                    "{}: {:.1} in is no shot at this hoop (0 in is the front of the ring, 18 in its back; -48 to 66 are read)",
                     self.column_name(Quantity::Depth),
                     landing.depth_m / INCH_M
                 ));
@@ -148,11 +150,12 @@ impl RowReader<'_> {
                     landing.right_m / INCH_M
                 ));
             }
-            if !(0.26..1.4).contains(&landing.entry_angle_rad) {
+            let entry_deg = landing.entry_angle_rad / DEGREE_RAD;
+            let (least, most) = ENTRY_ANGLES_DEG;
+            if !(least..=most).contains(&entry_deg) {
                 return Err(format!(
-                    "{}: {:.1} deg; must be from 15 to 80 deg",
-                    self.column_name(Quantity::EntryAngle),
-                    landing.entry_angle_rad / DEGREE_RAD
+                    "{}: {entry_deg:.1} deg; must be from {least:.0} to {most:.0} deg",
+                    self.column_name(Quantity::EntryAngle)
                 ));
             }
             return Ok((place, Raw::Landing(landing, backspin)));
@@ -211,6 +214,10 @@ impl RowReader<'_> {
                     place,
                     measured,
                 }),
+                (Err(reason), Ok(Some(made))) if !reason.ends_with(IS_MISSING) => {
+                    let result = if made { "it went in" } else { "it missed" };
+                    rejected.push((row, format!("{reason} ({result})")));
+                }
                 (Err(reason), _) | (_, Err(reason)) => rejected.push((row, reason)),
             }
         }

@@ -246,7 +246,7 @@ pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> S
     }
     line(
         "range made",
-        format!("{}, one at a time", windows_text(sensitivity, units)),
+        format!("{}, one at a time", windows_text(shot, units)),
     );
     if let Some(difference) = bank_minus_direct(best) {
         line("compared", comparison_text(&difference));
@@ -339,11 +339,7 @@ pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) 
         let sensitivity = &shot.sensitivity;
         // Writing to a String does not fail, here and below.
         let _ = writeln!(text, "{}, gains in points of P (0.01):", kind.name());
-        let _ = writeln!(
-            text,
-            "  made over a range of {}",
-            windows_text(sensitivity, units)
-        );
+        let _ = writeln!(text, "  made over a range of {}", windows_text(shot, units));
         let shares = &shot.estimate.shares;
         let entry = shot.outcome.entry.map_or_else(String::new, |entry| {
             format!("; enters at {:.1} deg", entry.angle_rad / DEGREE_RAD)
@@ -391,14 +387,27 @@ fn add_bank_aim(text: &mut String, profile: &Profile, shot: &BestShot, units: Un
     }
 }
 
-fn windows_text(sensitivity: &Sensitivity, units: UnitSystem) -> String {
+/// How far each value may be off, to both sides.
+fn windows_text(shot: &BestShot, units: UnitSystem) -> String {
     let (long, metre) = units.length();
-    let width = |window: &ShotWindow| match window.variable {
-        NominalVariable::Speed => format!("speed {:.2} {long}/s", window.width() / metre),
-        variable => format!("{} {:.1} deg", variable.name(), window.width() / DEGREE_RAD),
+    let text = |window: &ShotWindow| {
+        let name = window.variable.name();
+        let (unit, size, decimals) = match window.variable {
+            NominalVariable::Speed => (format!("{long}/s"), metre, 2),
+            _ => ("deg".to_owned(), DEGREE_RAD, 1),
+        };
+        let own = shot.nominal.get(window.variable);
+        match window.ends {
+            None => format!("{name} none"),
+            Some((low, high)) => format!(
+                "{name} {:+.decimals$} {:+.decimals$} {unit}",
+                (low - own) / size,
+                (high - own) / size
+            ),
+        }
     };
-    let widths: Vec<String> = sensitivity.windows.iter().map(width).collect();
-    widths.join(", ")
+    let windows: Vec<String> = shot.sensitivity.windows.iter().map(text).collect();
+    windows.join(", ")
 }
 
 fn add_errors(text: &mut String, errors: &[ErrorCost]) {

@@ -69,15 +69,15 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let mut sentences = vec![
         match others {
             _ if is_one_place => format!(
-                "From {named} {} of 100 of your best shots go in.",
+                "From {named} {} of 100 go in, released as well as you can.",
                 of_hundred(best.0)
             ),
             0 => format!(
-                "Your surest place is {named}: {} of 100 of your best shots go in.",
+                "Your surest place: {named}. Released as well as you can, {} of 100 go in there.",
                 of_hundred(best.0)
             ),
             _ => format!(
-                "Your surest place is {named}: {} of 100 of your best shots go in; {others} more {} as sure.",
+                "Your surest place: {named}. Released as well as you can, {} of 100 go in there; {others} more {} as sure.",
                 of_hundred(best.0),
                 if others == 1 { "is" } else { "are" }
             ),
@@ -90,7 +90,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     ];
     if !is_one_place {
         sentences.push(format!(
-            "Your hardest place is {}: {} of 100 go in.",
+            "Your hardest place: {}. {} of 100 go in there.",
             worst.1.in_words_with_mirror(&alike(worst.0), units),
             of_hundred(worst.0)
         ));
@@ -107,7 +107,10 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
             .collect();
         let words_top = MAP_TOP + height;
         let mut svg = Svg::new(width, words_top + LINE_HEIGHT * lines.len() as f64);
-        let title = format!("{}: makes in 100 of the best shots", results.shooter_name());
+        let title = format!(
+            "{}: makes in 100 with the best release",
+            results.shooter_name()
+        );
         svg.heading((10.0, 26.0), 22.0, Anchor::Start, &title);
         let corner = (0.0, MAP_TOP);
         let no_key = ColourKey::Legend(&[]);

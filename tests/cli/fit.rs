@@ -233,7 +233,12 @@ fn contract_bad_shots_are_refused_or_named() {
             "every shot at one place has the same value",
         ),
         ("metres", speeds(7.1), 2, "looks like m/s"),
-        ("rows", bad_rows, 3, "30 shots are used, 4 were kept out"),
+        (
+            "rows",
+            bad_rows,
+            3,
+            "30 shots are used, 4 kept out: look whether they are misses",
+        ),
         ("none", String::new(), 2, "has no rows"),
     ] {
         let path = folder.path().join(format!("{name}.csv"));
@@ -243,6 +248,18 @@ fn contract_bad_shots_are_refused_or_named() {
         assert!(answer.stderr.contains(message), "{name}: {}", answer.stderr);
         assert_eq!(out.join("fit.json").exists(), code == 3, "{name}");
     }
+    // A shot that falls far short is read as one; only the others of the file make it doubtful.
+    let text = fs::read_to_string("docs/data/gym_sensor.csv").unwrap();
+    let path = folder.path().join("short.csv");
+    fs::write(
+        &path,
+        text + "126,32,-19.0,1.0,13.75,7,0\n127,41,-60,0,13.75,7,0\n",
+    )
+    .unwrap();
+    fit(path.to_str().unwrap(), &folder.path().join("short"), &[])
+        .exits(3)
+        .says("line 127: is more than 6 robust standard deviations from the other shots")
+        .says("-60.0 in is no shot at this hoop (0 in is the front of the ring, 18 in its back; -48 to 66 are read) (it missed)");
     // A comma inside a name shifts all columns after it; one at the end of the line names none.
     let path = folder.path().join("names.csv");
     fs::write(&path, "entry,Depth (in, + = long),made\n45,9,1\n").unwrap();

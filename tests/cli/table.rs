@@ -386,6 +386,10 @@ fn contract_a_table_of_the_better_kind() {
     )
     .exits(2)
     .says("--kind best: a table of the better kind needs one court angle");
+    // What is refused leaves nothing behind.
+    let left = fs::read_dir(folder.path()).unwrap().flatten();
+    let mut left = left.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    assert!(!left.any(|name| name.ends_with(".unfinished")));
 }
 
 #[test]
@@ -616,6 +620,16 @@ fn contract_one_pitch_angle_for_several_distances_has_the_greatest_mean() {
     assert!(text.lines().all(|line| line.chars().count() <= 80));
     let words = format!("One pitch angle for all 2 distances: {best} deg makes the most");
     assert!(text.contains(&words), "{text}");
+    // Against the best of these angles at each distance.
+    let costs = [0, 1].map(|distance| {
+        let most = p(distance, 0).max(p(distance, 1)).max(p(distance, 2));
+        100.0 * (most - p(distance, if best == "60" { 1 } else { 2 }))
+    });
+    let words = format!(
+        "{best} deg makes {:.1} less on average",
+        (costs[0] + costs[1]) / 2.0
+    );
+    assert!(text.replace('\n', " ").contains(&words), "{words}: {text}");
     let csv = fs::read_to_string(folder.path().join("curves.csv")).unwrap();
     assert_eq!(csv.lines().count(), 7);
     assert!(csv.starts_with("distance_ft,kind,pitch_deg,"), "{csv}");

@@ -61,7 +61,7 @@ fn contract_a_team_has_a_table_maps_and_posters() {
             assert!(files.iter().any(|name| name == file), "{files:?}");
         }
         let html = fs::read_to_string(out.join(player).join("poster.html")).unwrap();
-        assert!(html.contains("Your surest place is") && !html.contains("<b>"));
+        assert!(html.contains("Your surest place: ") && !html.contains("<b>"));
     }
     let page = fs::read_to_string(out.join("team.html")).unwrap();
     assert!(page.contains("href=\"ann/poster.html\"") && page.contains(">the best of the team<"));

@@ -4,7 +4,7 @@ use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::find_kinds;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder;
+use crate::cli::fit_folder::{self, FitFolder};
 use crate::cli::measured_shots_flags::tracker_noise;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual \
 shot comes from the flags, then from the profile's [nominal] table, else it is the best one; of a fit's folder it is the measured one. It takes a minute or two.
 
-It also says how many shots show that the shooter has changed: of a fit's folder, in a second session against the shots that were fitted; of a profile, in each of two equal sessions, or with --first N in a second one against N shots.
+It also says how many shots show that the shooter has changed: of a fit's folder, in a second session against the shots that were fitted; of a profile, in each of two equal sessions, and with --first N in a second one against N shots.
 
 Examples:
   bankshot design results/gym-sensor-fit --tracker noah --target 3
@@ -52,10 +52,13 @@ pub(crate) struct DesignOptions {
     /// Of a fit with several places, the number of the place [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
-    /// Shots of a first session: ask what a second one shows against it [default: those of the fit;
-    /// of a profile, as many as in the second].
+    /// Shots of a first session with the same tracker: ask what a second one shows against it
+    /// [default: those of the fit, as they were measured; of a profile, none].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(10..=5000))]
     pub(crate) first: Option<u32>,
+    /// Changes of P that a second session is to show, in points.
+    #[arg(long, value_name = "POINTS", value_delimiter = ',', default_value = "5,10,20", value_parser = value_parsers::points)]
+    pub(crate) change: Vec<f64>,
     /// Also ask how many shots make P known to this many points: as one standard deviation, and as
     /// a 95 % interval of so many points to each side.
     #[arg(long, value_name = "POINTS", value_parser = value_parsers::points)]
@@ -107,7 +110,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         .as_deref()
         .map(|name| tracker_named(name, None))
         .transpose()?;
-    let mut first = options.first.map(|shots| shots as usize);
+    let mut fitted = None;
     let (profile, nominal, (own_tracker, sees), own_units) = if options.profile.is_dir() {
         let fit = fit_folder::read(&options.profile)?;
         let place = fit.place_numbered(options.place)?;
@@ -120,7 +123,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 fit.profiles[place].location().in_words(fit.units)
             ));
         }
-        first = first.or(Some(fit.posterior.shots));
+        fitted = Some(FirstSession::of_fit(&fit, place));
         let tracker = (fit.tracker, Some(fit.source));
         (fit.profiles[place].clone(), usual, tracker, fit.units)
     } else if options.place.is_some() {
@@ -162,12 +165,17 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         })
     };
     let mut sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
-    if let Some(first) = first.filter(|first| (10..=MOST_SHOTS).contains(first)) {
-        sizes.push(first);
+    if let Some(first) = options.first {
+        sizes.push(first as usize);
         sizes.sort_unstable();
         sizes.dedup();
     }
     let mut rows = simulate(&sizes)?;
+    // Shots that are there already were measured by the tracker of their fit.
+    let first = options
+        .first
+        .map(|shots| FirstSession::designed(&rows, shots as usize))
+        .or(fitted);
     let mut needed = None;
     let mut added = None;
     if let Some(points) = options.target {
@@ -183,7 +191,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         let name = &profile.shooter().name;
         return print_answer(&format!(
             "{:#}\n",
-            json(name, &tracker, (&rows, first), needed)
+            json(name, &tracker, (&rows, first.as_ref()), needed)
         ));
     }
     let mut text = format!(
@@ -214,10 +222,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             polar,
             100.0 * row.probability_error,
             100.0 * row.counting_error,
-            100.0 * least_change(&rows, row, first)
+            100.0 * least_change(row, first.as_ref())
         );
     }
-    text += &format!("\n{}\n", shots_for_changes(&rows, first));
+    text += &format!(
+        "\n{}\n",
+        shots_for_changes(&rows, first.as_ref(), &options.change)
+    );
     if let Some((points, shots)) = needed {
         let in_words = |shots: usize| match shots {
             MOST_SHOTS.. => format!("More than {MOST_SHOTS}"),
@@ -273,12 +284,47 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
 /// The largest test.
 const MOST_SHOTS: usize = 5000;
 
-/// The least change of P that shows between a first session of so many shots (without them, of as
-/// many as in the row) and one of the row's size: at the level of 95 %, with a power of 80 %.
-fn least_change(rows: &[DesignRow], row: &DesignRow, first: Option<usize>) -> f64 {
-    let before = first.map_or(row.probability_error, |shots| {
-        known_after(rows, shots, |row| row.probability_error).error()
-    });
+/// A session that is there already.
+struct FirstSession {
+    shots: usize,
+    /// How far it knows P, and the scatter (relative).
+    p: SessionError,
+    scatter: SessionError,
+}
+
+impl FirstSession {
+    /// The shots of a fit at a place: as the fit knows them.
+    fn of_fit(fit: &FitFolder, place: usize) -> Self {
+        let shots = fit.posterior.shots;
+        let known_to = |error: f64| SessionError {
+            of_one_shot: error * (shots as f64).sqrt(),
+            shots: shots as f64,
+        };
+        let sds = (0..3).map(|i| {
+            let sd = fit.posterior.summary(|draw| draw.sds[i]);
+            sd.sd / sd.mean
+        });
+        Self {
+            shots,
+            p: known_to(fit.usual_probabilities(place).interval().sd),
+            scatter: known_to(sds.sum::<f64>() / 3.0),
+        }
+    }
+
+    /// So many shots with the tracker of the designed tests.
+    fn designed(rows: &[DesignRow], shots: usize) -> Self {
+        Self {
+            shots,
+            p: known_after(rows, shots, |row| row.probability_error),
+            scatter: known_after(rows, shots, DesignRow::sd_error),
+        }
+    }
+}
+
+/// The least change of P that shows between the first session (without one, another of the row's
+/// size) and one of the row's size: at the level of 95 %, with a power of 80 %.
+fn least_change(row: &DesignRow, first: Option<&FirstSession>) -> f64 {
+    let before = first.map_or(row.probability_error, |first| first.p.error());
     POWER * libm::hypot(before, row.probability_error)
 }
 
@@ -295,41 +341,79 @@ fn known_after(
     }
 }
 
-/// How many shots show that P or a scatter has changed.
-fn shots_for_changes(rows: &[DesignRow], first: Option<usize>) -> String {
+/// How many shots show that P or a scatter has changed, in two equal sessions and against a first
+/// one.
+fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: &[f64]) -> String {
     let falls = [0.1, 0.2, 0.3];
-    let changes = [0.05, 0.1, 0.2];
     let most = rows.last().map_or(0, |row| row.shots);
-    let Some(first) = first else {
-        let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
-        let of_falls =
-            falls.map(|fall| two_digits(SessionError::each_session(scatter, fall, 1.0 - fall)));
-        let of_changes = [changes[0], changes[1]].map(|change| {
-            let error = change / (POWER * std::f64::consts::SQRT_2);
-            two_digits(shots_for(rows, error) as f64)
-        });
-        return format!(
-            "To see one scatter (speed, pitch or polar) fall by 10, 20 or 30 % between two sessions takes about {}, {} or {} shots in each (95 % level, power 80 %).\nTo see P change by 5 or 10 points takes about {} or {} shots in each. (A player also differs from day to day: that is not in these numbers.)",
-            of_falls[0], of_falls[1], of_falls[2], of_changes[0], of_changes[1]
-        );
-    };
-    let p = known_after(rows, first, |row| row.probability_error);
-    let scatter = known_after(rows, first, DesignRow::sd_error);
+    let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
+    // From the rows that are nearest in size.
+    let one_shot_near = |shots: f64| known_after(rows, shots as usize, |row| row.probability_error);
     let in_words = |shots: Option<f64>| match shots {
         None => "never".to_owned(),
         Some(shots) if shots > MOST_SHOTS as f64 => format!("more than {MOST_SHOTS}"),
         Some(shots) => format!("about {}", two_digits(shots.max(2.0))),
     };
-    let of_changes = changes.map(|change| in_words(p.second_session(change, 1.0)));
-    let of_falls = falls.map(|fall| in_words(scatter.second_session(fall, 1.0 - fall)));
-    let hidden = |error: &SessionError| 100.0 * POWER * error.error();
-    format!(
-        "How many further shots show a change since the {first} shots of the first session (95 % level, power 80 %):\n  P changed by 5, 10 or 20 points       {}\n  one scatter lower by 10, 20 or 30 %   {}\nHowever many follow, the first session alone hides changes of P below {:.1} points and of a scatter below {:.0} %. (A player also differs from day to day: that is not in these numbers.)",
-        of_changes.join(", "),
-        of_falls.join(", "),
-        hidden(&p),
-        hidden(&scatter)
+    let columns = |words: &[String]| words.join(", ");
+    let of_each: Vec<String> = changes
+        .iter()
+        .map(|points| {
+            let error = points / 100.0 / (POWER * std::f64::consts::SQRT_2);
+            in_words(Some(shots_for(rows, error) as f64))
+        })
+        .collect();
+    let falls_each =
+        falls.map(|fall| in_words(Some(SessionError::each_session(scatter, fall, 1.0 - fall))));
+    let listed: Vec<String> = changes.iter().map(|points| format!("{points}")).collect();
+    let listed = in_a_row(&listed);
+    let lines = |of_p: &str, of_falls: &str| {
+        format!(
+            "  P changed by {listed} points: {of_p}\n  one scatter lower by 10, 20 or 30 %: {of_falls}\n"
+        )
+    };
+    let mut text = String::new();
+    if let Some(first) = first {
+        let second = |change: f64| {
+            let rough = first
+                .p
+                .second_session(change, one_shot_near(100.0).of_one_shot)?;
+            first
+                .p
+                .second_session(change, one_shot_near(rough).of_one_shot)
+        };
+        let of_p: Vec<String> = changes
+            .iter()
+            .map(|points| in_words(second(points / 100.0)))
+            .collect();
+        let of_falls =
+            falls.map(|fall| in_words(first.scatter.second_session(fall, (1.0 - fall) * scatter)));
+        let hidden = |error: &SessionError| 100.0 * POWER * error.error();
+        text += &format!(
+            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}However many follow, those first shots hide changes of P below {:.1} points and of a scatter below {:.0} %: there it says never.\n\n",
+            first.shots,
+            lines(&columns(&of_p), &columns(&of_falls)),
+            hidden(&first.p),
+            hidden(&first.scatter)
+        );
+    }
+    text + &format!(
+        "How many shots in each of two equal sessions show a change{}:\n{}A player also differs from day to day: that is not in these numbers.",
+        match first {
+            Some(_) => "",
+            None =>
+                " (95 % level, power 80 %; \"P changed by\" in the table is the least change that they show)",
+        },
+        lines(&columns(&of_each), &columns(&falls_each))
     )
+}
+
+/// "5, 10 or 20".
+fn in_a_row(words: &[String]) -> String {
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
+    }
 }
 
 /// Shots that make P known to a standard deviation, which falls with the square root of the shots:
@@ -349,7 +433,7 @@ fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
 fn json(
     name: &str,
     tracker: &TrackerOfTest,
-    (rows, first): (&[DesignRow], Option<usize>),
+    (rows, first): (&[DesignRow], Option<&FirstSession>),
     needed: Option<(f64, usize)>,
 ) -> Value {
     let listed = rows.iter().map(|row| {
@@ -361,14 +445,18 @@ fn json(
             "polar_sd_relative_error": polar,
             "probability_error": number(row.probability_error),
             "counting_error": number(row.counting_error),
-            "least_change_of_probability": number(least_change(rows, row, first)),
+            "least_change_of_probability": number(least_change(row, first)),
         })
     });
     json!({
         "shooter": name,
         "tracker": tracker.name.0,
         "tracker_noise": tracker.name.1,
-        "first_session_shots": first,
+        "first_session": first.map(|first| json!({
+            "shots": first.shots,
+            "probability_error": number(first.p.error()),
+            "sd_relative_error": number(first.scatter.error()),
+        })),
         "tests": listed.collect::<Value>(),
         "target": needed.map(|(points, shots)| json!({
             "probability_error": number(points / 100.0),

@@ -7,6 +7,7 @@ use crate::best_shot::{
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
@@ -27,19 +28,22 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Searches the best shots under 23 physics: one to four minutes on two cores. What nobody measured in this gym (how soft the \
+Searches the best shots under up to 25 physics: half a minute to four minutes on two cores. What nobody measured in this gym (how soft the \
 ring and the board are, the friction, the drag, the height) is changed to other likely values; \"together\" is, for \
 the changes that lower P and for those that raise it, the root of the sum of squares, of each quantity the change that does most. \
-Of the folder of a fit it also says what the advice of `bankshot advise` gains under each physics.
+Of the folder of a fit it also says what the advice of `bankshot advise` gains under each physics; --json has P of the usual and of the advised shot there, and the gain, each with its 95 % interval.
 
 Examples:
   bankshot physics player.toml
+  bankshot physics robot.toml --distance '6 m'
   bankshot physics results/shots-fit --plot physics.svg")]
 pub(crate) struct PhysicsOptions {
     /// The shooter's profile, or the folder of a fit.
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
+    #[command(flatten)]
+    pub(crate) location: PlaceOptions,
     /// Of a fit with several places, the number of the place [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
@@ -72,7 +76,15 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         Some(_) => options.profile.join(fit_folder::profile_file(place)),
         None => options.profile.clone(),
     };
-    let mut profile = load_profile(&path, &options.physics, quiet)?;
+    if fit.is_some() && options.location.is_given() {
+        return Err(Failure::usage(format!(
+            "--distance, --angle: the shots of {} were measured from their own place; give {} to move its profile",
+            options.profile.display(),
+            path.display()
+        )));
+    }
+    let profile = load_profile(&path, &options.physics, quiet)?;
+    let mut profile = options.location.moved(profile)?;
     let units_of_fit = fit.as_ref().map(|fit| fit.units);
     if let Some(units) = options.units.map(Into::into).or(units_of_fit) {
         profile = profile.with(|settings| settings.output.units = units)?;
@@ -80,7 +92,10 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
-    let variants = physics_variants(profile.physics(), profile.output().units);
+    let mut variants = physics_variants(profile.physics(), profile.output().units);
+    if options.physics.physics.is_some() {
+        GIVEN.clone_into(&mut variants[0].name);
+    }
     let bars = ProgressBars::new(quiet);
     let mut comparison = compare_physics(&profile, &variants, &bars)?;
     let fitted = match &fit {
@@ -117,6 +132,9 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         print_prose(&comparison_text(&profile, &comparison, fitted.as_ref()))
     }
 }
+
+/// The name of the first row where --physics replaces the profile's own.
+const GIVEN: &str = "as given";
 
 /// A fit under each physics of a comparison.
 struct FittedRows {
@@ -175,7 +193,21 @@ impl FittedRows {
                 [gain.mean, gain.low, gain.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
             format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
         };
-        let mut text = format!("The advice ({})", self.changes);
+        let rows = comparison.rows.iter().enumerate();
+        let unsure: Vec<&str> = rows
+            .filter(|(i, row)| {
+                row.is_unmeasured && self.gain(*i).is_some_and(|gain| gain.low <= 0.0)
+            })
+            .map(|(_, row)| row.name.as_str())
+            .collect();
+        let mut text = match unsure[..] {
+            [] => "The advice holds under each change of what nobody measured in this gym: the 95 % interval of its gain lies above 0.\n".to_owned(),
+            _ => format!(
+                "The advice is not sure {}: there the 95 % interval of its gain reaches below 0.\n",
+                unsure.join(", ")
+            ),
+        };
+        text += &format!("The advice ({})", self.changes);
         if let Some(own) = self.gain(0) {
             text += &format!(" gains {} under the first row's physics", points(&own));
         }
@@ -275,8 +307,12 @@ fn comparison_text(
         Some(fitted) => fitted.in_words(comparison),
         None => "(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
     };
+    let first_row = match comparison.rows.first() {
+        Some(row) if row.name == GIVEN => "The first row is the physics of --physics",
+        _ => "The first row is the profile's own physics",
+    };
     format!(
-        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. The first row is the profile's own physics; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
+        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
         if has_air { "with" } else { "ncaa," },
         if has_air { "it" } else { "ncaa" },
     )

@@ -1,6 +1,8 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
-use crate::best_shot::{ShotKind, ShotTable, ShotTableRequest, TableFinding, TableKind};
+use crate::best_shot::{
+    ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
+};
 use crate::cli::config_files::load_profile_with_fixed;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fixed_value_flags::FixedOptions;
@@ -158,6 +160,9 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         max_loss: options.max_loss,
         is_draft: options.draft,
     };
+    if request.kind == TableKind::Better && request.angles_rad.len() > 1 {
+        return Err(ShotTableError::SeveralAngles.into());
+    }
     let mut unfinished = match &outputs[0].file {
         // A pipe or a device has no folder of its own.
         Some(file) if !file.exists() || file.is_file() => {

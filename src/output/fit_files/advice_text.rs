@@ -133,7 +133,7 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
     let changes = words.of_releases(&advice.usual, &steps.advised);
     let gain = &steps.gain;
     let mut text = format!(
-        "With the same scatter you can make {:.0} %, {:.0} points more (95 %: {:+.0} to {:+.0}): {changes}.",
+        "With the same scatter you can make {:.0} %, {:.1} points more (95 %: {:+.0} to {:+.0}): {changes}.",
         100.0 * (p + gain.mean),
         100.0 * gain.mean,
         100.0 * gain.low,
@@ -226,16 +226,21 @@ pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> String {
         moved(right_m, ["further right", "further left"]),
     ];
     let moves: Vec<String> = moves.into_iter().flatten().collect();
-    if moves.is_empty() {
-        return String::new();
-    }
     let [now, then] =
         [usual, advised].map(|landing| format!("{:.0}", landing.entry_angle_rad / DEGREE_RAD));
+    if moves.is_empty() && now == then {
+        return String::new();
+    }
     let now = if now == then {
         "as now".to_owned()
     } else {
         format!("now {now}")
     };
+    if moves.is_empty() {
+        return format!(
+            "It should then come down where it does, at an entry angle of {then} deg ({now}).\n"
+        );
+    }
     format!(
         "It should then come down {} (entry angle {then} deg, {now}).\n",
         moves.join(" and ")

@@ -2,8 +2,10 @@
 
 use super::fit_json::FitSource;
 use super::parameters::{parameters, value_units};
-use crate::fitting::{CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, p_value};
-use crate::units::UnitSystem;
+use crate::fitting::{
+    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, p_value, values_at_height,
+};
+use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 
 /// A probability as a percentage.
 #[must_use]
@@ -59,6 +61,9 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             place.release_height_m / metre,
             probability_text(p)
         );
+        if source.kind == "trajectories" {
+            text += &at_another_height(fit, index, units);
+        }
     }
     if let Some(residuals) = &fit.residuals {
         text += &format!(
@@ -109,12 +114,15 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         let auc = makes
             .area_under_curve
             .map_or_else(|| "-".to_owned(), |auc| format!("{auc:.2}"));
+        let calibration = makes.calibration_z.map_or_else(String::new, |z| {
+            format!(", calibration z {z:+.1} (above 3: too sure)")
+        });
         let swishes = match makes.swishes {
             (0, _) => "no shot was predicted to be a swish".to_owned(),
             (all, made) => format!("{made} of {all} predicted swishes went in"),
         };
         text += &format!(
-            "chances Brier {:.3} ({:.3} for the share of makes alone), log loss {:.3} ({:.3}), area under the curve {auc}; {swishes}\n",
+            "chances Brier {:.3} ({:.3} for the share of makes alone), log loss {:.3} ({:.3}), area under the curve {auc}{calibration}; {swishes}\n",
             makes.brier, makes.losses_of_share[0], makes.log_loss, makes.losses_of_share[1]
         );
     }
@@ -191,4 +199,25 @@ fn tests_text(fit: &ShooterFit) -> String {
         p_value(fit.shape.skewness_p),
         p_value(fit.shape.kurtosis_p)
     )
+}
+
+/// What the means rest on where balls were tracked: on the height at which the release is taken,
+/// which the tracks tell only roughly.
+fn at_another_height(fit: &ShooterFit, place: usize, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let by_m = match units {
+        UnitSystem::Imperial => 0.1 * FOOT_M,
+        UnitSystem::Metric => 0.03,
+    };
+    let (at, usual) = (&fit.places[place], &fit.typical.means[place]);
+    let simulator = fit.profiles[place].simulator();
+    let higher = values_at_height(simulator, at, usual, at.release_height_m + by_m);
+    higher.map_or_else(String::new, |higher| {
+        format!(
+            "        speed and pitch are those at that height: {:.2} {long} higher they are {:.2} {long}/s less and {:.1} deg less; P hardly depends on it\n",
+            by_m / metre,
+            (usual[0] - higher[0]) / metre,
+            (usual[1] - higher[1]) / DEGREE_RAD
+        )
+    })
 }

@@ -11,6 +11,7 @@ use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<String> {
     let notes = [
         kinds_note(table, units),
+        steep_note(table, units),
         range_note(table, units),
         Some(check_note(table, units)),
         added_note(table, units),
@@ -278,8 +279,48 @@ fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     (!jumps.is_empty()).then(|| {
         format!(
             "At {} {long} {what}: of two rows the first holds below, the second from \
-             there on.",
-            jumps.join(", ")
+             there on.{}",
+            jumps.join(", "),
+            match table.kind {
+                // Where P is nearly the same over a range of angles.
+                TableKind::One(_) => " pitch_min and pitch_max of [search] nearer to each other, or --pitch, keep the angle steadier: look at the loss of P with `bankshot pitch-curve`.",
+                TableKind::Better => "",
+            }
+        )
+    })
+}
+
+/// In a draft: neighbouring rows that are too far apart to interpolate between.
+fn steep_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+    /// A change of pitch from row to row after which the shot halfway may miss, rad.
+    const STEEP_RAD: f64 = 5.0 * DEGREE_RAD;
+    if !table.checks.is_empty() {
+        return None;
+    }
+    let (long, metre) = units.length();
+    let mut steep: Vec<String> = Vec::new();
+    for angle in 0..table.angles_rad.len() {
+        for distance in 1..table.distances_m.len() {
+            let (Some(before), Some(after)) =
+                (table.at(angle, distance - 1), table.at(angle, distance))
+            else {
+                continue;
+            };
+            let by_rad = after.nominal.pitch_rad - before.nominal.pitch_rad;
+            if before.kind == after.kind && by_rad.abs() > STEEP_RAD {
+                steep.push(format!(
+                    "{} to {} {long} ({:+.1} deg)",
+                    short(table.distances_m[distance - 1] / metre),
+                    short(table.distances_m[distance] / metre),
+                    by_rad / DEGREE_RAD
+                ));
+            }
+        }
+    }
+    (!steep.is_empty()).then(|| {
+        format!(
+            "Do not interpolate from {}: the pitch changes by so much that a shot between may miss. Without --draft the table finds where the best shot jumps.",
+            steep.join(", from ")
         )
     })
 }

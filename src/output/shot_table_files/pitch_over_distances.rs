@@ -44,6 +44,35 @@ fn mean_and_least(from: &[DistanceShots], row: usize) -> (f64, f64) {
     (sum / from.len() as f64, least)
 }
 
+/// The pitch angle of a row, in degrees.
+fn degrees(from: &[DistanceShots], row: usize) -> String {
+    let text = format!("{:.1}", from[0].shots[row].pitch_rad / DEGREE_RAD);
+    text.trim_end_matches(".0").to_owned()
+}
+
+/// What one pitch angle costs against the best of the angles at each distance.
+fn cost_in_words(from: &[DistanceShots], row: usize, units: UnitSystem) -> String {
+    let costs: Vec<(f64, &DistanceShots)> = from
+        .iter()
+        .map(|shots| {
+            let all = (0..shots.shots.len()).map(|row| shots.probability(row));
+            (all.fold(0.0, f64::max) - shots.probability(row), shots)
+        })
+        .collect();
+    let mean = costs.iter().map(|(cost, _)| cost).sum::<f64>() / costs.len().max(1) as f64;
+    let most = costs.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    most.map_or_else(String::new, |(most, shots)| {
+        format!(
+            " Against the best of these angles at each distance {} deg makes {:.1} less on average, and {:.1} less at most, from {} {}.",
+            degrees(from, row),
+            100.0 * mean,
+            100.0 * most,
+            shots.distance(units),
+            units.length().0
+        )
+    })
+}
+
 /// P at each pitch angle and distance for people, at most 80 columns wide: the angle with the
 /// greatest mean and that with the greatest least P, then a table.
 #[must_use]
@@ -59,10 +88,7 @@ pub fn pitch_over_distances_text(
     let rows: Vec<(f64, f64)> = (0..first.shots.len())
         .map(|row| mean_and_least(from, row))
         .collect();
-    let degrees = |row: usize| {
-        let text = format!("{:.1}", first.shots[row].pitch_rad / DEGREE_RAD);
-        text.trim_end_matches(".0").to_owned()
-    };
+    let degrees = |row: usize| degrees(from, row);
     let greatest = |value: &dyn Fn(usize) -> f64| {
         (0..rows.len()).max_by(|&a, &b| value(a).total_cmp(&value(b)))
     };
@@ -90,6 +116,7 @@ pub fn pitch_over_distances_text(
         ),
         false => ".".to_owned(),
     };
+    words += &cost_in_words(from, best, units);
     if let Some(steady) = greatest(&|row| rows[row].1).filter(|&row| rows[row].1 > 0.0) {
         let worst = from
             .iter()
@@ -99,6 +126,12 @@ pub fn pitch_over_distances_text(
             " The lowest P over the distances is highest at {} deg: {:.1} of 100, from {where_least} {long}.",
             degrees(steady),
             100.0 * rows[steady].1
+        );
+    }
+    if rows.len() > 1 && (best == 0 || best + 1 == rows.len()) {
+        words += &format!(
+            " {} deg is the end of the angles that were asked for.",
+            degrees(best)
         );
     }
     text += &wrapped(&words);

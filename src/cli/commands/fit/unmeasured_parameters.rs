@@ -142,7 +142,7 @@ pub(super) fn estimate(
         } else if is_at_end {
             "; the likeliest value is at an end of the range, so more than this value is wrong: look at distance, release height, air, tracker, and how a make was recorded"
         } else {
-            "; the interval reaches the end of the range: these shots cannot tell"
+            "; the interval reaches the end of the range that was tried: these shots do not say how far beyond it the value may be"
         }
     );
     let usual = parameter.usual_range();
