@@ -400,7 +400,7 @@ fn windows_text(shot: &BestShot, units: UnitSystem) -> String {
         match window.ends {
             None => format!("{name} none"),
             Some((low, high)) => format!(
-                "{name} {:+.decimals$} {:+.decimals$} {unit}",
+                "{name} {:+.decimals$} to {:+.decimals$} {unit}",
                 (low - own) / size,
                 (high - own) / size
             ),
