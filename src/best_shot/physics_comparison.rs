@@ -104,7 +104,8 @@ impl PhysicsComparison {
         let list = |changes: &[(&str, f64)]| {
             let words = changes.iter().map(|(name, by)| {
                 let name = name.split_once(' ').map_or(*name, |(_, change)| change);
-                format!("{name} {:+.1}", 100.0 * by)
+                // Rounded first, and 0 added: no negative zero.
+                format!("{name} {:+.1}", libm::round(1000.0 * by) / 10.0 + 0.0)
             });
             words.collect::<Vec<_>>().join(", ")
         };

@@ -13,7 +13,7 @@ use crate::fitting::{
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
-use crate::shooter::{Location, Nominal, Profile, ProfileError, ShotKind};
+use crate::shooter::{Location, Nominal, NominalVariable, Profile, ProfileError, ShotKind};
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -195,9 +195,18 @@ pub(crate) fn read(folder: &Path) -> Result<FitFolder, Failure> {
     let (name, typical) = (&written.shooter().name, posterior.typical());
     let profiles = places
         .iter()
-        .map(|place| {
+        .enumerate()
+        .map(|(i, place)| {
             let fitted = fitted_profile(name, written.physics(), &typical, place)?;
-            with_search_of(&fitted, &written)
+            let profile = with_search_of(&fitted, &written)?;
+            let keeps_backspin = !written.search().choice.includes(NominalVariable::Backspin);
+            // profile.toml has the usual backspin of the first place.
+            if keeps_backspin && i > 0 {
+                return profile.with(|settings| {
+                    settings.nominal.backspin_rad_s = Some(typical.means[i][3]);
+                });
+            }
+            Ok(profile)
         })
         .collect::<Result<_, _>>()?;
     let name_of = |place: usize| json["places"][place]["name"].as_str().unwrap_or_default();

@@ -123,7 +123,7 @@ pub fn advise(
     let keeps_backspin = posterior.spin != SpinSource::Measured;
     let usual = typical.means[place];
     let searched = if keeps_backspin {
-        &with_backspin_kept(profile, usual[3])
+        &with_backspin_kept(profile, usual[3]).unwrap_or_else(|_| profile.clone())
     } else {
         profile
     };

@@ -118,7 +118,7 @@ impl std::fmt::Display for FitWarning {
             ),
             Self::OtherNoise(ratio) => write!(
                 out,
-                "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE, about so many times as much",
+                "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE: the error of a position is about so many times what the tracker says",
                 ratio.sqrt()
             ),
             Self::NotNormal([skewness, kurtosis], sessions_differ) => write!(

@@ -35,15 +35,19 @@ pub fn fitted_profile(
 }
 
 /// A profile whose search does not change the backspin: one that was not measured is kept.
-pub(super) fn with_backspin_kept(profile: &Profile, backspin_rad_s: f64) -> Profile {
-    profile
-        .with(|settings| {
-            let chosen = settings.search.choice.iter();
-            let others: Vec<NominalVariable> = chosen
-                .filter(|chosen| *chosen != NominalVariable::Backspin)
-                .collect();
-            settings.search.choice = SearchChoice::only(&others);
-            settings.nominal.backspin_rad_s = Some(backspin_rad_s);
-        })
-        .unwrap_or_else(|_| profile.clone())
+///
+/// # Errors
+/// The backspin is beyond what the shooter can have.
+pub(super) fn with_backspin_kept(
+    profile: &Profile,
+    backspin_rad_s: f64,
+) -> Result<Profile, ProfileError> {
+    profile.with(|settings| {
+        let chosen = settings.search.choice.iter();
+        let others: Vec<NominalVariable> = chosen
+            .filter(|chosen| *chosen != NominalVariable::Backspin)
+            .collect();
+        settings.search.choice = SearchChoice::only(&others);
+        settings.nominal.backspin_rad_s = Some(backspin_rad_s);
+    })
 }

@@ -75,7 +75,11 @@ fn vector(landing: &Landing) -> Vector3<f64> {
 }
 
 /// The derivatives of the landing by speed, pitch and polar angle.
-fn jacobian(simulator: &Simulator, place: &Place, values: &Values) -> Option<Matrix3<f64>> {
+pub(super) fn jacobian(
+    simulator: &Simulator,
+    place: &Place,
+    values: &Values,
+) -> Option<Matrix3<f64>> {
     let mut columns = Matrix3::zeros();
     for (i, difference) in DIFFERENCES.into_iter().enumerate() {
         let at = |sign: f64| {

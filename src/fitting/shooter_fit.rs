@@ -104,10 +104,10 @@ pub fn fit_shooter(
         .enumerate()
         .map(|(i, place)| {
             let profile = fitted_profile(test.name, physics, &typical, place)?;
-            Ok(match options.spin {
-                SpinSource::Measured => profile,
+            match options.spin {
+                SpinSource::Measured => Ok(profile),
                 _ => with_backspin_kept(&profile, typical.means[i][3]),
-            })
+            }
         })
         .collect::<Result<Vec<_>, ProfileError>>()?;
     let probabilities = (0..test.places.len())

@@ -4,17 +4,18 @@
 use super::advice::{Advice, DRAWS, thinned};
 use super::advice_steps::{Change, Shooting};
 use super::interval::Interval;
-use super::landing::{landing_of, release_of_landing};
+use super::landing::{jacobian, landing_of, release_of_landing};
 use super::measured_release::{Place, Values};
 use super::posterior::{Draw, Posterior};
 use crate::dynamics::Simulator;
 use crate::model::Physics;
 use crate::shooter::Profile;
+use nalgebra::SMatrix;
 
 /// Shots of a fit under one physics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShotsUnderPhysics {
-    /// P of the usual shot.
+    /// P of the usual shot, a fraction of 1.
     pub usual: Interval,
     /// The numerical standard error of its mean.
     pub standard_error: f64,
@@ -62,8 +63,8 @@ impl<'a> FittedShots<'a> {
         }
     }
 
-    /// The shots under another physics. `None` if the profile is not valid under it, or if a shot
-    /// of the fit has no release there.
+    /// The shots under another physics. `None` if the profile is not valid under it, or if the
+    /// landing of a draw has no release there.
     #[must_use]
     pub fn under(&self, physics: &Physics) -> Option<ShotsUnderPhysics> {
         let other = self
@@ -74,8 +75,9 @@ impl<'a> FittedShots<'a> {
         let probabilities = |change: Change| {
             let moved = draws.iter().map(|draw| {
                 let mut moved = draw.clone();
-                moved.means[self.place] =
-                    self.release_under(&other, &change.of_draw(draw, self.place))?;
+                let changed = change.of_draw(draw, self.place);
+                moved.means[self.place] = self.release_under(&other, &changed)?;
+                moved.factors[self.place] = self.factor_under(&other, draw)?;
                 Some(moved)
             });
             let moved: Vec<Draw> = moved.collect::<Option<_>>()?;
@@ -97,19 +99,42 @@ impl<'a> FittedShots<'a> {
         })
     }
 
-    /// The release under another physics of a shot that was measured.
-    fn release_under(&self, other: &Profile, values: &Values) -> Option<Values> {
-        let place = Place {
+    fn place(&self) -> Place {
+        Place {
             location: self.profile.location(),
             release_height_m: self.profile.shooter().release_height_m,
-        };
+        }
+    }
+
+    /// The release under another physics of a shot that was measured.
+    fn release_under(&self, other: &Profile, values: &Values) -> Option<Values> {
         match self.measured {
             Measured::Release => Some(*values),
             Measured::Landing => {
                 let simulators = [self.profile.simulator(), other.simulator()];
-                same_landing(simulators, &place, values)
+                same_landing(simulators, &self.place(), values)
             }
         }
+    }
+
+    /// The Cholesky factor of the covariance of a draw's releases under another physics: that which
+    /// scatters the landings about the usual one as they were measured. With J the derivatives of
+    /// the landing by speed, pitch and polar angle, releases change by `J_other^-1 J_own`.
+    fn factor_under(&self, other: &Profile, draw: &Draw) -> Option<SMatrix<f64, 4, 4>> {
+        let factor = draw.factors[self.place];
+        if self.measured == Measured::Release {
+            return Some(factor);
+        }
+        let (place, usual) = (self.place(), &draw.means[self.place]);
+        let own = jacobian(self.profile.simulator(), &place, usual)?;
+        let there = self.release_under(other, usual)?;
+        let of_other = jacobian(other.simulator(), &place, &there)?;
+        let mut moved = SMatrix::<f64, 4, 4>::identity();
+        let change = of_other.try_inverse()? * own;
+        moved.fixed_view_mut::<3, 3>(0, 0).copy_from(&change);
+        let scattered = moved * factor;
+        let covariance = scattered * scattered.transpose();
+        covariance.cholesky().map(|cholesky| cholesky.l())
     }
 }
 
@@ -128,7 +153,7 @@ mod tests {
 
     /// Authority: the landing itself; and less drag needs less speed.
     #[test]
-    fn prop_the_same_landing_under_another_drag() {
+    fn contract_the_same_landing_under_another_drag() {
         let place = Place {
             location: Location {
                 distance_m: 13.75 * FOOT_M,

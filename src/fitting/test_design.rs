@@ -37,11 +37,11 @@ impl DesignRow {
     }
 }
 
-/// A test that is there already, or is to be: how far it knows something. `error` is what one shot
-/// alone would know it to; the error falls with the square root of the shots.
+/// How far a session knows something: P, as a fraction of 1, or a scatter, relative to itself. The
+/// error falls with the square root of the shots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionError {
-    /// Standard deviation of one shot.
+    /// The standard deviation that one shot alone would leave.
     pub of_one_shot: f64,
     /// Shots of the session.
     pub shots: f64,
@@ -65,7 +65,8 @@ impl SessionError {
         (left > 0.0).then(|| of_one_shot * of_one_shot / left)
     }
 
-    /// How many shots two equal sessions need each.
+    /// How many shots two equal sessions need each to show a change. `ratio` is the error of a shot
+    /// of the second over that of one of the first.
     #[must_use]
     pub fn each_session(of_one_shot: f64, change: f64, ratio: f64) -> f64 {
         let needed = POWER * of_one_shot * libm::hypot(1.0, ratio) / change;
@@ -74,8 +75,6 @@ impl SessionError {
 }
 
 /// A simulated test: shots of a profile with a tracker's errors.
-///
-/// `spin` says whether the backspin is measured.
 pub fn simulated_test(
     profile: &Profile,
     nominal: &Nominal,

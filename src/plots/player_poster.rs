@@ -69,15 +69,15 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let mut sentences = vec![
         match others {
             _ if is_one_place => format!(
-                "From {named} {} of 100 go in, released as well as you can.",
+                "With your best release {} of 100 go in from {named}.",
                 of_hundred(best.0)
             ),
             0 => format!(
-                "Your surest place: {named}. Released as well as you can, {} of 100 go in there.",
+                "Your surest place: {named}. With your best release {} of 100 go in there.",
                 of_hundred(best.0)
             ),
             _ => format!(
-                "Your surest place: {named}. Released as well as you can, {} of 100 go in there; {others} more {} as sure.",
+                "Your surest place: {named}. With your best release {} of 100 go in there; {others} more {} as sure.",
                 of_hundred(best.0),
                 if others == 1 { "is" } else { "are" }
             ),

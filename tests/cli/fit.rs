@@ -237,7 +237,7 @@ fn contract_bad_shots_are_refused_or_named() {
             "rows",
             bad_rows,
             3,
-            "30 shots are used, 4 kept out: look whether they are misses",
+            "30 shots are used, 4 kept out: check whether they are misses",
         ),
         ("none", String::new(), 2, "has no rows"),
     ] {
@@ -809,6 +809,39 @@ fn contract_design_says_what_a_test_will_tell() {
         text.contains("since the 50 shots of the first session") && text.contains("never, "),
         "{text}"
     );
+    // Of a fit the first session is known as the fit knows it, whatever the new tracker is.
+    let folder = TempDir::new().unwrap();
+    fit("docs/data/gym_sensor.csv", folder.path(), &[]).exits(0);
+    let json: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("fit.json")).unwrap()).unwrap();
+    let mut command = bankshot();
+    command.arg("design").arg(folder.path());
+    let of_fit = [
+        "--shots",
+        "200,25",
+        "--repetitions",
+        "4",
+        "--tracker",
+        "lab",
+    ];
+    let change = ["--change", "3,10", "--json", "--quiet"];
+    let answer = Answer::of(command.args(of_fit).args(change))
+        .exits(0)
+        .json();
+    let first = &answer["first_session"];
+    assert_eq!(first["shots"], 125);
+    let known = |value: &serde_json::Value| value.as_f64().unwrap();
+    let of_posterior = known(&json["probability"]["sd"]);
+    assert!((known(&first["probability_error"]) / of_posterior - 1.0).abs() < 0.05);
+    assert_eq!(answer["tests"][0]["shots"], 25);
+    let changes = answer["changes"].as_array().unwrap();
+    assert!(changes[0]["shots_in_second_session"].is_null());
+    let (second, each) = ("shots_in_second_session", "shots_in_each_of_two");
+    // More than in equal sessions, as the first one is smaller than those.
+    assert!(
+        known(&changes[1][second]) > known(&changes[1][each]),
+        "{answer}"
+    );
 }
 
 /// What was measured stays the same under each physics: how the ball falls to the hoop.
@@ -845,6 +878,18 @@ fn contract_the_advice_is_told_under_each_physics() {
     // A release that was taken for higher than it is makes other speeds, and the same landings.
     let lower = usual("release 0.1 ft lower");
     assert!((lower - usual("ncaa")).abs() < 0.01, "{lower}");
+    // Where the flight is another one, aim and scatter are those that give the same landings.
+    let in_vacuum = fit(
+        "docs/data/gym_sensor.csv",
+        &folder.path().join("vacuum"),
+        &["--physics", "paper", "--json"],
+    );
+    let in_vacuum = in_vacuum.exits(0).json();
+    let fitted = in_vacuum["probability"]["mean"]
+        .as_f64()
+        .or_else(|| in_vacuum["probability"][0]["mean"].as_f64())
+        .unwrap();
+    assert!((usual("paper") - fitted).abs() < 0.007, "{fitted}");
     // A soft ring holds more shots than a hard one.
     assert!(usual("hoop_restitution 0.45") > usual("hoop_restitution 0.70") + 0.02);
 }

@@ -165,11 +165,9 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         })
     };
     let mut sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
-    if let Some(first) = options.first {
-        sizes.push(first as usize);
-        sizes.sort_unstable();
-        sizes.dedup();
-    }
+    sizes.extend(options.first.map(|shots| shots as usize));
+    sizes.sort_unstable();
+    sizes.dedup();
     let mut rows = simulate(&sizes)?;
     // Shots that are there already were measured by the tracker of their fit.
     let first = options
@@ -191,11 +189,16 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         let name = &profile.shooter().name;
         return print_answer(&format!(
             "{:#}\n",
-            json(name, &tracker, (&rows, first.as_ref()), needed)
+            json(
+                name,
+                &tracker,
+                (&rows, first.as_ref(), &options.change),
+                needed
+            )
         ));
     }
     let mut text = format!(
-        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>13}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>13}\n",
+        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>14}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>14}\n",
         profile.shooter().name,
         tracker.name.0,
         tracker.name.1,
@@ -215,7 +218,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     for row in &rows {
         let [speed, pitch, polar] = row.sd_errors.map(|error| 100.0 * error);
         text += &format!(
-            "{:>6} {:>7.1} % {:>7.1} % {:>7.1} %  {:>11.1} {:>12.1}  {:>13.1}\n",
+            "{:>6} {:>7.1} % {:>7.1} % {:>7.1} %  {:>11.1} {:>12.1}  {:>14.1}\n",
             row.shots,
             speed,
             pitch,
@@ -281,7 +284,8 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
     Ok(best.nominal)
 }
 
-/// The largest test.
+/// The smallest and the largest test.
+const LEAST_SHOTS: f64 = 10.0;
 const MOST_SHOTS: usize = 5000;
 
 /// A session that is there already.
@@ -295,7 +299,11 @@ struct FirstSession {
 impl FirstSession {
     /// The shots of a fit at a place: as the fit knows them.
     fn of_fit(fit: &FitFolder, place: usize) -> Self {
-        let shots = fit.posterior.shots;
+        // Those of other places tell the scatter, not this P.
+        let shots = match fit.profiles.len() {
+            1 => fit.posterior.shots,
+            _ => fit.observed[place].1.max(1),
+        };
         let known_to = |error: f64| SessionError {
             of_one_shot: error * (shots as f64).sqrt(),
             shots: shots as f64,
@@ -347,20 +355,17 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
     let falls = [0.1, 0.2, 0.3];
     let most = rows.last().map_or(0, |row| row.shots);
     let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
-    // From the rows that are nearest in size.
-    let one_shot_near = |shots: f64| known_after(rows, shots as usize, |row| row.probability_error);
     let in_words = |shots: Option<f64>| match shots {
         None => "never".to_owned(),
+        Some(shots) if !shots.is_finite() => "-".to_owned(),
+        Some(shots) if shots < LEAST_SHOTS => format!("fewer than {LEAST_SHOTS}"),
         Some(shots) if shots > MOST_SHOTS as f64 => format!("more than {MOST_SHOTS}"),
-        Some(shots) => format!("about {}", two_digits(shots.max(2.0))),
+        Some(shots) => format!("about {}", two_digits(shots)),
     };
     let columns = |words: &[String]| words.join(", ");
     let of_each: Vec<String> = changes
         .iter()
-        .map(|points| {
-            let error = points / 100.0 / (POWER * std::f64::consts::SQRT_2);
-            in_words(Some(shots_for(rows, error) as f64))
-        })
+        .map(|points| in_words(Some(shots_in_each(rows, points / 100.0))))
         .collect();
     let falls_each =
         falls.map(|fall| in_words(Some(SessionError::each_session(scatter, fall, 1.0 - fall))));
@@ -373,23 +378,15 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
     };
     let mut text = String::new();
     if let Some(first) = first {
-        let second = |change: f64| {
-            let rough = first
-                .p
-                .second_session(change, one_shot_near(100.0).of_one_shot)?;
-            first
-                .p
-                .second_session(change, one_shot_near(rough).of_one_shot)
-        };
         let of_p: Vec<String> = changes
             .iter()
-            .map(|points| in_words(second(points / 100.0)))
+            .map(|points| in_words(further_shots(rows, first, points / 100.0)))
             .collect();
         let of_falls =
             falls.map(|fall| in_words(first.scatter.second_session(fall, (1.0 - fall) * scatter)));
         let hidden = |error: &SessionError| 100.0 * POWER * error.error();
         text += &format!(
-            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}However many follow, those first shots hide changes of P below {:.1} points and of a scatter below {:.0} %: there it says never.\n\n",
+            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.\n\n",
             first.shots,
             lines(&columns(&of_p), &columns(&of_falls)),
             hidden(&first.p),
@@ -405,6 +402,34 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
         },
         lines(&columns(&of_each), &columns(&falls_each))
     )
+}
+
+/// Shots in each of two equal sessions that show a change of P.
+fn shots_in_each(rows: &[DesignRow], change: f64) -> f64 {
+    shots_for(rows, change / (POWER * std::f64::consts::SQRT_2)) as f64
+}
+
+/// Shots of a second session that show a change of P since the first one; `None` if no number does.
+fn further_shots(rows: &[DesignRow], first: &FirstSession, change: f64) -> Option<f64> {
+    let of_one_shot =
+        |shots: f64| known_after(rows, shots as usize, |row| row.probability_error).of_one_shot;
+    // The row that is nearest in size is known once the size is.
+    let rough = first.p.second_session(change, of_one_shot(100.0))?;
+    first.p.second_session(change, of_one_shot(rough))
+}
+
+/// The shots that show changes of P.
+fn changes_json(rows: &[DesignRow], first: Option<&FirstSession>, changes: &[f64]) -> Value {
+    let listed = changes.iter().map(|points| {
+        let change = points / 100.0;
+        let second = first.and_then(|first| further_shots(rows, first, change));
+        json!({
+            "change_of_probability": number(change),
+            "shots_in_second_session": second.map(|shots| number(shots.ceil())),
+            "shots_in_each_of_two": number(shots_in_each(rows, change)),
+        })
+    });
+    listed.collect()
 }
 
 /// "5, 10 or 20".
@@ -433,7 +458,7 @@ fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
 fn json(
     name: &str,
     tracker: &TrackerOfTest,
-    (rows, first): (&[DesignRow], Option<&FirstSession>),
+    (rows, first, changes): (&[DesignRow], Option<&FirstSession>, &[f64]),
     needed: Option<(f64, usize)>,
 ) -> Value {
     let listed = rows.iter().map(|row| {
@@ -452,6 +477,7 @@ fn json(
         "shooter": name,
         "tracker": tracker.name.0,
         "tracker_noise": tracker.name.1,
+        "changes": changes_json(rows, first, changes),
         "first_session": first.map(|first| json!({
             "shots": first.shots,
             "probability_error": number(first.p.error()),

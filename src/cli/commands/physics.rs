@@ -71,6 +71,14 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     let place = fit
         .as_ref()
         .map_or(Ok(0), |fit| fit.place_numbered(options.place))?;
+    if let Some(fit) = fit.as_ref().filter(|fit| fit.profiles.len() > 1 && !quiet) {
+        print_remark(&format!(
+            "the fit has {} places: this is place {}, {}",
+            fit.profiles.len(),
+            place + 1,
+            fit.profiles[place].location().in_words(fit.units)
+        ));
+    }
     // A fit names its folder; its profiles are in it.
     let path = match &fit {
         Some(_) => options.profile.join(fit_folder::profile_file(place)),
@@ -161,10 +169,11 @@ impl FittedRows {
         let shots = FittedShots::new((profile, &fit.posterior, place), &advice, measured);
         bars.begin("the advice under each physics", variants.len() as u64);
         let rows = comparison.rows.iter().map(|row| {
-            bars.advance(1);
             // A variant under which the profile is not valid has no row.
-            let variant = variants.iter().find(|variant| variant.name == row.name)?;
-            shots.under(&variant.physics)
+            let variant = variants.iter().find(|variant| variant.name == row.name);
+            let found = variant.and_then(|variant| shots.under(&variant.physics));
+            bars.advance(1);
+            found
         });
         let rows = rows.collect();
         bars.end();
@@ -193,38 +202,55 @@ impl FittedRows {
                 [gain.mean, gain.low, gain.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
             format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
         };
-        let rows = comparison.rows.iter().enumerate();
-        let unsure: Vec<&str> = rows
-            .filter(|(i, row)| {
-                row.is_unmeasured && self.gain(*i).is_some_and(|gain| gain.low <= 0.0)
-            })
-            .map(|(_, row)| row.name.as_str())
-            .collect();
-        let mut text = match unsure[..] {
-            [] => "The advice holds under each change of what nobody measured in this gym: the 95 % interval of its gain lies above 0.\n".to_owned(),
+        // `with hoop_restitution 0.45`, or `ncaa, hoop_restitution 0.45` where the profile's physics
+        // has no air.
+        let change = |row: &PhysicsRow| {
+            let words = row.name.split_once(' ');
+            words.map_or(row.name.clone(), |(_, change)| change.to_owned())
+        };
+        let names = |wanted: &dyn Fn(Option<Interval>) -> bool| {
+            let rows = comparison.rows.iter().enumerate();
+            let rows = rows.filter(|(i, row)| row.is_unmeasured && wanted(self.gain(*i)));
+            rows.map(|(_, row)| change(row)).collect::<Vec<_>>()
+        };
+        let unsure = names(&|gain| gain.is_some_and(|gain| gain.low <= 0.0));
+        let unknown = names(&|gain| gain.is_none());
+        let of = match comparison.base {
+            0 => "what nobody measured in this gym",
+            _ => "ncaa in what nobody measured in this gym (the fit's physics has no air)",
+        };
+        let mut text = match (&unsure[..], &unknown[..]) {
+            ([], []) => format!(
+                "The advice holds under each change of {of}: the 95 % interval of its gain lies above 0.\n"
+            ),
+            ([], _) => String::new(),
             _ => format!(
-                "The advice is not sure {}: there the 95 % interval of its gain reaches below 0.\n",
+                "The advice is not sure under some changes of {of}: {}. There the 95 % interval of its gain reaches below 0.\n",
                 unsure.join(", ")
             ),
         };
+        if !unknown.is_empty() {
+            text += &format!("No gain could be computed with {}.\n", unknown.join(", "));
+        }
         text += &format!("The advice ({})", self.changes);
         if let Some(own) = self.gain(0) {
             text += &format!(" gains {} under the first row's physics", points(&own));
         }
         let rows = comparison.rows.iter().enumerate();
         let unmeasured = rows.filter(|(_, row)| row.is_unmeasured);
-        let gains: Vec<(&str, Interval)> = unmeasured
-            .filter_map(|(i, row)| Some((row.name.as_str(), self.gain(i)?)))
+        let gains: Vec<(String, Interval)> = unmeasured
+            .filter_map(|(i, row)| Some((change(row), self.gain(i)?)))
             .collect();
-        let by_mean = |a: &&(&str, Interval), b: &&(&str, Interval)| a.1.mean.total_cmp(&b.1.mean);
+        let by_mean =
+            |a: &&(String, Interval), b: &&(String, Interval)| a.1.mean.total_cmp(&b.1.mean);
         let ends = [gains.iter().min_by(by_mean), gains.iter().max_by(by_mean)];
         if let [Some(least), Some(most)] = ends {
             text += &format!(
-                "; of the changes that nobody measured, least {} {}, most {} {}",
-                least.0,
+                "; of the changes that nobody measured, least {} with {}, most {} with {}",
                 points(&least.1),
-                most.0,
-                points(&most.1)
+                least.0,
+                points(&most.1),
+                most.0
             );
         }
         text += match self.measured {

@@ -85,11 +85,10 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         ];
         let ended = ends[0] | ends[1] | ends[2];
         let made = bits_in::<T>(ended, step.made);
-        let separates = bits_in::<T>(accepted, step.separates);
+        let flies = bits_in::<T>(accepted, step.flies);
         let arrived = bits_in::<T>(accepted, step.arrived);
-        let leaves_solid = bits_in::<T>(accepted, step.leaves_solid);
         let leaves_frame = bits_in::<T>(accepted, step.leaves_frame);
-        let done = ended | separates | arrived | leaves_solid | leaves_frame | given_up;
+        let done = ended | flies | arrived | leaves_frame | given_up;
         for lane in lanes_in(done & block.occupied()) {
             let write = |shot: &mut ShotProgress, own| on.write(shot, own);
             let slot = block.take(lane, &mut self.workspace.slots, write);
@@ -99,7 +98,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             } else if bit(ended, lane) {
                 let rules = ends.map(|rule| bit(rule, lane));
                 self.finish_shot_in_contact(slot, rules, bit(made, lane));
-            } else if bit(separates | (leaves_solid & !arrived), lane) {
+            } else if bit(flies, lane) {
                 shot.end_single_contact(ContactState::Free);
                 self.workspace.queue_mut(Phase::Flight).push(slot);
             } else if bit(arrived, lane) {

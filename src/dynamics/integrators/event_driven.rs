@@ -279,7 +279,7 @@ impl<O: Observer> Run<'_, O> {
             if let Some(ending) = step.ends.ending() {
                 return Some(self.shot.verdict(ending, step.made));
             }
-            if step.separates || (step.leaves_solid && !step.arrived) {
+            if step.flies {
                 self.separation(S::ID);
                 self.shot.end_single_contact(ContactState::Free);
                 return None;

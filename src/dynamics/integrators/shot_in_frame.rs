@@ -32,9 +32,9 @@ pub(crate) const FRAME_TRUTHS: usize = 4;
 pub(crate) struct FrameStep<T: Real> {
     /// The step counts; else it is repeated, shorter. What follows holds only for one that counts.
     pub(crate) accepted: T::Mask,
-    /// The ball leaves the solid: it parts, or the solid does not act there.
-    pub(crate) separates: T::Mask,
-    pub(crate) leaves_solid: T::Mask,
+    /// The ball flies: it parts from the solid, or the solid does not act there and the other one is
+    /// not touched.
+    pub(crate) flies: T::Mask,
     /// It touches the other solid.
     pub(crate) arrived: T::Mask,
     /// It is beyond the part of the solid that the frame describes.
@@ -106,11 +106,11 @@ impl<T: Real> ShotInFrame<T> {
             next.contact_time_s = self.contact_time_s.select(rejected, next.contact_time_s);
         }
         let too_late = self.allowed_s.lt(next.contact_time_s);
+        let arrived = has_arrived(params, other, &after);
         let step = FrameStep {
             accepted: !rejected,
-            separates: step.separates,
-            leaves_solid: !solid.acts(&after),
-            arrived: has_arrived(params, other, &after),
+            flies: step.separates | (!solid.acts(&after) & !arrived),
+            arrived,
             leaves_frame: !solid.is_in_frame(&after),
             ends: ShotEndFlags::new(params, &after, too_late),
             made: next.crossing.is_made(params, &after),

@@ -39,8 +39,9 @@ pub(crate) struct WorldStep<T: Real> {
     pub(crate) dt: T,
     /// Impulses of both contacts per unit of mass, m/s.
     pub(crate) impulses: [Vec3<T>; SolidId::COUNT],
-    /// The ball no longer touches, or has come to, each solid.
+    /// The ball no longer touches each solid.
     pub(crate) separates: [T::Mask; SolidId::COUNT],
+    /// It has come to each solid.
     pub(crate) arrived: [T::Mask; SolidId::COUNT],
     /// It is on one solid, in a part that a frame describes.
     pub(crate) enters_frame: T::Mask,

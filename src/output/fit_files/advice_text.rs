@@ -432,7 +432,7 @@ pub fn advice_text(
     }
     if advice.spin != SpinSource::Measured {
         text += &format!(
-            "  The backspin was not measured: {:.1} rev/s is {}, and kept (so do `best` and `team`, by `choose` in the profile).\n",
+            "  The backspin was not measured: {:.1} rev/s is {}. Advice keeps it; `best` and `team` do where `choose` in the profile leaves it out.\n",
             advice.usual[3] / value_units(units)[3].1,
             advice.spin.name()
         );

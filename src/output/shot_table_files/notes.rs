@@ -294,6 +294,7 @@ fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
 fn steep_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     /// A change of pitch from row to row after which the shot halfway may miss, rad.
     const STEEP_RAD: f64 = 5.0 * DEGREE_RAD;
+    const MOST_NAMED: usize = 6;
     if !table.checks.is_empty() {
         return None;
     }
@@ -308,14 +309,24 @@ fn steep_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
             };
             let by_rad = after.nominal.pitch_rad - before.nominal.pitch_rad;
             if before.kind == after.kind && by_rad.abs() > STEEP_RAD {
+                let angle_deg = table.angles_rad[angle] / DEGREE_RAD;
+                let at = match table.angles_rad.len() {
+                    1 => String::new(),
+                    _ => format!(" at {} deg", short(angle_deg)),
+                };
                 steep.push(format!(
-                    "{} to {} {long} ({:+.1} deg)",
+                    "{} to {} {long}{at} ({:+.1} deg)",
                     short(table.distances_m[distance - 1] / metre),
                     short(table.distances_m[distance] / metre),
                     by_rad / DEGREE_RAD
                 ));
             }
         }
+    }
+    let more = steep.len().saturating_sub(MOST_NAMED);
+    steep.truncate(MOST_NAMED);
+    if more > 0 {
+        steep.push(format!("{more} more"));
     }
     (!steep.is_empty()).then(|| {
         format!(

@@ -116,7 +116,9 @@ pub fn pitch_over_distances_text(
         ),
         false => ".".to_owned(),
     };
-    words += &cost_in_words(from, best, units);
+    if rows.len() > 1 && from.len() > 1 {
+        words += &cost_in_words(from, best, units);
+    }
     if let Some(steady) = greatest(&|row| rows[row].1).filter(|&row| rows[row].1 > 0.0) {
         let worst = from
             .iter()
@@ -130,7 +132,7 @@ pub fn pitch_over_distances_text(
     }
     if rows.len() > 1 && (best == 0 || best + 1 == rows.len()) {
         words += &format!(
-            " {} deg is the end of the angles that were asked for.",
+            " {} deg is at the end of the angles that were asked for: look beyond it.",
             degrees(best)
         );
     }

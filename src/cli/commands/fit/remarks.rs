@@ -40,7 +40,7 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
         ));
     }
     print_remark(&format!(
-        "{of}{} shots are used, {} kept out: look whether they are misses, which P then leaves out",
+        "{of}{} shots are used, {} kept out: check whether they are misses, as P leaves them out",
         shots.shots.len(),
         shots.rejected.len()
     ));
