@@ -202,8 +202,8 @@ impl FittedRows {
                 [gain.mean, gain.low, gain.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
             format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
         };
-        // `with hoop_restitution 0.45`, or `ncaa, hoop_restitution 0.45` where the profile's physics
-        // has no air.
+        // `with hoop_restitution 0.45`, or `ncaa, hoop_restitution 0.45` where the profile's
+        // physics has no air.
         let change = |row: &PhysicsRow| {
             let words = row.name.split_once(' ');
             words.map_or(row.name.clone(), |(_, change)| change.to_owned())

@@ -91,8 +91,8 @@ impl FlightBlock {
         );
     }
 
-    /// Puts shots at their release into the lanes; those that are left repeat the last one, and count
-    /// as occupied too.
+    /// Puts shots at their release into the lanes; those that are left repeat the last one, and
+    /// count as occupied too.
     #[inline(always)]
     pub(super) fn fill_at_release(&mut self, params: &ModelParams, starts: &[BallState]) {
         self.from_ring = 0;

@@ -32,8 +32,8 @@ pub(crate) const FRAME_TRUTHS: usize = 4;
 pub(crate) struct FrameStep<T: Real> {
     /// The step counts; else it is repeated, shorter. What follows holds only for one that counts.
     pub(crate) accepted: T::Mask,
-    /// The ball flies: it parts from the solid, or the solid does not act there and the other one is
-    /// not touched.
+    /// The ball flies: it parts from the solid, or the solid does not act there and the other one
+    /// is not touched.
     pub(crate) flies: T::Mask,
     /// It touches the other solid.
     pub(crate) arrived: T::Mask,
