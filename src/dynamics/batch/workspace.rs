@@ -90,13 +90,12 @@ impl BatchWorkspace {
 
     /// A slot for a shot that starts at `start`.
     pub(super) fn occupy(&mut self, params: &ModelParams, shot: usize, start: &BallState) -> u32 {
-        let progress = ShotProgress::at_release(params, *start);
         if let Some(slot) = self.free_slots.pop() {
-            self.slots[slot as usize] = progress;
+            self.slots[slot as usize].restart(params, start);
             self.shots[slot as usize] = shot as u32;
             slot
         } else {
-            self.slots.push(progress);
+            self.slots.push(ShotProgress::at_release(params, *start));
             self.shots.push(shot as u32);
             self.slots.len() as u32 - 1
         }
