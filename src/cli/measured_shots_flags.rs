@@ -8,6 +8,7 @@ use crate::fitting::{
     FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tails, Tracker,
     TrackerNoise, fit_shooter, tails_of,
 };
+use crate::measured_shots::column_map_proposal::map_proposal;
 use crate::measured_shots::columns::{Columns, Label};
 use crate::measured_shots::court_frame::{CourtFrame, OntoCourt};
 use crate::measured_shots::read::read;
@@ -145,7 +146,10 @@ fn check_shooter(
         return Ok(());
     }
     let all = match columns.label(Label::Shooter) {
-        None => "no column shooter (name it with --map 'shooter=COLUMN')".to_owned(),
+        None => format!(
+            "no column shooter (name it with --map 'shooter=COLUMN'){}",
+            map_proposal(columns)
+        ),
         Some(_) => listed(known.iter().map(String::as_str)),
     };
     Err(format!(

@@ -144,14 +144,25 @@ impl NominalOptions {
             || by_profile(NominalVariable::Pitch)
     }
 
-    /// A warning if the error-free shot touches nothing and misses: such a shot is seldom meant.
-    pub(crate) fn warning(profile: &Profile, nominal: &Nominal) -> Option<String> {
-        let outcome = profile
+    /// Warnings: the error-free shot touches nothing and misses, which is seldom meant; it is
+    /// beyond the limits that searches keep to.
+    pub(crate) fn warnings(profile: &Profile, nominal: &Nominal) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let search = &profile.settings().search;
+        for (name, beyond) in [
+            ("speed", search.speed_beyond_limit(nominal.speed_m_s)),
+            ("pitch", search.pitch_beyond_limits(nominal.pitch_rad)),
+        ] {
+            warnings.extend(beyond.map(|words| {
+                format!("warning: the {name} {words}: no search would give this shot")
+            }));
+        }
+        let start = profile.release(nominal);
+        let missed = profile
             .simulator()
-            .simulate(&profile.release(nominal))
-            .ok()?;
-        let verdict = &outcome.verdict;
-        (!verdict.made && verdict.contacts.count() == 0).then(|| {
+            .simulate(&start)
+            .is_ok_and(|outcome| !outcome.verdict.made && outcome.verdict.contacts.count() == 0);
+        if missed {
             let towards_deg = profile.location().angle_rad / DEGREE_RAD;
             let polar_deg = nominal.polar_rad / DEGREE_RAD;
             let mut text =
@@ -161,8 +172,9 @@ impl NominalOptions {
                     " Its polar angle is {polar_deg:.2} deg; that towards the hoop's centre is {towards_deg:.2} deg (--aim gives the angle from there)."
                 );
             }
-            text
-        })
+            warnings.push(text);
+        }
+        warnings
     }
 
     fn value(&self, variable: NominalVariable, profile: &Profile) -> Result<f64, String> {

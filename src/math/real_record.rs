@@ -27,3 +27,21 @@ pub(crate) trait RecordWriter<T: Real> {
     /// The next truth value.
     fn truth(&mut self, truth: T::Mask);
 }
+
+/// The numbers and the truth values that a record writes.
+#[cfg(test)]
+pub(crate) fn counts(record: &impl RealRecord<f64>) -> (usize, usize) {
+    struct Counter(usize, usize);
+    impl RecordWriter<f64> for Counter {
+        fn number(&mut self, _: f64) {
+            self.0 += 1;
+        }
+
+        fn truth(&mut self, _: bool) {
+            self.1 += 1;
+        }
+    }
+    let mut counter = Counter(0, 0);
+    record.write(&mut counter);
+    (counter.0, counter.1)
+}

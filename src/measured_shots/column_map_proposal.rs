@@ -89,7 +89,7 @@ const SHORT_NAMES: [(&str, &str); 10] = [
 /// The columns of a file, and maps for those whose names say what they may hold. `UNIT` stands
 /// where the name does not say the unit.
 #[must_use]
-pub(super) fn map_proposal(columns: &Columns) -> String {
+pub fn map_proposal(columns: &Columns) -> String {
     let unused = columns.unused();
     let mut taken: Vec<&str> = Vec::new();
     let mut maps = Vec::new();
@@ -298,6 +298,12 @@ fn first_word(name: &str) -> &str {
     &name[..name
         .find(|c: char| !c.is_alphabetic())
         .unwrap_or(name.len())]
+}
+
+/// Whether the name of a column says that it tells sessions apart.
+#[must_use]
+pub fn names_sessions(name: &str) -> bool {
+    target_of(name, false, &[]) == Some("session")
 }
 
 /// What a column may hold, if nothing else is taken as that. In a file of landings an arc is that

@@ -39,6 +39,33 @@ impl OntoCourt {
         }
     }
 
+    /// Its name, such as `-y`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PlusX => "+x",
+            Self::MinusX => "-x",
+            Self::PlusY => "+y",
+            Self::MinusY => "-y",
+        }
+    }
+
+    /// The direction that a point along the court and across by this one is nearest to.
+    fn towards(self, (along, across): (f64, f64)) -> Self {
+        let inverse = match self {
+            Self::PlusY => Self::MinusY,
+            Self::MinusY => Self::PlusY,
+            same => same,
+        };
+        let (x, y) = inverse.turned(along, across);
+        match (libm::fabs(x) >= libm::fabs(y), x >= 0.0, y >= 0.0) {
+            (true, true, _) => Self::PlusX,
+            (true, false, _) => Self::MinusX,
+            (false, _, true) => Self::PlusY,
+            (false, _, false) => Self::MinusY,
+        }
+    }
+
     /// A point along the court and across: turned about the vertical, so that left and right stay.
     fn turned(self, x: f64, y: f64) -> (f64, f64) {
         match self {
@@ -63,6 +90,19 @@ impl CourtFrame {
             "hoop" => Some(Self::Hoop),
             "court_94x50" => Some(Self::Court94By50),
             _ => None,
+        }
+    }
+
+    /// What is wrong if shots begin at a point behind the board, in coordinates from the hoop.
+    #[must_use]
+    pub fn advice_behind_board(&self, begins: (f64, f64)) -> String {
+        match self {
+            Self::HoopAt(_, onto_court) => format!(
+                "the shots begin behind the board if {} leads from the hoop onto the court; --hoop with {} has them in front of it",
+                onto_court.name(),
+                onto_court.towards(begins).name()
+            ),
+            _ => "the shots begin behind the board: for another origin or direction give --frame or --hoop, such as '7.2 m,12.45 m,-y'".to_owned(),
         }
     }
 
@@ -106,6 +146,13 @@ mod tests {
         ] {
             let frame = CourtFrame::HoopAt([2.0, 4.0], onto_court);
             assert_eq!(frame.from_hoop(&[ball]), [(1.0, 0.5)], "{onto_court:?}");
+            assert_eq!(OntoCourt::named(onto_court.name()), Some(onto_court));
+            // Seen from the other hoop's side, or from the side, the same ball is elsewhere.
+            for other in ["+x", "-x", "+y", "-y"] {
+                let wrong = OntoCourt::named(other).unwrap();
+                let seen = CourtFrame::HoopAt([2.0, 4.0], wrong).from_hoop(&[ball]);
+                assert_eq!(wrong.towards(seen[0]), onto_court, "{wrong:?}");
+            }
         }
     }
 }

@@ -164,7 +164,7 @@ fn shooter(
     }
     let mut rejected = Vec::new();
     let raw = match reader.source {
-        Source::Trajectories => tracked_shots(reader, rows, &mut rejected),
+        Source::Trajectories => tracked_shots(reader, rows, &mut rejected).map_err(of_shooter)?,
         Source::Releases | Source::Landings => {
             let shots = reader.row_shots(rows, &mut rejected);
             too_many_absurd(rows.len(), &rejected).map_err(of_shooter)?;

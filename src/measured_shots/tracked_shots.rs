@@ -11,12 +11,18 @@ use std::collections::BTreeMap;
 /// A height that every shot rises through, m.
 const LOW_RELEASE_M: f64 = 1.5;
 
+/// Shots that begin farther behind the plane of the hoop's centre than this are behind the board, m.
+const BEHIND_BOARD_M: f64 = 0.5;
+
 /// The flights of the tracked shots, each at its own place.
+///
+/// # Errors
+/// Most shots begin behind the board.
 pub(super) fn tracked_shots(
     reader: &RowReader<'_>,
     rows: &[(u64, &[String])],
     rejected: &mut Vec<(u64, String)>,
-) -> Vec<RawShot> {
+) -> Result<Vec<RawShot>, String> {
     let mut by_shot: Vec<(String, Vec<(u64, &[String])>)> = Vec::new();
     let mut index = BTreeMap::new();
     for &(row, cells) in rows {
@@ -46,6 +52,18 @@ pub(super) fn tracked_shots(
             (first, session, name, track(reader, rows, z0))
         })
         .collect();
+    let begins = tracks.iter().filter_map(|(_, _, _, track)| {
+        let (points, _) = track.as_ref().ok()?;
+        let [x, y, _] = points.first()?.position_m;
+        Some((x, y))
+    });
+    let mut begins: Vec<(f64, f64)> = begins.collect();
+    begins.sort_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some(&middle) = begins.get(begins.len() / 2)
+        && middle.0 < -BEHIND_BOARD_M
+    {
+        return Err(reader.options.frame.advice_behind_board(middle));
+    }
     let noise = &reader.options.noise;
     let backspin = reader.options.backspin_rad_s.unwrap_or(0.0);
     let shooter = rows
@@ -88,7 +106,7 @@ pub(super) fn tracked_shots(
             Err(reason) => rejected.push(reason),
         }
     }
-    raw
+    Ok(raw)
 }
 
 /// The points of one shot in the coordinates of the hoop, and whether it went in.

@@ -2,7 +2,7 @@
 
 use super::axes::Axes;
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
-use crate::best_shot::{ShotAtPitch, TableShot};
+use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -20,7 +20,7 @@ const TOP: f64 = 74.0;
 #[must_use]
 pub fn draw(
     profile: &Profile,
-    kind: ShotKind,
+    kind: TableKind,
     (rows, over_draws): (&[ShotAtPitch], &[Option<AngleOverDraws>]),
     units: UnitSystem,
 ) -> Option<Plot> {
@@ -34,7 +34,12 @@ pub fn draw(
     let x_margin = 0.03 * (last - first);
     let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 56.0);
     let name = shortened(&profile.shooter().name, 50);
-    let title = format!("The best {} shot at each pitch angle: {name}", kind.name());
+    let title = match kind {
+        TableKind::One(kind) => {
+            format!("The best {} shot at each pitch angle: {name}", kind.name())
+        }
+        TableKind::Better => format!("The best shot at each pitch angle: {name}"),
+    };
     svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
     let place = profile.location().in_words(units);
     svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
@@ -66,7 +71,7 @@ pub fn draw(
         ((lowest - p_margin).max(0.0), (highest + p_margin).min(1.0)),
     );
     let of_speed = panel(1, (slowest - margin, fastest + margin));
-    draw_curve(&mut svg, &of_p, rows, &probability);
+    draw_curve(&mut svg, &of_p, (rows, kind), &probability);
     for (row, angle) in rows.iter().zip(over_draws) {
         let Some(AngleOverDraws { probability, .. }) = angle else {
             continue;
@@ -76,7 +81,7 @@ pub fn draw(
         svg.polyline([end(probability.low), end(probability.high)], &style);
     }
     of_p.draw(&mut svg, "", "pitch angle (deg)", "P");
-    draw_curve(&mut svg, &of_speed, rows, &speed);
+    draw_curve(&mut svg, &of_speed, (rows, kind), &speed);
     let label = format!("best speed ({long}/s)");
     of_speed.draw(&mut svg, "", "pitch angle (deg)", &label);
     let bars = if over_draws.is_empty() {
@@ -84,8 +89,12 @@ pub fn draw(
     } else {
         " Bars: 95 % of the draws of the fit."
     };
+    let kinds = match kind {
+        TableKind::One(_) => "",
+        TableKind::Better => " White points: bank shots.",
+    };
     let caption = format!(
-        "P of the best shot at each pitch angle, and its speed. Open circle: the highest P.{bars}"
+        "P of the best shot at each pitch angle, and its speed. Large circle: the highest P.{kinds}{bars}"
     );
     Some(Plot {
         name: "best_by_pitch".to_owned(),
@@ -95,7 +104,13 @@ pub fn draw(
 }
 
 /// Draws a value of the shots as a line with points; a gap where there is no shot.
-fn draw_curve(svg: &mut Svg, axes: &Axes, rows: &[ShotAtPitch], value: &dyn Fn(&TableShot) -> f64) {
+fn draw_curve(
+    svg: &mut Svg,
+    axes: &Axes,
+    (rows, kind): (&[ShotAtPitch], TableKind),
+    value: &dyn Fn(&TableShot) -> f64,
+) {
+    let is_of_both = kind == TableKind::Better;
     axes.draw_grid(svg);
     let style = format!("stroke=\"{INK}\" stroke-width=\"2\" fill=\"none\"");
     let point =
@@ -110,7 +125,12 @@ fn draw_curve(svg: &mut Svg, axes: &Axes, rows: &[ShotAtPitch], value: &dyn Fn(&
         .iter()
         .filter_map(|row| Some((row, row.shot.as_ref()?)));
     for (row, shot) in shots.clone() {
-        svg.circle(point(row, shot), 3.0, &format!("fill=\"{INK}\""));
+        let fill = match shot.kind {
+            ShotKind::Bank if is_of_both => "white",
+            _ => INK,
+        };
+        let style = format!("fill=\"{fill}\" stroke=\"{INK}\" stroke-width=\"1.5\"");
+        svg.circle(point(row, shot), 3.0, &style);
     }
     let best = shots.max_by(|a, b| a.1.probability.total_cmp(&b.1.probability));
     if let Some((row, shot)) = best {

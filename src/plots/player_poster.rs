@@ -53,7 +53,10 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     let outlined: Vec<(f64, f64)> = bank.iter().map(|place| at(place)).collect();
     let numbers: Vec<((f64, f64), String, bool)> = found
         .iter()
-        .map(|(p, place)| (at(place), shown(*p), is_bank(place)))
+        .map(|(p, place)| {
+            let doubt = if place.is_sure() { "" } else { "?" };
+            (at(place), shown(*p) + doubt, is_bank(place))
+        })
         .collect();
     let units = results.units();
     // The mirror image of a place is named with it where the map shows the same number there.
@@ -185,11 +188,14 @@ fn direct_in_words(places: &[PlaceProbabilities]) -> String {
 
 /// At how many places the measured shots leave the kind of shot open; empty if at none.
 fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
-    match places.iter().filter(|place| !place.is_sure()).count() {
-        0 => String::new(),
-        1 => " At one place your measured shots do not tell yet which is better.".to_owned(),
-        open => format!(" At {open} places your measured shots do not tell yet which is better."),
-    }
+    let places = match places.iter().filter(|place| !place.is_sure()).count() {
+        0 => return String::new(),
+        1 => "one place".to_owned(),
+        open => format!("{open} places"),
+    };
+    format!(
+        " At {places}, marked ?, your measured shots do not tell yet which is better: shoot direct there."
+    )
 }
 
 /// Where banking helps most, and how to.

@@ -296,6 +296,17 @@ fn contract_bad_shots_are_refused_or_named() {
     }
 }
 
+/// A hoop whose court lies on the other side is told which way it lies.
+#[test]
+fn contract_shots_from_behind_the_board_name_the_direction() {
+    let folder = TempDir::new().unwrap();
+    let tracks = "docs/data/optical_tracking.csv";
+    let hoop = ["--hoop", "0 m,0 m,-x"];
+    fit(tracks, &folder.path().join("fit"), &hoop)
+        .exits(2)
+        .says("the shots begin behind the board if -x leads from the hoop onto the court; --hoop with +x has them in front of it");
+}
+
 /// A column that holds something else than its name says would give a profile that looks fine.
 #[test]
 fn contract_columns_in_another_unit_or_place_are_refused() {

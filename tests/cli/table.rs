@@ -590,11 +590,65 @@ fn contract_the_pitch_limits_of_a_profile_hold() {
     run(&["best", "--speed", "9.1 m/s"])
         .exits(2)
         .says("is more than search.speed_max (29.5276 ft/s, 9 m/s)");
+    // P of such a shot is told, with a warning.
+    let too_fast = Answer::of(
+        bankshot()
+            .arg("probability")
+            .arg(&profile)
+            .args(["--speed", "9.1 m/s", "--pitch", "60 deg"]),
+    );
+    too_fast.exits(0).says(
+        "the speed is more than search.speed_max (29.5276 ft/s, 9 m/s): no search would give this shot",
+    );
     let fixed = format!("{ROBOT}{limits}choose = [\"speed\"]\n[nominal]\npitch = \"62 deg\"\n");
     write_file(&folder, "robot.toml", &fixed);
     run(&["check"])
         .exits(2)
         .says("is more than search.pitch_max (61 deg)");
+}
+
+/// At each angle the kind with the higher P; and a shot that goes in with its errors alone is no
+/// clean one, but counts with its P.
+#[test]
+fn contract_the_better_kind_at_each_angle_and_shots_that_are_not_clean() {
+    let folder = TempDir::new().unwrap();
+    let pitches = ["--pitches", "60 deg, 70 deg"];
+    let curve = |more: &[&str]| pitch_curve(&folder, &[&pitches[..], more].concat());
+    let of_kind = |kind: &str, distance: &str| {
+        let json = curve(&["--kind", kind, "--distance", distance, "--json"]);
+        let json = json.exits(0).json();
+        [0, 1].map(|row| json["shots"][row].clone())
+    };
+    let [direct, bank, best] = ["direct", "bank", "best"].map(|kind| of_kind(kind, "7 ft"));
+    for row in 0..2 {
+        let p = |shots: &[serde_json::Value; 2]| shots[row]["probability"].as_f64().unwrap();
+        let is_clean = |shots: &[serde_json::Value; 2]| shots[row]["has_shot"] == true;
+        let rank = |shots| (is_clean(shots), p(shots));
+        let expected = if rank(&bank) > rank(&direct) {
+            &bank
+        } else {
+            &direct
+        };
+        assert_eq!(best[row]["kind"], expected[row]["kind"]);
+        assert_eq!(best[row]["probability"], expected[row]["probability"]);
+    }
+    // From 7 ft the flatter bank shot is one of them.
+    assert_eq!(bank[0]["has_shot"], false);
+    assert_eq!(bank[0]["outcome"], "not-clean");
+    let p = bank[0]["probability"].as_f64().unwrap();
+    assert!(p > 0.01 && p < 0.5, "{p}");
+    let both = ["--kind", "bank", "--distances", "7 ft, 9 ft"];
+    let text = curve(&both).exits(0);
+    let text = text.stdout();
+    assert!(text.contains(&format!("{p:.3}*")), "{text}");
+    assert!(text.contains("*: no clean shot"), "{text}");
+    let one = curve(&["--kind", "bank", "--distance", "7 ft"]).exits(0);
+    let words = format!("60.0 no clean shot: the most probable one, P {p:.3}, misses");
+    assert!(one.stdout().contains(&words), "{}", one.stdout());
+    let best = curve(&["--kind", "best"]).exits(0);
+    let lines = best.stdout().lines();
+    assert!(lines.clone().all(|line| line.chars().count() <= 80));
+    assert!(best.stdout().contains("The best shot of these makes"));
 }
 
 /// P from several distances is that of single curves, and the greatest mean is named.

@@ -41,7 +41,11 @@ fn contract_a_team_has_a_table_maps_and_posters() {
         command.args(["team", "ann.toml", "bo.toml", "--quiet"]);
         Answer::of(command.args(more))
     };
-    team(&[]).exits(0).prints("Ann").prints("13.75 ft, 0 deg");
+    team(&[])
+        .exits(0)
+        .prints("Ann")
+        .prints("13.75 ft,")
+        .prints("in front");
     let first = team(&["--sweep", "court.toml", "--out", "out"]).exits(0);
     let out = folder.path().join("out");
     assert_eq!(

@@ -45,7 +45,7 @@ pub(super) fn merged(
                     distance_m,
                     angle_rad,
                 })?;
-                Ok::<_, ShotTableError>((distance_m, best(&here, stretch.kind)?))
+                Ok::<_, ShotTableError>((distance_m, best(&here, stretch.kind)?.ok()))
             }
         };
         nodes.push(end(first, stretch.from_m)?);

@@ -7,6 +7,7 @@ use super::interpolation_check::{PlacedShot, moved};
 use super::lookup::{ShotTable, TableKind, TableShot};
 use super::shot_at_place::{ShotTableError, best, table_shot};
 use super::table_search::{TableFinding, TableLog, TableSearch};
+use crate::best_shot::found_shots::NoShot;
 use crate::best_shot::search::climb_from_shots;
 use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{
@@ -303,13 +304,12 @@ fn stages_of_round(round: usize) -> [String; 2] {
     ["shots", "checks"].map(|stage| format!("{stage}, round {round} of {most} at most"))
 }
 
-/// The best shot of a kind with values that the search leaves as they are; `None` if there is no
-/// clean one.
+/// The best shot of a kind with values that the search leaves as they are.
 pub(crate) fn best_with_fixed(
     profile: &Profile,
     kind: ShotKind,
     fixed: &[(NominalVariable, f64)],
-) -> Result<Option<TableShot>, ShotTableError> {
+) -> Result<Result<TableShot, NoShot>, ShotTableError> {
     Ok(best(&with_fixed(profile, fixed)?, kind)?)
 }
 

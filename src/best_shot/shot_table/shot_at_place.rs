@@ -3,7 +3,7 @@
 use super::interpolation_check::CheckError;
 use super::lookup::TableShot;
 use crate::analysis::sensitivity::{self, SensitivityTopics};
-use crate::best_shot::found_shots::BestShotError;
+use crate::best_shot::found_shots::{BestShotError, NoShot};
 use crate::best_shot::search::find_beside_other_kind;
 use crate::dynamics::{Event, EventKind, Outcome};
 use crate::model::SolidId;
@@ -40,13 +40,18 @@ impl From<CheckError> for ShotTableError {
 }
 
 /// The best shot of a kind, if there is a clean one.
-pub(super) fn best(profile: &Profile, kind: ShotKind) -> Result<Option<TableShot>, BestShotError> {
+pub(super) fn best(
+    profile: &Profile,
+    kind: ShotKind,
+) -> Result<Result<TableShot, NoShot>, BestShotError> {
     let (shot, other) = match find_beside_other_kind(profile, kind, &Silent) {
         Ok(found) => found,
-        Err(BestShotError::Plan(PlanError::OutOfReach)) => return Ok(None),
+        Err(BestShotError::Plan(PlanError::OutOfReach)) => {
+            return Ok(Err(NoShot::Impossible(kind)));
+        }
         Err(error) => return Err(error),
     };
-    Ok(shot.ok().map(|shot| TableShot {
+    Ok(shot.map(|shot| TableShot {
         other_kind: other.map(|estimate| estimate.probability),
         ..table_shot(
             (profile, kind),

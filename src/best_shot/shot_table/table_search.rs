@@ -116,7 +116,7 @@ impl<'a> TableSearch<'a> {
         let new: Vec<&Location> = places.filter(is_new).collect();
         self.begin(stage, new.len());
         for &place in new {
-            let shot = best(&self.profile.moved_to(place)?, self.kind)?;
+            let shot = best(&self.profile.moved_to(place)?, self.kind)?.ok();
             (self.found)(&TableFinding::Shot {
                 kind: self.kind,
                 place,

@@ -18,6 +18,7 @@ use crate::fitting::{
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
+use crate::probability::{Sampler, Silent};
 use crate::shooter::{Nominal, Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use clap::Args;
@@ -147,6 +148,9 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     };
     let noise = noise(&tracker, &profile, &nominal)?;
     let bars = ProgressBars::new(quiet);
+    let search = profile.search();
+    let sampler = Sampler::new(&profile);
+    let usual = sampler.estimate(&nominal, search.standard_error, search.seed, &Silent);
     let simulate = |sizes: &[usize]| {
         design(
             &profile,
@@ -191,15 +195,21 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             "{:#}\n",
             json(
                 name,
-                &tracker,
+                (&tracker, usual.probability),
                 (&rows, first.as_ref(), &options.change),
                 needed
             )
         ));
     }
+    let (long, metre) = units.length();
     let mut text = format!(
-        "{}: tests with {} ({}), {} simulated ones of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>14}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>14}\n",
+        "{}: tests of the {} shot at {:.2} {long}/s and {:.1} deg from {}, which makes {:.1} of 100; with {} ({}), {} simulated tests of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>14}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>14}\n",
         profile.shooter().name,
+        ShotKind::of(&profile, &nominal).name(),
+        nominal.speed_m_s / metre,
+        nominal.pitch_rad / DEGREE_RAD,
+        profile.location().in_words(units),
+        100.0 * usual.probability,
         tracker.name.0,
         tracker.name.1,
         options.repetitions,
@@ -248,7 +258,6 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         );
     }
     let sd = |i: usize, size: f64| noise[(i, i)].max(0.0).sqrt() / size;
-    let (long, metre) = units.length();
     text += &format!(
         "\nAt this shot the tracker errs by {:.decimals$} {long}/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
         sd(0, metre),
@@ -385,8 +394,17 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
         let of_falls =
             falls.map(|fall| in_words(first.scatter.second_session(fall, (1.0 - fall) * scatter)));
         let hidden = |error: &SessionError| 100.0 * POWER * error.error();
+        let never = changes.iter().copied();
+        let never = never.filter(|points| further_shots(rows, first, points / 100.0).is_none());
+        let larger = never.reduce(f64::min).map_or_else(String::new, |points| {
+            let root = POWER * first.p.of_one_shot / (points / 100.0);
+            format!(
+                " For {points} points the first session would need more than {} shots.",
+                two_digits(root * root)
+            )
+        });
         text += &format!(
-            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.\n\n",
+            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
             first.shots,
             lines(&columns(&of_p), &columns(&of_falls)),
             hidden(&first.p),
@@ -457,7 +475,7 @@ fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
 
 fn json(
     name: &str,
-    tracker: &TrackerOfTest,
+    (tracker, probability): (&TrackerOfTest, f64),
     (rows, first, changes): (&[DesignRow], Option<&FirstSession>, &[f64]),
     needed: Option<(f64, usize)>,
 ) -> Value {
@@ -475,6 +493,7 @@ fn json(
     });
     json!({
         "shooter": name,
+        "probability": number(probability),
         "tracker": tracker.name.0,
         "tracker_noise": tracker.name.1,
         "changes": changes_json(rows, first, changes),

@@ -18,7 +18,7 @@ use crate::output::fit_files::advice_text::changes_in_words;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::object;
 use crate::plots::physics_probabilities;
-use crate::probability::{Progress, Silent};
+use crate::probability::Progress;
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
@@ -161,7 +161,7 @@ impl FittedRows {
         bars: &ProgressBars,
     ) -> Result<Self, Failure> {
         let profile = &fit.profiles[place];
-        let advice = advise(profile, &fit.posterior, place, &Silent)?;
+        let advice = advise(profile, &fit.posterior, place, bars)?;
         let measured = match fit.source {
             Source::Releases => Measured::Release,
             Source::Landings | Source::Trajectories => Measured::Landing,
@@ -190,6 +190,34 @@ impl FittedRows {
         Some(gain)
     }
 
+    /// The usual shot and the gain under each physics, with their 95 % intervals.
+    fn table(&self, comparison: &PhysicsComparison) -> Table {
+        let mut header = vec!["physics", "usual shot P", "95 %"];
+        if !self.changes.is_empty() {
+            header.extend(["advice gains", "95 %"]);
+        }
+        let mut table = table_with(header.into_iter().map(str::to_owned).collect());
+        for (row, own) in comparison.rows.iter().zip(&self.rows) {
+            let interval = |of: Option<Interval>, text: &dyn Fn(f64) -> String| {
+                of.map_or(["-".to_owned(), "-".to_owned()], |of| {
+                    [
+                        text(of.mean),
+                        format!("{} to {}", text(of.low), text(of.high)),
+                    ]
+                })
+            };
+            let mut cells = vec![row.name.clone()];
+            let usual = own.as_ref().map(|own| own.usual);
+            cells.extend(interval(usual, &|p| format!("{p:.3}")));
+            if !self.changes.is_empty() {
+                let gain = own.as_ref().and_then(|own| Some(own.advised?[1]));
+                cells.extend(interval(gain, &|p| format!("{:+.1}", in_points(p))));
+            }
+            table.add_row(cells);
+        }
+        table
+    }
+
     /// What it gains under the physics of the profile, and under those that nobody measured in this
     /// gym.
     fn in_words(&self, comparison: &PhysicsComparison) -> String {
@@ -197,9 +225,7 @@ impl FittedRows {
             return "`bankshot advise` advises no change to this shooter.\n".to_owned();
         }
         let points = |gain: &Interval| {
-            // Rounded first, and 0 added: no negative zero.
-            let [mean, low, high] =
-                [gain.mean, gain.low, gain.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
+            let [mean, low, high] = [gain.mean, gain.low, gain.high].map(in_points);
             format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
         };
         // `with hoop_restitution 0.45`, or `ncaa, hoop_restitution 0.45` where the profile's
@@ -263,12 +289,27 @@ impl FittedRows {
     }
 }
 
+/// A difference of P in makes of 100, rounded. (0 is added: no negative zero.)
+fn in_points(p: f64) -> f64 {
+    libm::round(1000.0 * p) / 10.0 + 0.0
+}
+
+/// A table whose first column is text, and the others numbers.
+fn table_with(header: Vec<String>) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
+    table.set_header(header);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
 fn comparison_text(
     profile: &Profile,
     comparison: &PhysicsComparison,
     fitted: Option<&FittedRows>,
 ) -> String {
-    let advised = fitted.filter(|fitted| !fitted.changes.is_empty());
     let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let units = profile.output().units;
     let (long, metre) = units.length();
@@ -276,28 +317,20 @@ fn comparison_text(
         UnitSystem::Imperial => ("in", 0.0254),
         UnitSystem::Metric => ("cm", 0.01),
     };
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
-    table.set_header(vec![
+    let mut table = table_with(vec![
         "physics".to_owned(),
         "direct\nP".to_owned(),
         format!("speed\n{long}/s"),
         "pitch\ndeg".to_owned(),
         format!("past\n{short}"),
         "bank\nP".to_owned(),
-        match advised {
-            Some(_) => "advice\ngains".to_owned(),
-            None => "same\nshot P".to_owned(),
-        },
+        "same\nshot P".to_owned(),
     ]);
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
     let p = |shot: &Result<BestShot, NoShot>| match shot {
         Ok(shot) => format!("{:.3}", shot.estimate.probability),
         Err(_) => "none".to_owned(),
     };
-    for (i, row) in comparison.rows.iter().enumerate() {
+    for row in &comparison.rows {
         let nominal = row.direct.as_ref().ok().map(|shot| shot.nominal);
         let number = |value: Option<f64>, digits: usize| {
             value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
@@ -309,28 +342,24 @@ fn comparison_text(
             number(nominal.map(|shot| shot.pitch_rad / DEGREE_RAD), 1),
             number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
             p(&row.bank),
-            match advised {
-                Some(advised) => advised
-                    .gain(i)
-                    .map_or("-".to_owned(), |gain| format!("{:+.1}", 100.0 * gain.mean)),
-                None => number(row.same_shot.map(|p| p.probability), 3),
-            },
+            number(row.same_shot.map(|p| p.probability), 3),
         ]);
     }
     let summary = comparison.in_words().map_or_else(String::new, |words| {
         format!("{words} `bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed.\n")
     });
     let error = comparison.greatest_standard_error();
-    let last_column = match advised {
-        Some(_) => "what the advice adds to P, in makes of 100.\n".to_owned(),
-        None => format!(
-            "the P of {}, {}.\n",
-            comparison.same_shot.in_words(),
-            comparison.same_shot.what_stays()
-        ),
-    };
+    let last_column = format!(
+        "the P of {}, {}.\n",
+        comparison.same_shot.in_words(),
+        comparison.same_shot.what_stays()
+    );
     let of_fit = match fitted {
-        Some(fitted) => fitted.in_words(comparison),
+        Some(fitted) => format!(
+            "\nThe measured shots, and what the advice adds in makes of 100, each with what the fit leaves open:\n{}\n{}",
+            fitted.table(comparison),
+            fitted.in_words(comparison)
+        ),
         None => "(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
     };
     let first_row = match comparison.rows.first() {

@@ -1,8 +1,8 @@
 //! `bankshot pitch-curve`: the best shot at each of several pitch angles, from one place or from
 //! several distances.
 
-use super::table::TableFormat;
-use crate::best_shot::{MOST_NODES, ShotKind, best_by_pitch};
+use super::table::{KindArg, TableFormat};
+use crate::best_shot::{MOST_NODES, best_by_pitch};
 use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
@@ -22,7 +22,7 @@ use crate::output::shot_table_files::pitch_over_distances::{
 use crate::plots;
 use crate::shooter::{Location, NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, Dimension};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// The pitch angles, if none are given.
@@ -56,9 +56,9 @@ pub(crate) struct PitchCurveOptions {
     /// angle suits them all.
     #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
     pub(crate) distances: Option<String>,
-    /// The kind of the shots.
-    #[arg(long, value_enum, default_value_t = OneKindArg::Direct)]
-    pub(crate) kind: OneKindArg,
+    /// The kind of the shots; best: at each angle the one with the higher P.
+    #[arg(long, value_enum, default_value_t = KindArg::Direct)]
+    pub(crate) kind: KindArg,
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
@@ -78,22 +78,6 @@ pub(crate) struct PitchCurveOptions {
     /// Units of the output [default: the profile's, else imperial].
     #[arg(long)]
     pub(crate) units: Option<UnitsArg>,
-}
-
-/// One kind of shots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OneKindArg {
-    Direct,
-    Bank,
-}
-
-impl From<OneKindArg> for ShotKind {
-    fn from(kind: OneKindArg) -> Self {
-        match kind {
-            OneKindArg::Direct => Self::Direct,
-            OneKindArg::Bank => Self::Bank,
-        }
-    }
 }
 
 pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failure> {

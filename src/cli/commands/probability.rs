@@ -125,8 +125,10 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         let release = replayed(options.method, &profile, &nominal, seed, index)?;
         return trace::show(&profile, &release, options.json);
     }
-    if !quiet && let Some(warning) = NominalOptions::warning(&profile, &nominal) {
-        print_remark(&warning);
+    if !quiet {
+        for warning in NominalOptions::warnings(&profile, &nominal) {
+            print_remark(&warning);
+        }
     }
     let precision = Precision {
         target: options.target.unwrap_or(profile.search().standard_error),

@@ -53,7 +53,7 @@ pub(crate) struct TableOptions {
     /// Court angles [default: the profile's].
     #[arg(long, value_name = "LIST|RANGE", allow_hyphen_values = true)]
     pub(crate) angles: Option<String>,
-    /// The kind of the shots.
+    /// The kind of the shots; best: at each distance the one with the higher P, from one angle.
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     #[command(flatten)]
@@ -83,8 +83,18 @@ pub(crate) struct TableOptions {
 pub(crate) enum KindArg {
     Direct,
     Bank,
-    /// The one with the higher P at each distance, from one angle.
+    /// The one with the higher P.
     Best,
+}
+
+impl From<KindArg> for TableKind {
+    fn from(kind: KindArg) -> Self {
+        match kind {
+            KindArg::Direct => Self::One(ShotKind::Direct),
+            KindArg::Bank => Self::One(ShotKind::Bank),
+            KindArg::Best => Self::Better,
+        }
+    }
 }
 
 /// The forms of a table.
@@ -149,11 +159,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let fixed = options.fixed.values(&profile)?;
     let outputs = outputs(options)?;
     let request = ShotTableRequest {
-        kind: match options.kind {
-            KindArg::Direct => TableKind::One(ShotKind::Direct),
-            KindArg::Bank => TableKind::One(ShotKind::Bank),
-            KindArg::Best => TableKind::Better,
-        },
+        kind: options.kind.into(),
         distances_m,
         angles_rad,
         fixed,

@@ -18,8 +18,8 @@ pub(super) struct FlyingShots<T: Real> {
 }
 
 /// Numbers and truth values of a [`FlyingShots`].
-const NUMBERS: usize = 10;
-const TRUTHS: usize = 2;
+pub(super) const NUMBERS: usize = 10;
+pub(super) const TRUTHS: usize = 2;
 
 impl<T: Real> RealRecord<T> for FlyingShots<T> {
     #[inline(always)]

@@ -256,3 +256,40 @@ impl<T: SimdReal, const NUMBERS: usize, const TRUTHS: usize> RecordWriter<T>
         self.block.truths[bits] = T::mask_to_bits(truth);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::batch::flight_block::{self, FlyingShots};
+    use crate::dynamics::integrators::shot_in_frame::{FRAME_NUMBERS, FRAME_TRUTHS, ShotInFrame};
+    use crate::dynamics::integrators::shot_in_world::{ShotInWorld, WORLD_NUMBERS, WORLD_TRUTHS};
+    use crate::math::real_record::counts;
+    use crate::math::vector::Vec3;
+    use crate::model::constants_per_ball_mass::ModelParams;
+    use crate::model::solids::CONTACT_NUMBERS;
+    use crate::model::{BallState, Physics, SolidId};
+
+    /// The rows of the blocks are as many as the records have fields.
+    #[test]
+    fn contract_records_fill_the_rows_of_their_blocks() {
+        let params = ModelParams::new(&Physics::paper());
+        let start = BallState {
+            position_m: Vec3::new(4.0, 0.0, -1.0),
+            velocity_m_s: Vec3::new(-4.0, 0.0, 6.0),
+            spin_rad_s: Vec3::new(0.0, 10.0, 0.0),
+        };
+        let shot = ShotProgress::at_release(&params, start);
+        let in_frame = ShotInFrame::of(&shot, SolidId::Ring, 10.0);
+        assert_eq!(counts(&in_frame), (FRAME_NUMBERS, FRAME_TRUTHS));
+        let in_world = ShotInWorld::of(&shot);
+        assert_eq!(counts(&in_world), (WORLD_NUMBERS, WORLD_TRUTHS));
+        let flying = FlyingShots {
+            state: shot.state,
+            time_s: shot.time_s,
+            crossing: shot.crossing,
+        };
+        let rows = (flight_block::NUMBERS, flight_block::TRUTHS);
+        assert_eq!(counts(&flying), rows);
+        assert_eq!(counts(&shot.motion), (CONTACT_NUMBERS, 0));
+    }
+}

@@ -2,12 +2,12 @@
 
 use super::columns::columns;
 use super::notes::physics_note;
-use super::table_text::{both_sides, decimal, line, wrapped};
+use super::table_text::{both_sides, decimal, line, speed_limit_in_words, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::{number, object, provenance};
-use crate::shooter::{NominalVariable, Profile, ShotKind};
+use crate::shooter::{NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;
 
@@ -15,8 +15,12 @@ use serde_json::Value;
 const LEVEL: f64 = 0.01;
 
 /// Name, unit and width of the columns after the pitch angle.
-fn titles<'a>(speed_unit: &'a str, other_kind: &'a str) -> [(&'a str, &'a str, usize); 9] {
-    [
+fn titles<'a>(speed_unit: &'a str, kind: TableKind) -> Vec<(&'a str, &'a str, usize)> {
+    let other_kind = match kind {
+        TableKind::One(kind) => kind.other().name(),
+        TableKind::Better => "other",
+    };
+    let mut titles = vec![
         ("speed", speed_unit, 6),
         ("aim", "deg", 6),
         ("spin", "rev/s", 5),
@@ -26,7 +30,19 @@ fn titles<'a>(speed_unit: &'a str, other_kind: &'a str) -> [(&'a str, &'a str, u
         (other_kind, "P", 6),
         ("margin", speed_unit, 10),
         ("margin", "deg", 8),
-    ]
+    ];
+    if kind == TableKind::Better {
+        titles.push(("kind", "", 6));
+    }
+    titles
+}
+
+/// The kind in a sentence, with a space after it.
+pub(super) fn kind_before_shot(kind: TableKind) -> String {
+    match kind {
+        TableKind::One(kind) => format!("{} ", kind.name()),
+        TableKind::Better => String::new(),
+    }
 }
 
 /// The shots with their angles, those that exist.
@@ -47,7 +63,7 @@ fn best_row(rows: &[ShotAtPitch]) -> Option<(usize, &TableShot)> {
 #[must_use]
 pub fn by_pitch_text(
     rows: &[ShotAtPitch],
-    kind: ShotKind,
+    kind: TableKind,
     profile: &Profile,
     units: UnitSystem,
 ) -> String {
@@ -76,7 +92,7 @@ pub fn by_pitch_text(
          first misses.",
     ));
     let speed_unit = format!("{long}/s");
-    let titles = titles(&speed_unit, kind.other().name());
+    let titles = titles(&speed_unit, kind);
     let widths: Vec<usize> = std::iter::once(5)
         .chain(titles.iter().map(|(.., width)| *width))
         .collect();
@@ -84,14 +100,20 @@ pub fn by_pitch_text(
     text += &line(names, &widths);
     let unit_names = std::iter::once("deg").chain(titles.iter().map(|(_, unit, _)| *unit));
     text += &line(unit_names, &widths);
+    let limit = speed_limit_in_words(profile, units);
     for row in rows {
         let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
         let Some(shot) = &row.shot else {
-            text += &format!("{pitch:>5} no shot within the limits goes in\n");
+            text += &match row.not_clean {
+                Some(p) => format!(
+                    "{pitch:>5} no clean shot: the most probable one, P {p:.3}, misses without errors\n"
+                ),
+                None => format!("{pitch:>5} no shot within the limits{limit} goes in\n"),
+            };
             continue;
         };
         let [speed_sides, pitch_sides] = shot.tolerances;
-        let cells = [
+        let mut cells = vec![
             pitch,
             decimal(shot.nominal.speed_m_s / metre, 3),
             decimal(shot.aim_rad / DEGREE_RAD, 2),
@@ -103,13 +125,19 @@ pub fn by_pitch_text(
             both_sides(speed_sides.map(|side| side / metre), 2),
             both_sides(pitch_sides.map(|side| side / DEGREE_RAD), 1),
         ];
+        if kind == TableKind::Better {
+            cells.push(shot.kind.name().to_owned());
+        }
         text += &line(cells.iter().map(String::as_str), &widths);
     }
     let error = found(rows).map(|(_, shot)| shot.standard_error);
     let error = error.fold(0.0, f64::max);
+    let other = match kind {
+        TableKind::One(kind) => format!("the {} shot", kind.other().name()),
+        TableKind::Better => "the other kind (other)".to_owned(),
+    };
     text + &wrapped(&format!(
-        "P has a numerical standard error of at most {error:.4}; P of the {} shot at that angle is from a short search.",
-        kind.other().name()
+        "P has a numerical standard error of at most {error:.4}; P of {other} at that angle is from a short search.",
     ))
 }
 
@@ -117,7 +145,7 @@ pub fn by_pitch_text(
 fn in_words(
     rows: &[ShotAtPitch],
     (best_row, best): (usize, &TableShot),
-    kind: ShotKind,
+    kind: TableKind,
     units: UnitSystem,
 ) -> String {
     let (long, metre) = units.length();
@@ -141,8 +169,8 @@ fn in_words(
         .last();
     let (low, high) = (low.unwrap_or(best_row), high.unwrap_or(best_row));
     let mut text = format!(
-        "The best {} shot of these makes {:.1} of 100, at {} deg.",
-        kind.name(),
+        "The best {}shot of these makes {:.1} of 100, at {} deg.",
+        kind_before_shot(kind),
         100.0 * best.probability,
         degrees(best_rad)
     );
@@ -171,16 +199,16 @@ fn in_words(
     text
 }
 
-/// The shots as CSV; empty values where no shot goes in. P over the draws of a fit may follow, one
+/// The shots as CSV; empty values where no clean shot goes in, but for P of the most probable one. P over the draws of a fit may follow, one
 /// for each row.
 #[must_use]
 pub fn by_pitch_csv(
     rows: &[ShotAtPitch],
     over_draws: &[Option<AngleOverDraws>],
-    kind: ShotKind,
+    kind: TableKind,
     units: UnitSystem,
 ) -> String {
-    let columns = columns(TableKind::One(kind), units);
+    let columns = columns(kind, units);
     // The pitch angle comes first, also where there is no shot.
     let is_other = |name: &str| name != "pitch_deg";
     let names: Vec<&str> = columns
@@ -198,16 +226,23 @@ pub fn by_pitch_csv(
         let cells: Vec<String> = columns
             .iter()
             .filter(|(name, ..)| is_other(name))
-            .map(|(_, _, value, size)| match row.shot.as_ref().map(value) {
-                Some(value) if value.is_finite() => (value / size).to_string(),
-                _ => String::new(),
-            })
+            .map(
+                |(name, _, value, size)| match row.shot.as_ref().map(value) {
+                    Some(value) if value.is_finite() => (value / size).to_string(),
+                    None if name == "probability" => {
+                        row.not_clean.map_or_else(String::new, |p| p.to_string())
+                    }
+                    _ => String::new(),
+                },
+            )
             .collect();
         text += &format!(
             "{},{},{},{}",
-            kind.name(),
+            row.shot
+                .as_ref()
+                .map_or(kind.name(), |shot| shot.kind.name()),
             pitch_deg(row),
-            row.shot.as_ref().map_or("", |shot| shot.outcome.name()),
+            outcome(row).unwrap_or_default(),
             cells.join(",")
         );
         text += &match over_draws.get(i) {
@@ -229,23 +264,25 @@ pub fn by_pitch_csv(
 pub fn by_pitch_json(
     rows: &[ShotAtPitch],
     over_draws: &[Option<AngleOverDraws>],
-    kind: ShotKind,
+    kind: TableKind,
     profile: &Profile,
     units: UnitSystem,
 ) -> Value {
-    let columns = columns(TableKind::One(kind), units);
+    let columns = columns(kind, units);
     let named = |name: &str, value: Value| (name.to_owned(), value);
     let shots = rows.iter().enumerate().map(|(i, row)| {
         let mut record = vec![
             named("has_shot", row.shot.is_some().into()),
             named(
-                "outcome",
-                row.shot.as_ref().map(|shot| shot.outcome.name()).into(),
+                "kind",
+                row.shot.as_ref().map(|shot| shot.kind.name()).into(),
             ),
+            named("outcome", outcome(row).into()),
         ];
         record.extend(columns.iter().map(|(name, _, value, size)| {
-            let value = row.shot.as_ref().map(value);
-            let value = value.map_or(Value::Null, |value| number(value / size));
+            let value = row.shot.as_ref().map(value).map(|value| value / size);
+            let value = value.or(row.not_clean.filter(|_| name == "probability"));
+            let value = value.map_or(Value::Null, number);
             (name.clone(), value)
         }));
         record.retain(|(name, _)| name != "pitch_deg");
@@ -268,6 +305,12 @@ pub fn by_pitch_json(
         named("shots", shots.collect()),
     ]);
     object(record)
+}
+
+/// The outcome of the shot without errors; `not-clean` where the most probable one misses.
+fn outcome(row: &ShotAtPitch) -> Option<&'static str> {
+    let clean = row.shot.as_ref().map(|shot| shot.outcome.name());
+    clean.or(row.not_clean.map(|_| "not-clean"))
 }
 
 /// The pitch angle without what its conversion cost in the last digits, deg.

@@ -1,10 +1,10 @@
 //! The best shots at several pitch angles from several distances: which one pitch angle suits a
 //! launcher whose angle is fixed.
 
-use super::by_pitch::{by_pitch_csv, by_pitch_json};
+use super::by_pitch::{by_pitch_csv, by_pitch_json, kind_before_shot};
 use super::notes::physics_note;
-use super::table_text::{decimal, line, wrapped};
-use crate::best_shot::ShotAtPitch;
+use super::table_text::{decimal, line, speed_limit_in_words, wrapped};
+use crate::best_shot::{ShotAtPitch, TableKind};
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use serde_json::{Value, json};
@@ -27,8 +27,19 @@ impl DistanceShots {
 
     /// P at a pitch angle; zero where no shot goes in.
     fn probability(&self, row: usize) -> f64 {
-        let shot = self.shots[row].shot.as_ref();
-        shot.map_or(0.0, |shot| shot.probability)
+        self.shots[row].probability()
+    }
+
+    /// P at a pitch angle in a table.
+    fn cell(&self, row: usize, kind: TableKind) -> String {
+        let at = &self.shots[row];
+        let p = decimal(at.probability(), 3);
+        match (&at.shot, at.not_clean) {
+            (Some(shot), _) if kind == TableKind::Better && shot.kind == ShotKind::Bank => p + "b",
+            (Some(_), _) => p,
+            (None, Some(_)) => p + "*",
+            (None, None) => decimal(f64::NAN, 3),
+        }
     }
 }
 
@@ -78,7 +89,7 @@ fn cost_in_words(from: &[DistanceShots], row: usize, units: UnitSystem) -> Strin
 #[must_use]
 pub fn pitch_over_distances_text(
     from: &[DistanceShots],
-    kind: ShotKind,
+    kind: TableKind,
     units: UnitSystem,
 ) -> String {
     let [first, ..] = from else {
@@ -102,10 +113,10 @@ pub fn pitch_over_distances_text(
     let high = (best + 1..rows.len()).take_while(is_level).last();
     let high = high.unwrap_or(best);
     let mut words = format!(
-        "One pitch angle for all {} distances: {} deg makes the most {} shots on average, {:.1} of 100",
+        "One pitch angle for all {} distances: {} deg makes the most {}shots on average, {:.1} of 100",
         from.len(),
         degrees(best),
-        kind.name(),
+        kind_before_shot(kind),
         100.0 * rows[best].0
     );
     words += &match low < high {
@@ -139,9 +150,25 @@ pub fn pitch_over_distances_text(
     text += &wrapped(&words);
     text += &wrapped(&physics_note(&first.profile, units));
     text += &wrapped(&format!(
-        "P of the best {} shot at each pitch angle and distance ({long}); speed, aim and spin are the best ones there (--backspin keeps one). -: no shot within the limits goes in; it counts as 0 in mean and least. CSV and JSON have the shots.",
-        kind.name()
+        "P of the best {}shot at each pitch angle and distance ({long}); speed, aim and spin are the best ones there (--backspin keeps one). CSV and JSON have the shots.",
+        kind_before_shot(kind)
     ));
+    let limit = speed_limit_in_words(&first.profile, units);
+    let all = || from.iter().flat_map(|shots| &shots.shots);
+    let signs = [
+        (
+            all().any(|row| row.shot.is_none() && row.not_clean.is_none()),
+            format!("-: no shot within the limits{limit} goes in; it counts as 0."),
+        ),
+        (
+            all().any(|row| row.not_clean.is_some() && row.shot.is_none()),
+            "*: no clean shot: the most probable one misses without errors.".to_owned(),
+        ),
+        (kind == TableKind::Better, "b: a bank shot.".to_owned()),
+    ];
+    for (_, words) in signs.iter().filter(|(is_there, _)| *is_there) {
+        text += &wrapped(words);
+    }
     let mut widths = vec![5];
     widths.extend([6; ACROSS]);
     widths.extend([6, 6]);
@@ -155,10 +182,7 @@ pub fn pitch_over_distances_text(
         text += &line(head.iter().map(String::as_str), &widths);
         for (row, (mean, least)) in rows.iter().enumerate() {
             let mut cells = vec![decimal(first.shots[row].pitch_rad / DEGREE_RAD, 1)];
-            cells.extend(across.iter().map(|shots| {
-                let shot = shots.shots[row].shot.as_ref();
-                decimal(shot.map_or(f64::NAN, |shot| shot.probability), 3)
-            }));
+            cells.extend(across.iter().map(|shots| shots.cell(row, kind)));
             if is_last {
                 cells.extend([decimal(*mean, 3), decimal(*least, 3)]);
             }
@@ -172,7 +196,7 @@ pub fn pitch_over_distances_text(
 #[must_use]
 pub fn pitch_over_distances_csv(
     from: &[DistanceShots],
-    kind: ShotKind,
+    kind: TableKind,
     units: UnitSystem,
 ) -> String {
     let mut text = String::new();
@@ -194,7 +218,7 @@ pub fn pitch_over_distances_csv(
 #[must_use]
 pub fn pitch_over_distances_json(
     from: &[DistanceShots],
-    kind: ShotKind,
+    kind: TableKind,
     units: UnitSystem,
 ) -> Value {
     let key = format!("distance_{}", units.length().0);

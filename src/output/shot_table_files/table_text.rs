@@ -114,13 +114,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     let unit_names = of_place.iter().map(|(_, unit, _)| *unit);
     let unit_names = unit_names.chain(columns.iter().map(|column| column.unit.as_str()));
     text += &line(unit_names, &widths);
-    let (long, metre) = units.length();
-    let limit = profile
-        .search()
-        .speed_max_m_s
-        .map_or(String::new(), |most| {
-            format!(" (up to {:.1} {long}/s)", most / metre)
-        });
+    let limit = speed_limit_in_words(profile, units);
     for TableNode {
         distance,
         angle,
@@ -140,7 +134,7 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
         }
         let Some(shot) = shot else {
             text += &format!(
-                "{} no shot within the limits{limit} goes in\n",
+                "{} no clean shot within the limits{limit}\n",
                 line(cells.iter().map(String::as_str), &widths).trim_end_matches('\n')
             );
             continue;
@@ -150,6 +144,15 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     }
     let notes = notes(table, profile, units);
     text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
+}
+
+/// The greatest speed of a profile in brackets, with a space before it; empty without one.
+pub(super) fn speed_limit_in_words(profile: &Profile, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let most = profile.search().speed_max_m_s;
+    most.map_or_else(String::new, |most| {
+        format!(" (up to {:.1} {long}/s)", most / metre)
+    })
 }
 
 /// A number with these decimals; a dash if there is none.

@@ -2,6 +2,7 @@
 
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::terminal::print_remark;
+use crate::measured_shots::column_map_proposal::names_sessions;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::units::UnitSystem;
 
@@ -92,6 +93,13 @@ pub(super) fn print_unused(file: &MeasuredFile) {
             "columns that were not used: {}",
             file.unused.join(", ")
         ));
+        let mut sessions = file.shooters.iter().flat_map(|shots| &shots.sessions);
+        let of_sessions = file.unused.iter().find(|name| names_sessions(name));
+        if let Some(name) = of_sessions.filter(|_| sessions.all(String::is_empty)) {
+            print_remark(&format!(
+                "if {name} tells the sessions apart: --map 'session={name}', which checks whether they differ"
+            ));
+        }
         let mut shots = file.shooters.iter().flat_map(|shots| &shots.shots);
         if shots.all(|shot| shot.made.is_none()) {
             print_remark(

@@ -124,7 +124,7 @@ pub(super) fn fit(
     if !quiet {
         print_unused(file);
         print_remark(&format!(
-            "written: {}, and a folder for each shooter; next: bankshot advise {}",
+            "written: {}, and a folder for each shooter, whose report.html has the tests and the notes on each fit; next: bankshot advise {}",
             path.display(),
             out.display()
         ));

@@ -32,12 +32,14 @@ pub(super) struct PlayerSweep {
 }
 
 impl PlayerSweep {
-    /// The places where a bank shot is better, those with the greatest gain first.
-    fn bank_places(&self) -> Vec<&PlaceProbabilities> {
+    /// The places where a bank shot is better, surely or not, those with the greatest gain first.
+    fn bank_places(&self, surely: bool) -> Vec<&PlaceProbabilities> {
         let mut places: Vec<&PlaceProbabilities> = self
             .places
             .iter()
-            .filter(|place| place.preference() == Some(Preference::Bank))
+            .filter(|place| {
+                place.preference() == Some(Preference::Bank) && place.is_sure() == surely
+            })
             .collect();
         let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
         places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
@@ -140,7 +142,7 @@ const MOST_ROWS: usize = 16;
 /// The page has one up to this many rows.
 const MOST_PAGE_ROWS: usize = 60;
 
-/// A place in words, and `direct / bank` of each player there.
+/// A place in words, and `direct/bank` of each player there.
 fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
     let row = |(place, known): (usize, &PlaceProbabilities)| {
         let cell = |player: &PlayerSweep| {
@@ -148,7 +150,8 @@ fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
                 p.map_or("-".to_owned(), |p| format!("{:.0}", 100.0 * p.value))
             };
             let here = &player.places[place];
-            format!("{} / {}", p(here.direct), p(here.bank))
+            let doubt = if here.is_sure() { "" } else { "?" };
+            format!("{}/{}{doubt}", p(here.direct), p(here.bank))
         };
         let words = known.in_words(units);
         std::iter::once(words)
@@ -183,14 +186,15 @@ fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>>
     let row = |(number, mean): (usize, f64)| {
         let player = &players[number];
         let own = best.iter().filter(|of| of[..] == [number]).count();
+        let [banks, unsure] = [true, false].map(|surely| player.bank_places(surely).len());
+        let places = player.places.len();
         vec![
             shortened(&player.name, LONGEST_NAME),
             in_hundred(mean),
-            format!(
-                "{} of {} places",
-                player.bank_places().len(),
-                player.places.len()
-            ),
+            match unsure {
+                0 => format!("{banks} of {places} places"),
+                unsure => format!("{banks} of {places}, unsure at {unsure}"),
+            },
             format!("{own} of {} places", best.len()),
         ]
     };
@@ -221,11 +225,11 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
         places.any(|place| place.bank_is_better.is_some())
     };
     let has_unsure_places = |player: &PlayerSweep| {
-        let bank = player.bank_places();
-        bank.iter().any(|place| !place.is_sure())
+        let mut places = player.places.iter();
+        places.any(|place| !place.is_sure())
     };
     let of_profiles = if players.iter().any(has_unsure_places) {
-        "Not sure yet: the kind is the better one in fewer than 90 of 100 draws of the fit (team.csv has the share). P itself takes each profile as exact.\n"
+        "Not sure yet (?): the kind is the better one in fewer than 90 of 100 draws of the fit (team.csv has the share). P itself takes each profile as exact.\n"
     } else if players.iter().any(has_draws) {
         "P takes each profile as exact; team.csv has the share of the draws of the fit in which bank is better.\n"
     } else {
@@ -234,43 +238,44 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
     (of_level, of_profiles)
 }
 
-/// From where a player should bank.
+/// From where a player should bank, and from where that is open.
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
-    let bank = player.bank_places();
-    let mut text = format!("{}: ", shortened(&player.name, LONGEST_NAME));
-    if bank.is_empty() {
-        return text + "no place where a bank shot is better by 1 in 100.\n";
-    }
-    text += "bank it from\n";
-    // A place stands for its mirror image too where both are sure, or both are not.
-    let words = |chances: &PlaceProbabilities| {
-        let alike = bank
-            .iter()
-            .filter(|other| other.is_sure() == chances.is_sure());
-        let alike: Vec<&PlaceProbabilities> = alike.copied().collect();
-        chances.in_words_with_mirror(&alike, units)
+    let name = shortened(&player.name, LONGEST_NAME);
+    let surely = place_list(&player.bank_places(true), units);
+    let perhaps = place_list(&player.bank_places(false), units);
+    let mut text = match (surely.is_empty(), perhaps.is_empty()) {
+        (true, true) => format!("{name}: no place where a bank shot is better by 1 in 100.\n"),
+        (true, false) => format!("{name}: no place yet where a bank shot is surely better.\n"),
+        (false, _) => format!("{name}: bank it from\n{surely}"),
     };
+    if !perhaps.is_empty() {
+        text +=
+            &format!("  not sure yet, so shoot direct until more shots are measured:\n{perhaps}");
+    }
+    text
+}
+
+/// P of the bank shot at some places, a line for each.
+fn place_list(places: &[&PlaceProbabilities], units: UnitSystem) -> String {
+    let mut text = String::new();
     let mut listed: Vec<String> = Vec::new();
-    for chances in &bank {
-        if listed.contains(&words(chances)) {
+    for chances in places {
+        // A place stands for its mirror image too.
+        let words = chances.in_words_with_mirror(places, units);
+        if listed.contains(&words) {
             continue;
         }
-        listed.push(words(chances));
-        if listed.len() > MOST_BANK_PLACES {
-            continue;
+        if listed.len() < MOST_BANK_PLACES {
+            let points =
+                |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
+            text += &format!(
+                "  {}: {} (direct {})\n",
+                shortened(&words, 46),
+                points(chances.bank),
+                points(chances.direct),
+            );
         }
-        let points = |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
-        text += &format!(
-            "  {}: {} (direct {}){}\n",
-            shortened(&words(chances), 46),
-            points(chances.bank),
-            points(chances.direct),
-            if chances.is_sure() {
-                ""
-            } else {
-                ", not sure yet"
-            }
-        );
+        listed.push(words);
     }
     if listed.len() > MOST_BANK_PLACES {
         let more = listed.len() - MOST_BANK_PLACES;
@@ -305,7 +310,7 @@ pub(super) fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
             row[0] = textwrap::fill(&row[0], 20);
             table.add_row(row);
         }
-        text += &format!("\nat each place: direct / bank\n{}\n", table.trim_fmt());
+        text += &format!("\nat each place: direct/bank\n{}\n", table.trim_fmt());
     }
     text += of_profiles;
     text + &bank_texts(players, units).concat()
@@ -330,7 +335,7 @@ pub(super) fn team_page(
     }];
     if best.len() <= MOST_PAGE_ROWS {
         tables.push(PageTable {
-            caption: "Makes in 100 at each place: direct / bank".to_owned(),
+            caption: "Makes in 100 at each place: direct/bank".to_owned(),
             columns: place_header(players, LONGEST_NAME),
             rows: place_rows(players, units),
         });

@@ -253,9 +253,13 @@ fn from_their_places(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> 
         let row = vec![
             name,
             format!(
-                "{:.2} {long}, {:.0} deg",
+                "{:.2} {long},\n{}",
                 location.distance_m / metre,
-                location.angle_rad / DEGREE_RAD
+                match location.angle_rad / DEGREE_RAD {
+                    angle if angle >= 0.5 => format!("{angle:.0} deg right"),
+                    angle if angle <= -0.5 => format!("{:.0} deg left", -angle),
+                    _ => "in front".to_owned(),
+                }
             ),
             text(ShotKind::Direct),
             text(ShotKind::Bank),
