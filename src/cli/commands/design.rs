@@ -144,7 +144,13 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let units = options.units.map_or(own_units, UnitSystem::from);
     let tracker = match named {
         Some(tracker) => tracker,
-        None => tracker_named(&own_tracker, sees)?,
+        None => tracker_named(&own_tracker, sees).map_err(|failure| Failure {
+            message: format!(
+                "the tracker of the fit: {}; run it in the folder of that file, or give --tracker FILE",
+                failure.message
+            ),
+            ..failure
+        })?,
     };
     let noise = noise(&tracker, &profile, &nominal)?;
     let bars = ProgressBars::new(quiet);

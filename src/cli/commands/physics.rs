@@ -192,9 +192,9 @@ impl FittedRows {
 
     /// The usual shot and the gain under each physics, with their 95 % intervals.
     fn table(&self, comparison: &PhysicsComparison) -> Table {
-        let mut header = vec!["physics", "usual shot P", "95 %"];
+        let mut header = vec!["physics", "usual\nP", "95 %"];
         if !self.changes.is_empty() {
-            header.extend(["advice gains", "95 %"]);
+            header.extend(["advice\ngains", "95 %"]);
         }
         let mut table = table_with(header.into_iter().map(str::to_owned).collect());
         for (row, own) in comparison.rows.iter().zip(&self.rows) {
@@ -356,8 +356,8 @@ fn comparison_text(
     );
     let of_fit = match fitted {
         Some(fitted) => format!(
-            "\nThe measured shots, and what the advice adds in makes of 100, each with what the fit leaves open:\n{}\n{}",
-            fitted.table(comparison),
+            "\nP of the usual shot, and what the advice adds in makes of 100, with 95 % intervals of what the fit leaves open:\n{}\n{}",
+            fitted.table(comparison).trim_fmt(),
             fitted.in_words(comparison)
         ),
         None => "(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
@@ -367,7 +367,8 @@ fn comparison_text(
         _ => "The first row is the profile's own physics",
     };
     format!(
-        "{table}\n{summary}Each P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
+        "{}\n{summary}Each P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
+        table.trim_fmt(),
         if has_air { "with" } else { "ncaa," },
         if has_air { "it" } else { "ncaa" },
     )

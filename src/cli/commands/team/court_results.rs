@@ -241,8 +241,8 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
 /// From where a player should bank, and from where that is open.
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let name = shortened(&player.name, LONGEST_NAME);
-    let surely = place_list(&player.bank_places(true), units);
-    let perhaps = place_list(&player.bank_places(false), units);
+    let surely = place_list(&player.bank_places(true), "  ", units);
+    let perhaps = place_list(&player.bank_places(false), "    ", units);
     let mut text = match (surely.is_empty(), perhaps.is_empty()) {
         (true, true) => format!("{name}: no place where a bank shot is better by 1 in 100.\n"),
         (true, false) => format!("{name}: no place yet where a bank shot is surely better.\n"),
@@ -255,8 +255,8 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     text
 }
 
-/// P of the bank shot at some places, a line for each.
-fn place_list(places: &[&PlaceProbabilities], units: UnitSystem) -> String {
+/// P of the bank shot at some places, a line for each, which begins with `indent`.
+fn place_list(places: &[&PlaceProbabilities], indent: &str, units: UnitSystem) -> String {
     let mut text = String::new();
     let mut listed: Vec<String> = Vec::new();
     for chances in places {
@@ -269,8 +269,8 @@ fn place_list(places: &[&PlaceProbabilities], units: UnitSystem) -> String {
             let points =
                 |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
             text += &format!(
-                "  {}: {} (direct {})\n",
-                shortened(&words, 46),
+                "{indent}{}: {} (direct {})\n",
+                shortened(&words, 44),
                 points(chances.bank),
                 points(chances.direct),
             );
@@ -279,7 +279,7 @@ fn place_list(places: &[&PlaceProbabilities], units: UnitSystem) -> String {
     }
     if listed.len() > MOST_BANK_PLACES {
         let more = listed.len() - MOST_BANK_PLACES;
-        text += &format!("  and {more} more: team.csv\n");
+        text += &format!("{indent}and {more} more: team.csv\n");
     }
     text
 }
