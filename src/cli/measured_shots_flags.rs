@@ -290,6 +290,9 @@ impl MeasuredShotsOptions {
         let mut table = Table::read(path).map_err(refuse)?;
         let columns = Columns::new(&table.header, &self.maps()?)
             .map_err(|errors| refuse(errors.join("\n")))?;
+        if let Some(column) = columns.label(Label::Session) {
+            table.keep_days(column);
+        }
         let release_heights_m = self.release_heights_m()?;
         let named = release_heights_m.iter().filter_map(|(name, _)| {
             let name = name.as_deref()?;

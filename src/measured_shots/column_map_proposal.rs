@@ -65,7 +65,15 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
     ),
     (
         "session",
-        &["session", "date", "day", "visit", "phase", "condition"],
+        &[
+            "session",
+            "date",
+            "day",
+            "timestamp",
+            "visit",
+            "phase",
+            "condition",
+        ],
     ),
     ("place", &["spot", "zone"]),
     ("shot", &["shotid", "shotnumber", "shotno", "trial"]),

@@ -498,8 +498,8 @@ impl Columns {
 pub fn parse_made(cell: &str) -> Result<Option<bool>, String> {
     match cell.trim().to_ascii_lowercase().as_str() {
         "" | "na" | "nan" => Ok(None),
-        "1" | "true" | "yes" | "y" | "made" | "make" | "hit" | "in" => Ok(Some(true)),
-        "0" | "false" | "no" | "n" | "missed" | "miss" | "out" => Ok(Some(false)),
+        "1" | "true" | "yes" | "y" | "made" | "make" | "hit" | "in" | "swish" => Ok(Some(true)),
+        "0" | "false" | "no" | "n" | "missed" | "miss" | "out" | "airball" => Ok(Some(false)),
         other => Err(format!(
             "made: \"{}\" is neither made (1, true, yes, made) nor missed (0, false, no, missed)",
             other.chars().take(20).collect::<String>()

@@ -19,7 +19,8 @@ const USUAL_MEDIANS: [UsualMedian; 3] = [
     UsualMedian {
         quantity: Quantity::Depth,
         low: -3.0 * INCH_M,
-        high: 18.0 * INCH_M,
+        // A shooter can be long on average; centimetres that are read as inches are 28.
+        high: 20.0 * INCH_M,
         in_words: "from the front of the ring (0 in) to its back (18 in)",
     },
     UsualMedian {

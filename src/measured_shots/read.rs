@@ -57,6 +57,11 @@ pub fn read(
     if by_shooter.is_empty() {
         return Err("has no rows".to_owned());
     }
+    // Of all shooters together: a column has one unit and one zero, and a shooter can be far off.
+    let all: Vec<(u64, &[String])> = by_shooter.values().flatten().copied().collect();
+    if let Some(words) = implausible_column(columns, source.quantities(), &all) {
+        return Err(words);
+    }
     check_named_heights(&reader, &by_shooter.keys().collect::<Vec<_>>())?;
     let mut shooters = Vec::new();
     for (name, rows) in by_shooter {
@@ -159,9 +164,6 @@ fn shooter(
         "" => words,
         name => format!("{name}: {words}"),
     };
-    if let Some(words) = implausible_column(reader.columns, reader.source.quantities(), rows) {
-        return Err(of_shooter(words));
-    }
     let mut rejected = Vec::new();
     let raw = match reader.source {
         Source::Trajectories => tracked_shots(reader, rows, &mut rejected).map_err(of_shooter)?,

@@ -22,7 +22,33 @@ pub struct Table {
     pub row_name: &'static str,
 }
 
+/// The day of a date with a time of day, such as `2026-11-26 17:05` or `11/26/2026T17:05:30`;
+/// `None` of anything else.
+fn day_of(cell: &str) -> Option<&str> {
+    let (day, time) = cell.trim().split_once([' ', 'T'])?;
+    let (hours, minutes) = time.trim().split_once(':')?;
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let is_date = day
+        .split(['-', '/', '.'])
+        .filter(|part| is_number(part))
+        .count()
+        == 3;
+    let is_time = is_number(hours) && minutes.starts_with(|c: char| c.is_ascii_digit());
+    (is_date && is_time).then_some(day)
+}
+
 impl Table {
+    /// Leaves the times of day out of a column of dates: a session is a day.
+    pub fn keep_days(&mut self, column: usize) {
+        for (_, cells) in &mut self.rows {
+            if let Some(cell) = cells.get_mut(column)
+                && let Some(day) = day_of(cell)
+            {
+                *cell = day.to_owned();
+            }
+        }
+    }
+
     /// Reads a file.
     ///
     /// # Errors
@@ -118,4 +144,23 @@ fn is_number_with_comma(cell: &str) -> bool {
     digits
         .split_once(',')
         .is_some_and(|(whole, part)| are_digits(whole) && are_digits(part) && !part.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contract_dates_with_a_time_are_days() {
+        for (cell, day) in [
+            ("2026-11-26 17:05", Some("2026-11-26")),
+            (" 11/26/2026 5:05:10 PM", Some("11/26/2026")),
+            ("2026-11-26T17:05:30Z", Some("2026-11-26")),
+            ("2026-11-26", None),
+            ("after Tuesday 12:00", None),
+            ("3 4", None),
+        ] {
+            assert_eq!(day_of(cell), day, "{cell}");
+        }
+    }
 }

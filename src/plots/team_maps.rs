@@ -79,7 +79,9 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
             .collect();
         let title = shortened(&player.shooter_name(), LONGEST_NAME);
         map.draw(&mut svg, corner(i), &title, &places, &scale);
-        let is_bank = |place: &&PlaceProbabilities| place.preference() == Some(Preference::Bank);
+        let is_bank = |place: &&PlaceProbabilities| {
+            place.preference() == Some(Preference::Bank) && place.is_sure()
+        };
         let bank = player.chances().iter().filter(is_bank);
         let bank: Vec<(f64, f64)> = bank.map(|p| (p.place.x_m, p.place.y_m)).collect();
         map.draw_outline(&mut svg, corner(i), &bank);
@@ -117,7 +119,7 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
         &of_team,
         &legend,
     );
-    let caption = "Outlined: the bank shot is better by 1 in 100 or more. Level: the best two or more differ by less than 1 in 100, or by less than the numerical error.";
+    let caption = "Outlined: the bank shot is better by 1 in 100 or more, of a fit in at least 90 of 100 draws. Level: the best two or more differ by less than 1 in 100, or by less than the numerical error.";
     svg.footnote((20.0, note_top), caption);
     svg.footnote((20.0, note_top + 16.0), &first.team_note(players.len()));
     Some(Plot {

@@ -52,9 +52,15 @@ impl PageTable {
     }
 }
 
-/// A text with its line breaks. (The style of an answer breaks at the ends of lines too.)
+/// A text with its line breaks, and its lines set in as they are. (The style of an answer breaks
+/// at the ends of lines too.)
 fn lines(text: &str) -> String {
-    let lines: Vec<String> = text.trim_end().lines().map(escaped).collect();
+    let line = |line: &str| {
+        let words = line.trim_start();
+        let spaces = line.len() - words.len();
+        format!("{}{}", "&ensp;".repeat(spaces), escaped(words))
+    };
+    let lines: Vec<String> = text.trim_end().lines().map(line).collect();
     lines.join("<br>")
 }
 

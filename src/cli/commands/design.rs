@@ -402,13 +402,15 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
         let hidden = |error: &SessionError| 100.0 * POWER * error.error();
         let never = changes.iter().copied();
         let never = never.filter(|points| further_shots(rows, first, points / 100.0).is_none());
-        let larger = never.reduce(f64::min).map_or_else(String::new, |points| {
-            let root = POWER * first.p.of_one_shot / (points / 100.0);
-            format!(
-                " For {points} points the first session would need more than {} shots.",
-                two_digits(root * root)
-            )
-        });
+        let larger: String = never
+            .map(|points| {
+                let root = POWER * first.p.of_one_shot / (points / 100.0);
+                format!(
+                    " For {points} points the first session would need more than {} shots.",
+                    two_digits(root * root)
+                )
+            })
+            .collect();
         text += &format!(
             "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
             first.shots,

@@ -32,15 +32,20 @@ pub(super) struct PlayerSweep {
 }
 
 impl PlayerSweep {
-    /// The places where a bank shot is better, surely or not, those with the greatest gain first.
-    fn bank_places(&self, surely: bool) -> Vec<&PlaceProbabilities> {
-        let mut places: Vec<&PlaceProbabilities> = self
-            .places
-            .iter()
-            .filter(|place| {
-                place.preference() == Some(Preference::Bank) && place.is_sure() == surely
-            })
-            .collect();
+    /// The places where a bank shot is surely better, those with the greatest gain first.
+    fn bank_places(&self) -> Vec<&PlaceProbabilities> {
+        self.by_gain(|place| place.preference() == Some(Preference::Bank) && place.is_sure())
+    }
+
+    /// The places where the measured shots leave bank or direct open.
+    fn unsure_places(&self) -> Vec<&PlaceProbabilities> {
+        self.by_gain(|place| !place.is_sure())
+    }
+
+    /// Some places, those where a bank shot gains most first.
+    fn by_gain(&self, wanted: impl Fn(&PlaceProbabilities) -> bool) -> Vec<&PlaceProbabilities> {
+        let mut places: Vec<&PlaceProbabilities> =
+            self.places.iter().filter(|place| wanted(place)).collect();
         let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
         places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
         places
@@ -186,7 +191,7 @@ fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>>
     let row = |(number, mean): (usize, f64)| {
         let player = &players[number];
         let own = best.iter().filter(|of| of[..] == [number]).count();
-        let [banks, unsure] = [true, false].map(|surely| player.bank_places(surely).len());
+        let (banks, unsure) = (player.bank_places().len(), player.unsure_places().len());
         let places = player.places.len();
         vec![
             shortened(&player.name, LONGEST_NAME),
@@ -224,10 +229,7 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
         let mut places = player.places.iter();
         places.any(|place| place.bank_is_better.is_some())
     };
-    let has_unsure_places = |player: &PlayerSweep| {
-        let mut places = player.places.iter();
-        places.any(|place| !place.is_sure())
-    };
+    let has_unsure_places = |player: &PlayerSweep| !player.unsure_places().is_empty();
     let of_profiles = if players.iter().any(has_unsure_places) {
         "Not sure yet (?): the kind is the better one in fewer than 90 of 100 draws of the fit (team.csv has the share). P itself takes each profile as exact.\n"
     } else if players.iter().any(has_draws) {
@@ -241,8 +243,8 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
 /// From where a player should bank, and from where that is open.
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let name = shortened(&player.name, LONGEST_NAME);
-    let surely = place_list(&player.bank_places(true), "  ", units);
-    let perhaps = place_list(&player.bank_places(false), "    ", units);
+    let surely = place_list(&player.bank_places(), "  ", units);
+    let perhaps = place_list(&player.unsure_places(), "    ", units);
     let mut text = match (surely.is_empty(), perhaps.is_empty()) {
         (true, true) => format!("{name}: no place where a bank shot is better by 1 in 100.\n"),
         (true, false) => format!("{name}: no place yet where a bank shot is surely better.\n"),
@@ -270,7 +272,7 @@ fn place_list(places: &[&PlaceProbabilities], indent: &str, units: UnitSystem) -
                 |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
             text += &format!(
                 "{indent}{}: {} (direct {})\n",
-                shortened(&words, 44),
+                shortened(&words, 50),
                 points(chances.bank),
                 points(chances.direct),
             );

@@ -351,7 +351,10 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     }
     let results: Vec<SweepResults<'_>> = finished
         .iter()
-        .map(|(config, rows)| SweepResults::new(config, rows))
+        .zip(&players)
+        .map(|((config, rows), player)| {
+            SweepResults::new(config, rows).with_chances(player.places.clone())
+        })
         .collect();
     let maps = team_maps::draw(&results, &best_players(&players));
     plot_files::write(&options.out, maps.as_slice())?;
