@@ -4,7 +4,7 @@ use super::failure::Failure;
 use crate::best_shot::MOST_NODES as MOST_VALUES;
 use crate::units::{self, Dimension};
 
-/// Ascending values: `6 ft, 8 ft` or `6 ft to 20 ft by 1 ft`.
+/// Ascending values: `6 ft, 8 ft`, `6, 8 ft` or `6 ft to 20 ft by 1 ft`.
 pub(crate) fn ascending_values(
     flag: &str,
     text: &str,
@@ -24,7 +24,7 @@ pub(crate) fn ascending_values(
             ))
         })
     };
-    let values = match text.split_once(" to ") {
+    let values: Vec<f64> = match text.split_once(" to ") {
         Some((from, rest)) => {
             let (to, step) = rest
                 .split_once(" by ")
@@ -42,7 +42,21 @@ pub(crate) fn ascending_values(
                 .map(|k| from + step * k as f64)
                 .collect()
         }
-        None => text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?,
+        None => {
+            let values: Vec<&str> = text.split(',').map(str::trim).collect();
+            // `48, 50, 52 deg`: the unit of the last value is that of all.
+            let last = values.last().copied().unwrap_or_default();
+            let unit = last.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\u{b0}');
+            let has_no_unit = |value: &&str| value.parse::<f64>().is_ok();
+            let parse_in_unit = |value: &&str| {
+                if has_no_unit(value) && !unit.is_empty() {
+                    parse(&format!("{value} {unit}"))
+                } else {
+                    parse(value)
+                }
+            };
+            values.iter().map(parse_in_unit).collect::<Result<_, _>>()?
+        }
     };
     if values.len() > MOST_VALUES {
         return Err(refuse(format!("has more than {MOST_VALUES} values")));

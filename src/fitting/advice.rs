@@ -60,6 +60,8 @@ pub struct Advice {
     pub gain_is_positive: f64,
     /// What to change, if there is a best shot.
     pub steps: Option<AdviceSteps>,
+    /// P of the advised shot: that of the usual one if no step is sure.
+    pub advised_probability: Interval,
     /// What to train, largest gain first.
     pub training: Vec<TrainingGain>,
     /// Where the usual and the advised release fall to the height of the hoop, for direct shots
@@ -158,7 +160,9 @@ pub fn advise(
         .unzip();
     let change = change.unwrap_or_default();
     let advised = |draw: &Draw| change.of_draw(draw, place);
-    let mut training = training_gains(shooting.with(change), &draws, place, advised);
+    let shots = shooting.with(change);
+    let advised_probability = shots.probabilities.interval();
+    let mut training = training_gains(shots, &draws, place, advised);
     // Nothing is known of a scatter that was not measured.
     training.retain(|gain| !(keeps_backspin && gain.cause == Cause::BACKSPIN));
     let fall = |values: &Values| {
@@ -186,6 +190,7 @@ pub fn advise(
         gain: gain.as_ref().map(DrawProbabilities::interval),
         best: best.cloned(),
         steps,
+        advised_probability,
         training,
         landings,
         kinds,

@@ -25,6 +25,9 @@ pub struct DesignRow {
     pub sd_errors: [f64; 3],
     /// Standard deviation of P from the fitted profile.
     pub probability_error: f64,
+    /// Relative standard error of [`DesignRow::probability_error`], by the finite number of
+    /// simulated tests.
+    pub simulation_error: f64,
     /// Standard deviation of P from counting makes.
     pub counting_error: f64,
 }
@@ -173,17 +176,25 @@ pub fn design(
                 Ok([relative(0), relative(1), relative(2), p].map(|x| x * x))
             })
             .collect();
-        let mut sums = [0.0; 4];
+        let (mut sums, mut p_squares) = ([0.0; 4], 0.0);
         for variance in variances {
-            for (sum, value) in sums.iter_mut().zip(variance?) {
+            let variance = variance?;
+            p_squares += variance[3] * variance[3];
+            for (sum, value) in sums.iter_mut().zip(variance) {
                 *sum += value;
             }
         }
+        // Of the root of a mean: half the relative error of the mean.
+        let count = repetitions as f64;
+        let p_mean = sums[3] / count;
+        let of_one = (p_squares / count - p_mean * p_mean).max(0.0).sqrt();
+        let simulation_error = 0.5 * of_one / p_mean / (count - 1.0).max(1.0).sqrt();
         let [speed, pitch, polar, p] = sums.map(|sum| (sum / repetitions as f64).sqrt());
         Ok(DesignRow {
             shots,
             sd_errors: [speed, pitch, polar],
             probability_error: p,
+            simulation_error,
             counting_error: (probability * (1.0 - probability) / shots as f64).sqrt(),
         })
     });

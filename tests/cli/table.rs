@@ -612,7 +612,8 @@ fn contract_the_pitch_limits_of_a_profile_hold() {
 #[test]
 fn contract_the_better_kind_at_each_angle_and_shots_that_are_not_clean() {
     let folder = TempDir::new().unwrap();
-    let pitches = ["--pitches", "60 deg, 70 deg"];
+    // The unit of the last value is that of all.
+    let pitches = ["--pitches", "60, 70 deg"];
     let curve = |more: &[&str]| pitch_curve(&folder, &[&pitches[..], more].concat());
     let of_kind = |kind: &str, distance: &str| {
         let json = curve(&["--kind", kind, "--distance", distance, "--json"]);

@@ -263,9 +263,14 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             in_words(shots).to_lowercase()
         );
     }
+    let of_errors = rows.iter().map(|row| row.simulation_error);
+    let of_error = of_errors.fold(0.0, f64::max);
     let sd = |i: usize, size: f64| noise[(i, i)].max(0.0).sqrt() / size;
     text += &format!(
-        "\nAt this shot the tracker errs by {:.decimals$} {long}/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
+        "\nWith {} simulated tests the errors of P are known to {:.0} %, the numbers of shots to {:.0} % (one standard deviation; --repetitions).\nAt this shot the tracker errs by {:.decimals$} {long}/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
+        options.repetitions,
+        100.0 * of_error,
+        200.0 * of_error,
         sd(0, metre),
         sd(1, DEGREE_RAD),
         sd(2, DEGREE_RAD),
@@ -495,6 +500,7 @@ fn json(
             "pitch_sd_relative_error": pitch,
             "polar_sd_relative_error": polar,
             "probability_error": number(row.probability_error),
+            "simulation_error": number(row.simulation_error),
             "counting_error": number(row.counting_error),
             "least_change_of_probability": number(least_change(row, first)),
         })

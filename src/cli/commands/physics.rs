@@ -258,6 +258,17 @@ impl FittedRows {
         if !unknown.is_empty() {
             text += &format!("No gain could be computed with {}.\n", unknown.join(", "));
         }
+        let lost: Vec<String> = (1..comparison.rows.len())
+            .filter(|&i| !comparison.rows[i].is_unmeasured)
+            .filter(|&i| self.gain(i).is_some_and(|gain| gain.low <= 0.0))
+            .map(|i| comparison.rows[i].name.clone())
+            .collect();
+        if !lost.is_empty() {
+            text += &format!(
+                "(Under {} its gain is not sure; those are other balls, hoops or air, not what this gym may have.)\n",
+                lost.join(", ")
+            );
+        }
         text += &format!("The advice ({})", self.changes);
         if let Some(own) = self.gain(0) {
             text += &format!(" gains {} under the first row's physics", points(&own));

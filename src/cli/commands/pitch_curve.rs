@@ -112,8 +112,23 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         Some((_, fit)) => fit_folder::angles_over_draws(fit, &profile, &rows)?,
         None => Vec::new(),
     };
+    // The angles have their best speed and aim, which the shooter need not have.
+    let of_fit = match options.profile.is_dir() && !options.place.is_given() {
+        true => {
+            let p = fit_folder::read(&options.profile)?
+                .usual_probabilities(0)
+                .interval();
+            wrapped(&format!(
+                "As it was measured, the usual shot makes {:.1} of 100 (95 %: {:.1} to {:.1}): its speed and aim are not the best ones.",
+                100.0 * p.mean,
+                100.0 * p.low,
+                100.0 * p.high
+            ))
+        }
+        false => String::new(),
+    };
     let text = || {
-        let text = by_pitch_text(&rows, kind, &profile, units);
+        let text = by_pitch_text(&rows, kind, &profile, units) + &of_fit;
         let words = draws
             .as_ref()
             .map(|(folder, fit)| fit_folder::angles_in_words((folder, fit), &rows, &over_draws));

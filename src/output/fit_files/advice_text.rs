@@ -377,7 +377,14 @@ pub fn advice_text(
         (&advice.best, &advice.best_probability, &advice.gain)
     {
         if let Some(steps) = &advice.steps {
-            text += &format!("gain of the advised shot  {}\n", points(&steps.gain));
+            let p = &advice.advised_probability;
+            text += &format!(
+                "gain of the advised shot  {}, P {} (95 %: {:.1} to {:.1} %)\n",
+                points(&steps.gain),
+                percent(p.mean),
+                100.0 * p.low,
+                100.0 * p.high
+            );
         }
         text += &format!(
             "gain of the best {} shot  {}, P {} (95 %: {:.1} to {:.1} %); better in {:.0} % of the draws\n",
@@ -581,6 +588,10 @@ pub fn advice_json(
                 .map_or(Value::Null, |best| values(values_of(&best.nominal))),
         ),
         named("best_probability", optional(&advice.best_probability)),
+        named(
+            "advised_probability",
+            optional(&Some(advice.advised_probability)),
+        ),
         named("gain", optional(&advice.gain)),
         named("gain_is_positive", number(advice.gain_is_positive)),
         named("causes", causes.collect()),
