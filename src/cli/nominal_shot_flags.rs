@@ -3,7 +3,7 @@
 
 use super::failure::Failure;
 use crate::shooter::{Location, Nominal, NominalVariable, Profile};
-use crate::units::{self, DEGREE_RAD, Dimension};
+use crate::units::{self, DEGREE_RAD, Dimension, REV_RAD};
 use clap::Args;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -156,6 +156,13 @@ impl NominalOptions {
             warnings.extend(beyond.map(|words| {
                 format!("warning: the {name} {words}: no search would give this shot")
             }));
+        }
+        let most = profile.shooter().max_backspin_rad_s;
+        if nominal.backspin_rad_s > most + 1e-9 {
+            warnings.push(format!(
+                "warning: the backspin is more than shooter.max_backspin ({:.3} rev/s): no search would give this shot",
+                most / REV_RAD
+            ));
         }
         let start = profile.release(nominal);
         let missed = profile

@@ -11,7 +11,8 @@ use std::collections::BTreeMap;
 /// A height that every shot rises through, m.
 const LOW_RELEASE_M: f64 = 1.5;
 
-/// Shots that begin farther behind the plane of the hoop's centre than this are behind the board, m.
+/// Shots that begin farther than this behind the plane of the hoop's centre are behind the board,
+/// m.
 const BEHIND_BOARD_M: f64 = 0.5;
 
 /// The flights of the tracked shots, each at its own place.

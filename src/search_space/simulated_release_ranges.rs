@@ -81,7 +81,7 @@ pub enum PlanError {
     },
     /// No release within the limits reaches the hoop.
     #[error(
-        "search: no release within the limits reaches the hoop from there; raise speed_max or pitch_max"
+        "search: no release within the limits reaches the hoop from there; raise speed_max, or allow other pitch angles (pitch_min, pitch_max, a fixed pitch)"
     )]
     OutOfReach,
 }

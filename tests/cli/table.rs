@@ -372,7 +372,7 @@ fn contract_a_table_of_the_better_kind() {
         assert_eq!(distance(before), distance(after));
     }
     let notes = best["notes"].to_string();
-    assert!(notes.contains("The better kind: "), "{notes}");
+    assert!(notes.contains("The better kind, about: "), "{notes}");
     table(
         &folder,
         &[

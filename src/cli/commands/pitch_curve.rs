@@ -20,6 +20,7 @@ use crate::output::shot_table_files::pitch_over_distances::{
     DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
 };
 use crate::plots;
+use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, Dimension};
 use clap::Args;
@@ -56,7 +57,7 @@ pub(crate) struct PitchCurveOptions {
     /// angle suits them all.
     #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
     pub(crate) distances: Option<String>,
-    /// The kind of the shots; best: at each angle the one with the higher P.
+    /// The kind of the shots; best: at each angle the one with the higher P (twice the time).
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     /// Fix the backspin.
@@ -188,11 +189,19 @@ fn run_from_distances(
         profiles.push(profile.moved_to(place)?);
     }
     let bars = ProgressBars::new(quiet);
+    let searches = profiles.len() * pitches_rad.len();
+    bars.begin("pitch angles and distances", searches as u64);
     let mut from = Vec::new();
     for profile in profiles {
-        let shots = best_by_pitch(&profile, kind, pitches_rad, &bars)?;
+        let mut shots = Vec::new();
+        for pitch_rad in pitches_rad {
+            let pitch_rad = std::slice::from_ref(pitch_rad);
+            shots.extend(best_by_pitch(&profile, kind, pitch_rad, &Silent)?);
+            bars.advance(1);
+        }
         from.push(DistanceShots { profile, shots });
     }
+    bars.end();
     let text = || pitch_over_distances_text(&from, kind, units);
     let json = || format!("{:#}\n", pitch_over_distances_json(&from, kind, units));
     write_outputs(&options.output, |form| match form {

@@ -199,8 +199,8 @@ fn in_words(
     text
 }
 
-/// The shots as CSV; empty values where no clean shot goes in, but for P of the most probable one. P over the draws of a fit may follow, one
-/// for each row.
+/// The shots as CSV; empty values where no clean shot goes in, but for P of the most probable one.
+/// P over the draws of a fit may follow, one for each row.
 #[must_use]
 pub fn by_pitch_csv(
     rows: &[ShotAtPitch],

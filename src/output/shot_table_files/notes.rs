@@ -361,13 +361,8 @@ fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
             }
         })
         .collect();
-    // Without checks the borders are only tried between the rows.
-    let about = if table.checks.is_empty() {
-        ", about"
-    } else {
-        ""
-    };
-    (!texts.is_empty()).then(|| format!("The better kind{about}: {}.", texts.join(", ")))
+    // The borders are only tried as far as interpolation needs them.
+    (!texts.is_empty()).then(|| format!("The better kind, about: {}.", texts.join(", ")))
 }
 
 /// Where the pitch angle is a limit of the launcher.
