@@ -15,7 +15,7 @@ use serde_json::Value;
 const LEVEL: f64 = 0.01;
 
 /// Name, unit and width of the columns after the pitch angle.
-fn titles<'a>(speed_unit: &'a str, kind: TableKind) -> Vec<(&'a str, &'a str, usize)> {
+fn titles(speed_unit: &str, kind: TableKind) -> Vec<(&str, &str, usize)> {
     let other_kind = match kind {
         TableKind::One(kind) => kind.other().name(),
         TableKind::Better => "other",
