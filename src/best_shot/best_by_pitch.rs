@@ -13,8 +13,9 @@ pub struct ShotAtPitch {
     pub pitch_rad: f64,
     /// `None` where no shot goes in without an error.
     pub shot: Option<TableShot>,
-    /// Where there is none, P of the most probable shot that misses when it has no errors.
-    pub not_clean: Option<f64>,
+    /// Where there is none, the kind and P of the most probable shot: it misses when it has no
+    /// errors.
+    pub not_clean: Option<(ShotKind, f64)>,
 }
 
 impl ShotAtPitch {
@@ -22,12 +23,13 @@ impl ShotAtPitch {
     #[must_use]
     pub fn probability(&self) -> f64 {
         let clean = self.shot.as_ref().map(|shot| shot.probability);
-        clean.or(self.not_clean).unwrap_or(0.0)
+        let any = clean.or(self.not_clean.map(|(_, p)| p));
+        any.unwrap_or(0.0)
     }
 }
 
-/// The best shots at pitch angles (rad), in their order, of one kind or at each angle of the kind
-/// with the higher P: speed and polar angle, and backspin if the profile's search has it, follow
+/// The best shots at pitch angles (rad), in their order, of one kind, or at each angle of the kind
+/// with the higher P (a clean shot goes before one that misses without errors): speed and polar angle, and backspin if the profile's search has it, follow
 /// the pitch angle.
 ///
 /// # Errors
@@ -43,9 +45,9 @@ pub fn best_by_pitch(
         let found = best_with_fixed(profile, kind, &[(NominalVariable::Pitch, pitch_rad)])?;
         let not_clean = match &found {
             Err(NoShot::NotClean {
+                kind,
                 probability_per_million,
-                ..
-            }) => Some(f64::from(*probability_per_million) / 1e6),
+            }) => Some((*kind, f64::from(*probability_per_million) / 1e6)),
             _ => None,
         };
         Ok::<_, ShotTableError>(ShotAtPitch {

@@ -290,7 +290,10 @@ impl MeasuredShotsOptions {
         let mut table = Table::read(path).map_err(refuse)?;
         let columns = Columns::new(&table.header, &self.maps()?)
             .map_err(|errors| refuse(errors.join("\n")))?;
-        if let Some(column) = columns.label(Label::Session) {
+        // Of tracked shots the session is a part of the name of each.
+        if let Some(column) = columns.label(Label::Session)
+            && Source::of(&columns).is_ok_and(|source| source != Source::Trajectories)
+        {
             table.keep_days(column);
         }
         let release_heights_m = self.release_heights_m()?;

@@ -18,11 +18,8 @@ pub(crate) fn ascending_values(
         Failure::usage(format!("--{flag}: \"{text}\" {message}; write {example}"))
     };
     let parse = |text: &str| {
-        units::parse(text.trim(), dimension).map_err(|error| {
-            Failure::usage(format!(
-                "--{flag}: {error}; each value has its own unit, as in {example}"
-            ))
-        })
+        units::parse(text.trim(), dimension)
+            .map_err(|error| Failure::usage(format!("--{flag}: {error}; write {example}")))
     };
     let values: Vec<f64> = match text.split_once(" to ") {
         Some((from, rest)) => {
@@ -44,9 +41,13 @@ pub(crate) fn ascending_values(
         }
         None => {
             let values: Vec<&str> = text.split(',').map(str::trim).collect();
-            // `48, 50, 52 deg`: the unit of the last value is that of all.
+            // `48, 50, 52 deg`: the unit of the last value is that of all. Feet and inches are two.
             let last = values.last().copied().unwrap_or_default();
-            let unit = last.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\u{b0}');
+            let ends = (0..=last.len()).filter(|end| last.is_char_boundary(*end));
+            let number_end = ends.filter(|end| last[..*end].parse::<f64>().is_ok()).max();
+            let rest = number_end.map_or("", |end| last[end..].trim());
+            let is_one = |c: char| c.is_alphabetic() || c == '_' || c == '\u{b0}';
+            let unit = if rest.chars().all(is_one) { rest } else { "" };
             let has_no_unit = |value: &&str| value.parse::<f64>().is_ok();
             let parse_in_unit = |value: &&str| {
                 if has_no_unit(value) && !unit.is_empty() {

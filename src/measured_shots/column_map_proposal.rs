@@ -113,6 +113,10 @@ pub fn map_proposal(columns: &Columns) -> String {
             None
         };
         let target = of_tracker.filter(|target| !taken.contains(target));
+        // A second time of a point is none of the session.
+        if target.is_none() && of_tracker == Some("time") {
+            continue;
+        }
         let Some(target) = target.or_else(|| target_of(name, is_landing, &taken)) else {
             continue;
         };

@@ -50,20 +50,33 @@ impl OntoCourt {
         }
     }
 
-    /// The direction that a point along the court and across by this one is nearest to.
-    fn towards(self, (along, across): (f64, f64)) -> Self {
-        let inverse = match self {
-            Self::PlusY => Self::MinusY,
-            Self::MinusY => Self::PlusY,
-            same => same,
+    /// The direction under which most of some points are in front of the hoop, the opposite one
+    /// first. The points are along the court and across by this one.
+    fn with_most_in_front(self, points: &[(f64, f64)]) -> Self {
+        let (opposite, back) = match self {
+            Self::PlusX => (Self::MinusX, Self::PlusX),
+            Self::MinusX => (Self::PlusX, Self::MinusX),
+            Self::PlusY => (Self::MinusY, Self::MinusY),
+            Self::MinusY => (Self::PlusY, Self::PlusY),
         };
-        let (x, y) = inverse.turned(along, across);
-        match (libm::fabs(x) >= libm::fabs(y), x >= 0.0, y >= 0.0) {
-            (true, true, _) => Self::PlusX,
-            (true, false, _) => Self::MinusX,
-            (false, _, true) => Self::PlusY,
-            (false, _, false) => Self::MinusY,
-        }
+        let in_front = |direction: Self| {
+            let along = points.iter().map(|(along, across)| {
+                let (x, y) = back.turned(*along, *across);
+                direction.turned(x, y).0
+            });
+            along.filter(|along| *along > 0.0).count()
+        };
+        let all = [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY];
+        let others = all
+            .into_iter()
+            .filter(|other| ![self, opposite].contains(other));
+        others.fold(opposite, |best, other| {
+            if in_front(other) > in_front(best) {
+                other
+            } else {
+                best
+            }
+        })
     }
 
     /// A point along the court and across: turned about the vertical, so that left and right stay.
@@ -93,14 +106,15 @@ impl CourtFrame {
         }
     }
 
-    /// What is wrong if shots begin at a point behind the board, in coordinates from the hoop.
+    /// What is wrong if most shots begin behind the board. `places` are where they begin, in
+    /// coordinates from the hoop.
     #[must_use]
-    pub fn advice_behind_board(&self, begins: (f64, f64)) -> String {
+    pub fn advice_behind_board(&self, places: &[(f64, f64)]) -> String {
         match self {
             Self::HoopAt(_, onto_court) => format!(
                 "the shots begin behind the board if {} leads from the hoop onto the court; --hoop with {} has them in front of it",
                 onto_court.name(),
-                onto_court.towards(begins).name()
+                onto_court.with_most_in_front(places).name()
             ),
             _ => "the shots begin behind the board: for another origin or direction give --frame or --hoop, such as '7.2 m,12.45 m,-y'".to_owned(),
         }
@@ -147,12 +161,25 @@ mod tests {
             let frame = CourtFrame::HoopAt([2.0, 4.0], onto_court);
             assert_eq!(frame.from_hoop(&[ball]), [(1.0, 0.5)], "{onto_court:?}");
             assert_eq!(OntoCourt::named(onto_court.name()), Some(onto_court));
-            // Seen from the other hoop's side, or from the side, the same ball is elsewhere.
-            for other in ["+x", "-x", "+y", "-y"] {
-                let wrong = OntoCourt::named(other).unwrap();
-                let seen = CourtFrame::HoopAt([2.0, 4.0], wrong).from_hoop(&[ball]);
-                assert_eq!(wrong.towards(seen[0]), onto_court, "{wrong:?}");
-            }
+        }
+    }
+
+    /// Balls in front of a hoop, some of them far to its side, under the opposite direction.
+    #[test]
+    fn contract_the_direction_with_most_shots_in_front_is_named() {
+        let balls = [(1.5, 5.0), (9.0, 4.5), (-4.0, 6.0)];
+        for (wrong, right) in [("-y", "+y"), ("-x", "+x")] {
+            let wrong = OntoCourt::named(wrong).unwrap();
+            let balls = balls.map(|(x, y)| {
+                if right == "+x" {
+                    (y - 2.0, x + 2.0)
+                } else {
+                    (x, y)
+                }
+            });
+            let places = CourtFrame::HoopAt([2.0, 4.0], wrong).from_hoop(&balls);
+            assert!(places.iter().all(|(x, _)| *x < 0.0), "{places:?}");
+            assert_eq!(wrong.with_most_in_front(&places).name(), right);
         }
     }
 }

@@ -28,11 +28,11 @@ fn day_of(cell: &str) -> Option<&str> {
     let (day, time) = cell.trim().split_once([' ', 'T'])?;
     let (hours, minutes) = time.trim().split_once(':')?;
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let is_date = day
-        .split(['-', '/', '.'])
-        .filter(|part| is_number(part))
-        .count()
-        == 3;
+    let parts: Vec<&str> = day.split(['-', '/', '.']).collect();
+    let numbers = parts.iter().filter(|part| is_number(part)).count();
+    // A month may have a name.
+    let is_word = |part: &&str| part.chars().all(char::is_alphanumeric);
+    let is_date = parts.len() == 3 && numbers >= 2 && parts.iter().all(is_word);
     let is_time = is_number(hours) && minutes.starts_with(|c: char| c.is_ascii_digit());
     (is_date && is_time).then_some(day)
 }
@@ -159,6 +159,8 @@ mod tests {
             ("2026-11-26", None),
             ("after Tuesday 12:00", None),
             ("3 4", None),
+            ("26-Nov-2026 17:05", Some("26-Nov-2026")),
+            ("2026-11-26-x 17:05", None),
         ] {
             assert_eq!(day_of(cell), day, "{cell}");
         }

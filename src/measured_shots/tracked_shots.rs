@@ -53,18 +53,6 @@ pub(super) fn tracked_shots(
             (first, session, name, track(reader, rows, z0))
         })
         .collect();
-    let begins = tracks.iter().filter_map(|(_, _, _, track)| {
-        let (points, _) = track.as_ref().ok()?;
-        let [x, y, _] = points.first()?.position_m;
-        Some((x, y))
-    });
-    let mut begins: Vec<(f64, f64)> = begins.collect();
-    begins.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if let Some(&middle) = begins.get(begins.len() / 2)
-        && middle.0 < -BEHIND_BOARD_M
-    {
-        return Err(reader.options.frame.advice_behind_board(middle));
-    }
     let noise = &reader.options.noise;
     let backspin = reader.options.backspin_rad_s.unwrap_or(0.0);
     let shooter = rows
@@ -106,6 +94,11 @@ pub(super) fn tracked_shots(
             Ok(shot) => raw.push(shot),
             Err(reason) => rejected.push(reason),
         }
+    }
+    let places: Vec<(f64, f64)> = raw.iter().map(|shot| shot.place.location.to_xy()).collect();
+    let behind = places.iter().filter(|(x, _)| *x < -BEHIND_BOARD_M).count();
+    if 2 * behind > places.len() {
+        return Err(reader.options.frame.advice_behind_board(&places));
     }
     Ok(raw)
 }

@@ -194,7 +194,7 @@ fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
         open => format!("{open} places"),
     };
     format!(
-        " At {places}, marked ?, your measured shots do not tell yet which is better: shoot direct there."
+        " At {places}, marked ?, your measured shots do not tell yet which is better; the number is that of the direct shot."
     )
 }
 

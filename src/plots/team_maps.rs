@@ -119,7 +119,7 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
         &of_team,
         &legend,
     );
-    let caption = "Outlined: the bank shot is better by 1 in 100 or more, of a fit in at least 90 of 100 draws. Level: the best two or more differ by less than 1 in 100, or by less than the numerical error.";
+    let caption = "Outlined: the bank shot is better by 1 in 100 or more (for a fitted player, in at least 90 of 100 draws too). Level: the best two or more differ by less than 1 in 100, or by less than the numerical error.";
     svg.footnote((20.0, note_top), caption);
     svg.footnote((20.0, note_top + 16.0), &first.team_note(players.len()));
     Some(Plot {

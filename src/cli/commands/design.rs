@@ -146,8 +146,12 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         Some(tracker) => tracker,
         None => tracker_named(&own_tracker, sees).map_err(|failure| Failure {
             message: format!(
-                "the tracker of the fit: {}; run it in the folder of that file, or give --tracker FILE",
-                failure.message
+                "the tracker of the fit: {}{}",
+                failure.message,
+                match Path::new(&own_tracker).exists() {
+                    true => "",
+                    false => "; run it in the folder of that file, or give --tracker FILE",
+                }
             ),
             ..failure
         })?,
@@ -209,7 +213,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     }
     let (long, metre) = units.length();
     let mut text = format!(
-        "{}: tests of the {} shot at {:.2} {long}/s and {:.1} deg from {}, which makes {:.1} of 100; with {} ({}), {} simulated tests of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>14}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>14}\n",
+        "{}: tests of the {} shot at {:.2} {long}/s and {:.1} deg, {}, which makes {:.1} of 100; with {} ({}), {} simulated tests of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>14}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>14}\n",
         profile.shooter().name,
         ShotKind::of(&profile, &nominal).name(),
         nominal.speed_m_s / metre,
@@ -411,7 +415,7 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
             .map(|points| {
                 let root = POWER * first.p.of_one_shot / (points / 100.0);
                 format!(
-                    " For {points} points the first session would need more than {} shots.",
+                    " For {points} points the first session would need about {} shots or more.",
                     two_digits(root * root)
                 )
             })

@@ -261,11 +261,11 @@ impl FittedRows {
         let lost: Vec<String> = (1..comparison.rows.len())
             .filter(|&i| !comparison.rows[i].is_unmeasured)
             .filter(|&i| self.gain(i).is_some_and(|gain| gain.low <= 0.0))
-            .map(|i| comparison.rows[i].name.clone())
+            .map(|i| change(&comparison.rows[i]))
             .collect();
         if !lost.is_empty() {
             text += &format!(
-                "(Under {} its gain is not sure; those are other balls, hoops or air, not what this gym may have.)\n",
+                "(With other balls, hoops or air its gain is not sure: {}. They matter only where one of them is yours.)\n",
                 lost.join(", ")
             );
         }

@@ -57,7 +57,8 @@ pub(crate) struct PitchCurveOptions {
     /// angle suits them all.
     #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
     pub(crate) distances: Option<String>,
-    /// The kind of the shots; best: at each angle the one with the higher P (twice the time).
+    /// The kind of the shots; best: at each angle the one with the higher P, but a clean shot before one that misses
+    /// without errors (twice the time).
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     /// Fix the backspin.
@@ -107,27 +108,27 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     }
     // A folder that is no fit is refused before the search.
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
+    let is_told = !options.json && !options.place.is_given();
+    let fit = match is_told && options.profile.join("fit.json").is_file() {
+        true => Some(fit_folder::read(&options.profile)?),
+        false => None,
+    };
     let kind = options.kind.into();
     let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet))?;
     let over_draws = match &draws {
         Some((_, fit)) => fit_folder::angles_over_draws(fit, &profile, &rows)?,
         None => Vec::new(),
     };
-    // The angles have their best speed and aim, which the shooter need not have.
-    let of_fit = match options.profile.is_dir() && !options.place.is_given() {
-        true => {
-            let p = fit_folder::read(&options.profile)?
-                .usual_probabilities(0)
-                .interval();
-            wrapped(&format!(
-                "As it was measured, the usual shot makes {:.1} of 100 (95 %: {:.1} to {:.1}): its speed and aim are not the best ones.",
-                100.0 * p.mean,
-                100.0 * p.low,
-                100.0 * p.high
-            ))
-        }
-        false => String::new(),
-    };
+    // The angles have their best speed and aim, which those of the shooter need not be.
+    let of_fit = fit.map_or_else(String::new, |fit| {
+        let p = fit.usual_probabilities(0).interval();
+        wrapped(&format!(
+            "As it was measured, the usual shot makes {:.1} of 100 (95 %: {:.1} to {:.1}); its speed and aim need not be the best ones.",
+            100.0 * p.mean,
+            100.0 * p.low,
+            100.0 * p.high
+        ))
+    });
     let text = || {
         let text = by_pitch_text(&rows, kind, &profile, units) + &of_fit;
         let words = draws

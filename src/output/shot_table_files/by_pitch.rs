@@ -7,7 +7,7 @@ use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::{number, object, provenance};
-use crate::shooter::{NominalVariable, Profile};
+use crate::shooter::{NominalVariable, Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde_json::Value;
 
@@ -76,7 +76,16 @@ pub fn by_pitch_text(
     };
     let mut text = wrapped(&format!("{of}{}.", profile.location().in_words(units)));
     let Some((best_row, best)) = best_row(rows) else {
-        return text + &wrapped("No shot at these pitch angles goes in.");
+        let most = rows.iter().map(ShotAtPitch::probability);
+        let most = most.fold(0.0, f64::max);
+        let words = if most > 0.0 {
+            format!(
+                "No clean shot at these pitch angles: the most probable ones, P up to {most:.3}, miss without errors."
+            )
+        } else {
+            "No shot at these pitch angles goes in.".to_owned()
+        };
+        return text + &wrapped(&words);
     };
     text += &wrapped(&in_words(rows, (best_row, best), kind, units));
     text += &wrapped(&physics_note(profile, units));
@@ -105,7 +114,7 @@ pub fn by_pitch_text(
         let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
         let Some(shot) = &row.shot else {
             text += &match row.not_clean {
-                Some(p) => format!(
+                Some((_, p)) => format!(
                     "{pitch:>5} no clean shot: the most probable one, P {p:.3}, misses without errors\n"
                 ),
                 None => format!("{pitch:>5} no shot within the limits{limit} goes in\n"),
@@ -229,18 +238,16 @@ pub fn by_pitch_csv(
             .map(
                 |(name, _, value, size)| match row.shot.as_ref().map(value) {
                     Some(value) if value.is_finite() => (value / size).to_string(),
-                    None if name == "probability" => {
-                        row.not_clean.map_or_else(String::new, |p| p.to_string())
-                    }
+                    None if name == "probability" => row
+                        .not_clean
+                        .map_or_else(String::new, |(_, p)| p.to_string()),
                     _ => String::new(),
                 },
             )
             .collect();
         text += &format!(
             "{},{},{},{}",
-            row.shot
-                .as_ref()
-                .map_or(kind.name(), |shot| shot.kind.name()),
+            kind_of(row).map_or(kind.name(), ShotKind::name),
             pitch_deg(row),
             outcome(row).unwrap_or_default(),
             cells.join(",")
@@ -273,15 +280,13 @@ pub fn by_pitch_json(
     let shots = rows.iter().enumerate().map(|(i, row)| {
         let mut record = vec![
             named("has_shot", row.shot.is_some().into()),
-            named(
-                "kind",
-                row.shot.as_ref().map(|shot| shot.kind.name()).into(),
-            ),
+            named("kind", kind_of(row).map(ShotKind::name).into()),
             named("outcome", outcome(row).into()),
         ];
         record.extend(columns.iter().map(|(name, _, value, size)| {
             let value = row.shot.as_ref().map(value).map(|value| value / size);
-            let value = value.or(row.not_clean.filter(|_| name == "probability"));
+            let not_clean = row.not_clean.map(|(_, p)| p);
+            let value = value.or(not_clean.filter(|_| name == "probability"));
             let value = value.map_or(Value::Null, number);
             (name.clone(), value)
         }));
@@ -305,6 +310,12 @@ pub fn by_pitch_json(
         named("shots", shots.collect()),
     ]);
     object(record)
+}
+
+/// The kind of the shot, or of the most probable one that misses without errors.
+fn kind_of(row: &ShotAtPitch) -> Option<ShotKind> {
+    let clean = row.shot.as_ref().map(|shot| shot.kind);
+    clean.or(row.not_clean.map(|(kind, _)| kind))
 }
 
 /// The outcome of the shot without errors; `not-clean` where the most probable one misses.

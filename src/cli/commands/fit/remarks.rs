@@ -94,10 +94,14 @@ pub(super) fn print_unused(file: &MeasuredFile) {
             file.unused.join(", ")
         ));
         let mut sessions = file.shooters.iter().flat_map(|shots| &shots.sessions);
-        let of_sessions = file.unused.iter().find(|name| names_sessions(name));
+        // In a file of tracked points a time is that of a point.
+        let first = file.shooters.first();
+        let is_tracked = first.is_some_and(|shots| file.source(shots).kind == "trajectories");
+        let mut unused = file.unused.iter().filter(|_| !is_tracked);
+        let of_sessions = unused.find(|name| names_sessions(name));
         if let Some(name) = of_sessions.filter(|_| sessions.all(String::is_empty)) {
             print_remark(&format!(
-                "if {name} tells the sessions apart: --map 'session={name}', which checks whether they differ"
+                "if {name} tells the sessions apart: --map 'session={name}'; the fit then tests whether they differ"
             ));
         }
         let mut shots = file.shooters.iter().flat_map(|shots| &shots.shots);

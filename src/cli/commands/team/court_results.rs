@@ -252,7 +252,7 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     };
     if !perhaps.is_empty() {
         text +=
-            &format!("  not sure yet, so shoot direct until more shots are measured:\n{perhaps}");
+            &format!("  not sure yet which is better; more measured shots would tell:\n{perhaps}");
     }
     text
 }
