@@ -233,7 +233,9 @@ struct Comparison<'a> {
 impl<'a> Comparison<'a> {
     fn new(profile: &'a Profile, nominal: &'a Nominal, topics: SensitivityTopics) -> Self {
         let mut variants = Vec::new();
-        let mut add = |of, profile: Option<Profile>, nominal| {
+        let fastest = fastest_m_s(profile);
+        let mut add = |of, profile: Option<Profile>, mut nominal: Nominal| {
+            nominal.speed_m_s = nominal.speed_m_s.min(fastest);
             variants.extend(profile.map(|profile| Variant {
                 of,
                 profile,
@@ -358,9 +360,11 @@ impl<'a> Comparison<'a> {
             profile, nominal, ..
         } = variant;
         let sigma = profile.shooter().dispersion.speed_m_s(nominal.speed_m_s);
+        let fastest = fastest_m_s(profile);
         SPEEDS
             .iter()
-            .map(|by| nominal.with(NominalVariable::Speed, nominal.speed_m_s + by * sigma))
+            .map(|by| (nominal.speed_m_s + by * sigma).min(fastest))
+            .map(|speed_m_s| nominal.with(NominalVariable::Speed, speed_m_s))
             .filter(|shot| ShotKind::of(profile, shot) == self.kind)
             .map(|shot| {
                 let shares = if shot == *nominal {
@@ -372,6 +376,11 @@ impl<'a> Comparison<'a> {
             })
             .reduce(|best, next| if next.value > best.value { next } else { best })
     }
+}
+
+/// The greatest speed that the shooter can intend, m/s.
+fn fastest_m_s(profile: &Profile) -> f64 {
+    profile.search().speed_max_m_s.unwrap_or(f64::INFINITY)
 }
 
 /// A profile with the standard deviation of one error multiplied by `factor`, 0 to 1.

@@ -561,6 +561,20 @@ fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
         .says("there is no folder absent");
 }
 
+/// At the greatest speed a lower release cannot be made good by a faster shot.
+#[test]
+fn contract_another_height_keeps_to_the_greatest_speed() {
+    let folder = TempDir::new().unwrap();
+    let slow = format!("{ROBOT}speed_max = \"8.2 m/s\"\n");
+    let profile = write_file(&folder, "robot.toml", slow);
+    let mut command = bankshot();
+    command.current_dir(folder.path()).arg("best").arg(profile);
+    command.args(["--pitch", "64 deg", "--details", "--quiet"]);
+    let answer = Answer::of(&mut command).exits(0);
+    let lower = answer.stdout().split("-0.50 ft").nth(1).unwrap();
+    assert!(lower.trim_start().starts_with('-'), "{lower}");
+}
+
 /// What the launcher cannot do is not proposed.
 #[test]
 fn contract_the_pitch_limits_of_a_profile_hold() {
