@@ -177,11 +177,21 @@ pub fn advise(
         _ => None,
     };
     let told = usual_probabilities(profile, posterior, place, USUAL_SHOTS);
+    let usual_probability = told.interval();
+    // P of the usual shot rests on more shots: that of the advised one is it and the gain.
+    let gained = steps.as_ref().map_or(0.0, |steps| steps.gain.mean);
+    let shift = usual_probability.mean + gained - advised_probability.mean;
+    let advised_probability = Interval {
+        mean: advised_probability.mean + shift,
+        low: advised_probability.low + shift,
+        high: advised_probability.high + shift,
+        ..advised_probability
+    };
     Ok(Advice {
         kind,
         usual,
         spin: posterior.spin,
-        usual_probability: told.interval(),
+        usual_probability,
         numerical_standard_error: told.numerical_standard_error(),
         best_probability: by_kind[kind as usize]
             .as_ref()
