@@ -29,8 +29,8 @@ impl ShotAtPitch {
 }
 
 /// The best shots at pitch angles (rad), in their order, of one kind, or at each angle of the kind
-/// with the higher P (a clean shot goes before one that misses without errors): speed and polar angle, and backspin if the profile's search has it, follow
-/// the pitch angle.
+/// with the higher P (a clean shot goes before one that misses without errors): speed and polar
+/// angle, and backspin if the profile's search has it, follow the pitch angle.
 ///
 /// # Errors
 /// A pitch angle is not possible, or the search is too large.

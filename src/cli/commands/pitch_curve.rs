@@ -57,8 +57,8 @@ pub(crate) struct PitchCurveOptions {
     /// angle suits them all.
     #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
     pub(crate) distances: Option<String>,
-    /// The kind of the shots; best: at each angle the one with the higher P, but a clean shot before one that misses
-    /// without errors (twice the time).
+    /// The kind of the shots; best: at each angle the one with the higher P, but a clean shot
+    /// before one that misses without errors (twice the time).
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     /// Fix the backspin.

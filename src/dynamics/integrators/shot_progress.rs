@@ -73,8 +73,8 @@ impl ShotProgress {
     }
 
     /// Makes it another shot, at its release. (Field by field: a shot that is made on the stack and
-    /// then copied waits for its own stores, 1 to 2 % of the time of a batch. The motion in a frame is
-    /// set when a contact begins.)
+    /// then copied waits for its own stores, 1 to 2 % of the time of a batch. The motion in a frame
+    /// is set when a contact begins.)
     #[inline(always)]
     pub(crate) fn restart(&mut self, params: &ModelParams, start: &BallState) {
         let fresh = FrictionState::new(params);
