@@ -1,6 +1,7 @@
-//! The pattern search that climbs from a start to a local optimum.
+//! The pattern search that climbs from starts to local optima.
 
 use crate::analysis::aim_past_hoop::centre_speed_m_s;
+use crate::probability::Progress;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
@@ -10,21 +11,12 @@ const MAX_TRIALS: u32 = 200;
 /// Two shots whose variables differ by less are the same but for rounding, SI units.
 const SAME_SHOT: f64 = 1e-9;
 
-/// The steps of a climb, as multiples of the first step of each variable; each is half the one
-/// before.
-#[derive(Clone, Copy)]
-pub(super) struct Steps(&'static [f64]);
-
-impl Steps {
-    /// From a start on a coarse grid.
-    pub(super) const ALL: Self = Self(&[1.0, 0.5, 0.25]);
-    /// From an optimum that was found with fewer points.
-    pub(super) const SMALL: Self = Self(&[0.5, 0.25]);
-}
+/// The steps of a climb, as multiples of the first step of each variable.
+const SCALES: &[f64] = &[1.0, 0.5];
 
 /// First step along a variable, SI units. That of the speed is relative to the parabola through the
 /// hoop's centre.
-fn first_step(variable: NominalVariable) -> f64 {
+pub(super) fn first_step(variable: NominalVariable) -> f64 {
     match variable {
         NominalVariable::Speed => 0.06,
         NominalVariable::Pitch => 0.03,
@@ -33,100 +25,198 @@ fn first_step(variable: NominalVariable) -> f64 {
     }
 }
 
-/// The limits of a climb.
-pub(super) struct Climb<'a> {
-    pub(super) profile: &'a Profile,
-    pub(super) bracket: &'a Bracket,
+/// Where a climb starts, and the kind of the shots that it tries.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub(super) kind: ShotKind,
+    pub(super) nominal: Nominal,
 }
 
-impl Climb<'_> {
-    /// Climbs from a start on `value`, the number of made shots; returns the local optimum of the
-    /// same kind.
-    pub(super) fn run(
+/// The search for local optima.
+pub(super) struct PatternSearch<'a> {
+    profile: &'a Profile,
+    bracket: &'a Bracket,
+    /// The variables that are searched.
+    variables: Vec<NominalVariable>,
+}
+
+/// A climb in progress. It asks for the value of one shot after another.
+struct Climb {
+    kind: ShotKind,
+    /// The best shot so far, with its value.
+    best: (u64, Nominal),
+    /// Where the last move came from.
+    previous: Option<Nominal>,
+    /// The steps that are left; the first of them is tried now.
+    scales: &'static [f64],
+    /// The next move: each variable is moved up (even numbers), then down.
+    next_move: usize,
+    /// The variables that were tried since the last move was taken.
+    unmoved: usize,
+    trials: u32,
+}
+
+impl Climb {
+    fn new(start: Start, value: u64) -> Self {
+        Self {
+            kind: start.kind,
+            best: (value, start.nominal),
+            previous: None,
+            scales: SCALES,
+            next_move: 0,
+            unmoved: 0,
+            trials: 0,
+        }
+    }
+
+    /// The next shot to try; `None` at the end.
+    fn next_trial(&mut self, search: &PatternSearch<'_>) -> Option<Nominal> {
+        let variables = &search.variables;
+        loop {
+            let scale = *self.scales.first()?;
+            let moves_up = self.next_move.is_multiple_of(2);
+            if moves_up && (self.unmoved == variables.len() || self.trials >= MAX_TRIALS) {
+                self.scales = &self.scales[1..];
+                self.previous = None;
+                self.next_move = 0;
+                self.unmoved = 0;
+                continue;
+            }
+            if moves_up {
+                self.unmoved += 1;
+            }
+            let variable = variables[self.next_move / 2];
+            let step = scale * first_step(variable);
+            let by = if moves_up { step } else { -step };
+            let next = search.moved(&self.best.1, variable, by);
+            let is_same = |known: &Nominal| search.is_same(&next, known);
+            let is_known = is_same(&self.best.1) || self.previous.as_ref().is_some_and(is_same);
+            if is_known || ShotKind::of(search.profile, &next) != self.kind {
+                self.next_move = (self.next_move + 1) % (2 * variables.len());
+                continue;
+            }
+            self.trials += 1;
+            return Some(next);
+        }
+    }
+
+    /// Takes the value of the trial that was asked for.
+    fn take(&mut self, trial: Nominal, value: u64, search: &PatternSearch<'_>) {
+        let moves = 2 * search.variables.len();
+        self.next_move = if value > self.best.0 {
+            self.previous = Some(self.best.1);
+            self.best = (value, trial);
+            self.unmoved = 0;
+            // The other direction of this variable was where it came from.
+            2 * (self.next_move / 2 + 1) % moves
+        } else {
+            (self.next_move + 1) % moves
+        };
+    }
+}
+
+impl<'a> PatternSearch<'a> {
+    pub(super) fn new(profile: &'a Profile, bracket: &'a Bracket) -> Self {
+        Self {
+            profile,
+            bracket,
+            variables: profile.search().choice.iter().collect(),
+        }
+    }
+
+    /// Climbs from each start on `values`, the numbers of made shots of some shots; returns the
+    /// local optima. The climbs go side by side, so that each call of `values` has a trial of every
+    /// climb: one alone has too few shots for all threads and lanes.
+    pub(super) fn climb(
         &self,
-        kind: ShotKind,
-        start: Nominal,
-        steps: Steps,
-        value: impl Fn(&Nominal) -> u64,
-    ) -> Nominal {
-        let choice = self.profile.search().choice;
-        let variables: Vec<NominalVariable> = choice.iter().collect();
-        let mut best = (value(&start), start);
-        let mut trials = 0;
-        for scale in steps.0 {
-            // Where the last move came from, and the variables that were tried since without one.
-            let mut previous = None;
-            let mut unmoved = 0;
-            for &variable in variables.iter().cycle() {
-                if unmoved == variables.len() || trials >= MAX_TRIALS {
-                    break;
-                }
-                unmoved += 1;
-                let step = scale * first_step(variable);
-                for by in [step, -step] {
-                    let next = self.moved(&best.1, variable, by);
-                    let is_same = |known: &Nominal| {
-                        variables
-                            .iter()
-                            .all(|&v| (next.get(v) - known.get(v)).abs() < SAME_SHOT)
-                    };
-                    let is_known = is_same(&best.1) || previous.as_ref().is_some_and(is_same);
-                    if is_known || ShotKind::of(self.profile, &next) != kind {
-                        continue;
-                    }
-                    trials += 1;
-                    let made = value(&next);
-                    if made > best.0 {
-                        previous = Some(best.1);
-                        best = (made, next);
-                        unmoved = 0;
-                        break;
-                    }
-                }
+        starts: &[Start],
+        values: impl Fn(&[Nominal]) -> Vec<u64>,
+        progress: &dyn Progress,
+    ) -> Vec<Nominal> {
+        let nominals: Vec<Nominal> = starts.iter().map(|start| start.nominal).collect();
+        let mut climbs: Vec<Climb> = starts
+            .iter()
+            .zip(values(&nominals))
+            .map(|(&start, value)| Climb::new(start, value))
+            .collect();
+        let mut in_progress = climbs.len();
+        loop {
+            let (asking, trials): (Vec<usize>, Vec<Nominal>) = climbs
+                .iter_mut()
+                .enumerate()
+                .filter_map(|(i, climb)| Some((i, climb.next_trial(self)?)))
+                .unzip();
+            progress.advance((in_progress - trials.len()) as u64);
+            in_progress = trials.len();
+            if trials.is_empty() {
+                return climbs.into_iter().map(|climb| climb.best.1).collect();
+            }
+            for ((i, &trial), value) in asking.into_iter().zip(&trials).zip(values(&trials)) {
+                climbs[i].take(trial, value, self);
             }
         }
-        best.1
+    }
+
+    /// Whether two shots are the same but for rounding.
+    fn is_same(&self, a: &Nominal, b: &Nominal) -> bool {
+        let differs = |&v: &NominalVariable| (a.get(v) - b.get(v)).abs() >= SAME_SHOT;
+        !self.variables.iter().any(differs)
     }
 
     /// The top of the parabola through a shot and two others, `reach` to each side, along one
-    /// variable after the other. `value` is the number of made shots. A variable stays where a
-    /// limit or the other kind is within reach, or the parabola has no top.
+    /// variable after the other: near an optimum it is closer than a climb comes, which compares
+    /// values that err. `values` are the numbers of made shots of some shots. Beside a limit the
+    /// three shots end there. Where the parabola has no top, its higher end is taken. A variable
+    /// stays where the other kind is within reach.
     pub(super) fn top_of_parabolas(
         &self,
-        kind: ShotKind,
-        optimum: Nominal,
+        start: &Start,
         reach: impl Fn(NominalVariable) -> f64,
-        value: impl Fn(&Nominal) -> u64,
-    ) -> Nominal {
-        let mut best = optimum;
-        for variable in self.profile.search().choice.iter() {
-            let step = reach(variable);
-            let sides = [-step, step].map(|by| self.moved(&best, variable, by));
-            let is_free = |side: &Nominal| {
-                let moved = (side.get(variable) - best.get(variable)).abs();
-                moved > 0.999 * step && ShotKind::of(self.profile, side) == kind
-            };
-            if step == 0.0 || !sides.iter().all(is_free) {
+        values: impl Fn(&[Nominal]) -> Vec<u64>,
+    ) -> Start {
+        let mut best = start.nominal;
+        for &variable in &self.variables {
+            let limits = self.limits(variable);
+            let step = reach(variable).min(0.5 * (limits.1 - limits.0));
+            if !(step > 0.0) {
                 continue;
             }
-            let [low, middle, high] = [&sides[0], &best, &sides[1]].map(|shot| value(shot) as f64);
-            let curvature = low - 2.0 * middle + high;
-            if curvature < 0.0 {
-                let part = (0.5 * (low - high) / curvature).clamp(-1.0, 1.0);
-                best = self.moved(&best, variable, part * step);
+            let value = best.get(variable);
+            let centre = value.max(limits.0 + step).min(limits.1 - step);
+            let at = |value: f64| self.moved(&best, variable, value - best.get(variable));
+            let shots = [centre - step, centre, centre + step].map(at);
+            if !shots
+                .iter()
+                .all(|shot| ShotKind::of(self.profile, shot) == start.kind)
+            {
+                continue;
             }
+            let made = values(&shots);
+            let [low, middle, high] = [0, 1, 2].map(|i| made[i] as f64);
+            let curvature = low - 2.0 * middle + high;
+            let part = match high - low {
+                rise if curvature < 0.0 => (-0.5 * rise / curvature).clamp(-1.0, 1.0),
+                0.0 => continue,
+                rise => rise.signum(),
+            };
+            best = at(centre + part * step);
         }
-        best
+        Start {
+            nominal: best,
+            ..*start
+        }
     }
 
     /// The nominal shot moved along one variable and kept within the limits. A move in pitch
-    /// changes the speed too, so that the path still passes the hoop at the same point.
+    /// changes the speed too, so that the path still passes the hoop at the same point; but from
+    /// the greatest speed it keeps that, or no move would lead along the limit.
     fn moved(&self, from: &Nominal, variable: NominalVariable, by: f64) -> Nominal {
         let search = self.profile.search();
         let searches_speed = search.choice.includes(NominalVariable::Speed);
         let (low, high) = self.limits(variable);
         let mut to = from.with(variable, (from.get(variable) + by).clamp(low, high));
-        if variable == NominalVariable::Pitch && searches_speed {
+        let is_fastest = from.speed_m_s >= self.limits(NominalVariable::Speed).1;
+        if variable == NominalVariable::Pitch && searches_speed && !is_fastest {
             let before = centre_speed_m_s(self.profile, from.pitch_rad);
             let after = centre_speed_m_s(self.profile, to.pitch_rad);
             if let Some((before, after)) = before.zip(after) {
@@ -134,7 +224,8 @@ impl Climb<'_> {
             }
         }
         if searches_speed {
-            to.speed_m_s = to.speed_m_s.clamp(0.1, self.bracket.speed_max_m_s);
+            let (low, high) = self.limits(NominalVariable::Speed);
+            to.speed_m_s = to.speed_m_s.clamp(low, high);
         }
         to
     }
@@ -144,8 +235,7 @@ impl Climb<'_> {
         let search = self.profile.search();
         let shooter = self.profile.shooter();
         match variable {
-            // Applied after a change of the pitch angle.
-            NominalVariable::Speed => (f64::NEG_INFINITY, f64::INFINITY),
+            NominalVariable::Speed => (0.1, self.bracket.speed_max_m_s),
             NominalVariable::Pitch => (search.pitch_min_rad, search.pitch_max_rad),
             NominalVariable::Polar => self.bracket.polar_rad,
             NominalVariable::Backspin => (0.0, shooter.max_backspin_rad_s),

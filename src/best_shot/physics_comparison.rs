@@ -145,8 +145,9 @@ impl PhysicsComparison {
 /// How far single changes may lower and raise P together: the root of the sum of squares, of each
 /// quantity the change that does most on that side. The changes are ends of what the quantities may
 /// be.
-fn together(changes: &[(&str, f64)]) -> [f64; 2] {
-    // `with hoop_restitution 0.45`: the second word is the quantity.
+#[must_use]
+pub fn together(changes: &[(&str, f64)]) -> [f64; 2] {
+    // `with hoop_restitution 0.41`: the second word is the quantity.
     let quantity = |name: &str| name.split(' ').nth(1).unwrap_or(name).to_owned();
     [-1.0, 1.0].map(|side| {
         let mut most: BTreeMap<String, f64> = BTreeMap::new();
@@ -227,7 +228,7 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
     // The range of a basketball; of another ball a tenth to each side of its own value.
     let drag = base.air.drag_coefficient;
     let drags = match drag {
-        drag if (0.41..=0.50).contains(&drag) => [0.41, 0.50],
+        drag if (0.41..=0.54).contains(&drag) => [0.41, 0.54],
         drag => [0.9 * drag, 1.1 * drag],
     };
     // A drop test is on a hard floor; a board on a mount may give way, and boards differ.
@@ -286,9 +287,9 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
             Box::new(|physics| physics.bracket_width_m = 0.0),
         ),
         (
-            "hoop_restitution 0.45",
+            "hoop_restitution 0.41",
             true,
-            restitution(SolidId::Ring, 0.45),
+            restitution(SolidId::Ring, 0.41),
         ),
         (
             "hoop_restitution 0.70",

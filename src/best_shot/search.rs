@@ -1,44 +1,49 @@
 //! The search for the best shots, refined off the grid.
 //!
-//! For each kind, a coarse table of everything the shooter can intend gives a few starts, far
-//! apart. From each start a pattern search climbs on P itself, integrated with the same Sobol
-//! points everywhere (common random numbers). The table does not resolve the P of a very accurate
-//! shooter, so the other starts are tried with few points. About the highest optimum a finer table,
-//! a window, gives P of all nominal shots to about 0.001. While its best shot lies at the window's
+//! For each kind, a coarse table of everything the shooter can intend gives some starts, far apart.
+//! From each of them a pattern search climbs on P itself, integrated with few Sobol points that are
+//! the same everywhere (common random numbers). (The table alone does not tell which start is best:
+//! it does not resolve the P of a very accurate shooter.) From the best optima, parabolas along
+//! each variable, through P of more points, lead to the top. About the highest top a finer table, a
+//! window, gives P of all nominal shots to about 0.001. While its best shot lies at the window's
 //! edge, the window moves on. A parabola along each axis finds the optimum between the points of
 //! the table. A table has four independent errors and one side spin: where errors are correlated,
-//! or the side spin is searched too, a climb with more points and parabolas through its optimum
-//! take the place of the windows. P of the winner is computed again with independent scrambles, so
-//! it is not the largest of many noisy values.
+//! or the side spin is searched too, parabolas through P of still more points take the place of the
+//! windows. P of the winner is computed again with independent scrambles, so it is not the largest
+//! of many noisy values.
 
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
-use super::pattern_search::{Climb, Steps};
+use super::pattern_search::{PatternSearch, Start, first_step};
 use super::table_maxima::{Candidate, maxima_by_pitch, maxima_by_speed, separated};
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, SensitivityTopics};
 use crate::math::sobol::{Scramble, ScrambleKey};
-use crate::probability::{Estimate, NominalProbabilities, NominalTable, Progress, Sampler, Silent};
+use crate::probability::{
+    Counts, Estimate, NominalProbabilities, NominalTable, Progress, Sampler, Silent,
+};
 use crate::search_space::{PlanError, TablePlan};
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 use rayon::prelude::*;
 
-/// Starts of the climb for each kind, and for each side spin that is tried.
-const STARTS: usize = 3;
-/// Sobol points of a trial of another start.
-const TRIAL_SAMPLES: u32 = 256;
-/// A trial that reaches P of the optimum but for this is worth a climb: about twice the error of
-/// its few points.
-const TRIAL_MARGIN: f64 = 0.02;
-/// The optimum of another start must be better by so many standard errors of independent points: by
-/// less, two are level, and the first one stays.
-const LEAST_GAIN: f64 = 2.0;
-/// A trial that ends nearer than this to the optimum, in pitch, has found the same one.
+/// A climb has this part of the Sobol points of the parabolas through its optimum, and at least so
+/// many.
+const CLIMB_PART: u32 = 4;
+/// See [`CLIMB_PART`].
+const CLIMB_LEAST: u32 = 256;
+/// Most optima of each kind that parabolas are taken about.
+const MOST_OPTIMA: usize = 3;
+/// Parabolas are taken about an optimum that reaches P of the best one but for this: so much may
+/// the few points of a climb hide.
+const PROMISING_MARGIN: f64 = 0.03;
+/// Two optima nearer than this, in pitch, are taken for the same one.
 const SAME_OPTIMUM_RAD: f64 = 0.05;
 /// The same for a fixed pitch angle: in direction, and relative in speed.
 const SAME_DIRECTION_RAD: f64 = 0.02;
 const SAME_SPEED: f64 = 0.02;
-/// The optima of the climbs are compared with this many times the Sobol points of the climbs.
+/// The same for a side spin, rad/s.
+const SAME_SIDE_SPIN_RAD_S: f64 = 6.0;
+/// Tops are compared with this many times the Sobol points of the parabolas.
 const COMPARISON_FACTOR: u32 = 8;
 /// Greatest number of windows in a row.
 const MAX_WINDOWS: u32 = 4;
@@ -72,17 +77,11 @@ pub fn find_kinds(
     progress: &dyn Progress,
 ) -> Result<(TablePlan, Vec<Result<BestShot, NoShot>>), BestShotError> {
     let plan = TablePlan::for_search(profile)?;
-    let search = BestShotSearch {
-        profile,
-        plan: &plan,
-        topics,
-        progress,
-    };
-    let starts = search.starts()?;
-    // Side by side: the climbs of one kind are too few for all threads.
+    let search = BestShotSearch::new(profile, &plan, topics, progress);
+    let optima = search.optima(&search.starts(kinds)?);
     let shots = kinds
         .par_iter()
-        .map(|&kind| search.best(kind, &starts[kind.index()]))
+        .map(|&kind| search.best(kind, optima[kind.index()]))
         .collect::<Result<_, _>>()?;
     Ok((plan, shots))
 }
@@ -98,17 +97,14 @@ pub(super) fn find_beside_other_kind(
     progress: &dyn Progress,
 ) -> Result<(Result<BestShot, NoShot>, Option<Estimate>), BestShotError> {
     let plan = TablePlan::for_search(profile)?;
-    let search = BestShotSearch {
-        profile,
-        plan: &plan,
-        topics: SensitivityTopics::NONE,
-        progress,
-    };
-    let starts = search.starts()?;
-    let best = search.best(kind, &starts[kind.index()])?;
-    let other = kind.other();
-    let optimum = search.optimum(other, &starts[other.index()]);
-    Ok((best, optimum.map(|(_, estimate)| estimate)))
+    let search = BestShotSearch::new(profile, &plan, SensitivityTopics::NONE, progress);
+    let optima = search.optima(&search.starts(&ShotKind::ALL)?);
+    let best = search.best(kind, optima[kind.index()])?;
+    let other = optima[kind.other().index()];
+    Ok((
+        best,
+        other.map(|nominal| search.estimate(&nominal, &Silent)),
+    ))
 }
 
 /// The optimum of a kind that climbs from some shots reach, and its P; `None` where none of the
@@ -122,18 +118,14 @@ pub(super) fn climb_from_shots(
     shots: &[Nominal],
 ) -> Result<Option<(Nominal, Estimate)>, BestShotError> {
     let plan = TablePlan::for_search(profile)?;
-    let search = BestShotSearch {
-        profile,
-        plan: &plan,
-        topics: SensitivityTopics::NONE,
-        progress: &Silent,
-    };
-    let of_kind = |shot: &&Nominal| ShotKind::of(profile, shot) == kind;
-    let starts = Starts {
-        first: shots.iter().filter(of_kind).copied().collect(),
-        others: Vec::new(),
-    };
-    Ok(search.optimum(kind, &starts))
+    let search = BestShotSearch::new(profile, &plan, SensitivityTopics::NONE, &Silent);
+    let starts: Vec<Start> = shots
+        .iter()
+        .filter(|shot| ShotKind::of(profile, shot) == kind)
+        .map(|&nominal| Start { kind, nominal })
+        .collect();
+    let optimum = search.optima(&starts)[kind.index()];
+    Ok(optimum.map(|nominal| (nominal, search.estimate(&nominal, &Silent))))
 }
 
 /// The side spins from which the search starts: the fixed one; or none and the limits. One limit is
@@ -157,26 +149,44 @@ struct Window {
     curves: Vec<ProbabilityCurve>,
 }
 
-/// Where the climbs of a kind start.
-#[derive(Default)]
-struct Starts {
-    /// The best of the coarse table, far apart.
-    first: Vec<Nominal>,
-    /// The next ones, which are tried with few points.
-    others: Vec<Nominal>,
-}
+/// The optimum of a climb, after its number of made shots.
+type Optimum = (u64, Nominal);
 
 struct BestShotSearch<'a> {
     profile: &'a Profile,
     plan: &'a TablePlan,
     topics: SensitivityTopics,
     progress: &'a dyn Progress,
+    sampler: Sampler<'a>,
+    /// Of a replicate of its own, so that final estimates are independent of the search.
+    scramble: Scramble,
 }
 
-impl BestShotSearch<'_> {
-    /// The starts of the climbs of each kind, from the coarse table.
-    fn starts(&self) -> Result<[Starts; 2], PlanError> {
-        let mut starts = [Starts::default(), Starts::default()];
+impl<'a> BestShotSearch<'a> {
+    fn new(
+        profile: &'a Profile,
+        plan: &'a TablePlan,
+        topics: SensitivityTopics,
+        progress: &'a dyn Progress,
+    ) -> Self {
+        let sampler = Sampler::new(profile);
+        let scramble = sampler.scramble(ScrambleKey {
+            seed: profile.search().seed,
+            replicate: u64::MAX,
+        });
+        Self {
+            profile,
+            plan,
+            topics,
+            progress,
+            sampler,
+            scramble,
+        }
+    }
+
+    /// The starts of the climbs of some kinds: the best shots of the coarse table, far apart.
+    fn starts(&self, kinds: &[ShotKind]) -> Result<Vec<Start>, PlanError> {
+        let mut starts = Vec::new();
         for side_spin_rad_s in start_side_spins(self.profile, self.plan) {
             let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
             let table = self.table(&plan);
@@ -185,54 +195,42 @@ impl BestShotSearch<'_> {
             } else {
                 maxima_by_pitch(self.profile, &table)
             };
-            for (starts, maxima) in starts.iter_mut().zip(maxima) {
-                let mut separated = separated(&maxima);
-                let others = separated.split_off(STARTS.min(separated.len()));
-                let nominal = |(_, nominal): Candidate| nominal;
-                starts.first.extend(separated.into_iter().map(nominal));
-                starts.others.extend(others.into_iter().map(nominal));
+            for &kind in kinds {
+                let separated = separated(&maxima[kind.index()]).into_iter();
+                starts.extend(separated.map(|(_, nominal)| Start { kind, nominal }));
             }
         }
         Ok(starts)
-    }
-
-    /// The scramble of the climbs: of a replicate of its own, so that final estimates are
-    /// independent of the climb.
-    fn climb_scramble(&self, sampler: &Sampler<'_>) -> Scramble {
-        sampler.scramble(ScrambleKey {
-            seed: self.profile.search().seed,
-            replicate: u64::MAX,
-        })
-    }
-
-    /// The optimum that climbs from `starts` reach, and its P; `None` if no shot of it is made.
-    fn optimum(&self, kind: ShotKind, starts: &Starts) -> Option<(Nominal, Estimate)> {
-        let sampler = Sampler::new(self.profile);
-        let scramble = self.climb_scramble(&sampler);
-        let nominal = self.climb_from(kind, starts, &sampler, &scramble)?;
-        let search = self.profile.search();
-        let target = search.standard_error;
-        let estimate = sampler.estimate(&nominal, target, search.seed, &Silent);
-        Some((nominal, estimate))
     }
 
     fn table(&self, plan: &TablePlan) -> NominalProbabilities {
         NominalTable::simulate(self.profile, plan, self.progress).probabilities(self.profile)
     }
 
-    fn best(&self, kind: ShotKind, starts: &Starts) -> Result<Result<BestShot, NoShot>, PlanError> {
-        let sampler = Sampler::new(self.profile);
+    /// P of a nominal shot with independent scrambles.
+    fn estimate(&self, nominal: &Nominal, progress: &dyn Progress) -> Estimate {
         let search = self.profile.search();
-        let scramble = self.climb_scramble(&sampler);
-        let Some(start) = self.climb_from(kind, starts, &sampler, &scramble) else {
+        let target = search.standard_error;
+        self.sampler
+            .estimate(nominal, target, search.seed, progress)
+    }
+
+    /// The best shot of a kind about the optimum that the search found, if it found one.
+    fn best(
+        &self,
+        kind: ShotKind,
+        optimum: Option<Nominal>,
+    ) -> Result<Result<BestShot, NoShot>, PlanError> {
+        let Some(optimum) = optimum else {
             return Ok(Err(NoShot::Impossible(kind)));
         };
+        let search = self.profile.search();
         let searches_side_spin = search.choice.includes(NominalVariable::SideSpin);
         let tables_hold = self.profile.shooter().dispersion.is_of_eq_25() && !searches_side_spin;
         let mut window = if tables_hold {
-            self.move_window(kind, start)?
+            self.move_window(kind, optimum)?
         } else {
-            self.climb_with_more_points(kind, start, &sampler, &scramble)?
+            self.parabolas_with_more_points(kind, optimum)?
         };
         if !self.is_made(&window.nominal) {
             // The most probable shot goes in only with errors: take the best one that needs none.
@@ -243,7 +241,7 @@ impl BestShotSearch<'_> {
                 window.curves = probability_curves::from_table(&table, &clean);
             }
         }
-        let (nominal, estimate) = self.straight_if_as_good(kind, &window.nominal, &sampler);
+        let (nominal, estimate) = self.straight_if_as_good(kind, &window.nominal);
         let outcome = self
             .profile
             .simulator()
@@ -270,18 +268,8 @@ impl BestShotSearch<'_> {
 
     /// The shot with its P; aimed straight at the hoop's centre if left and right are mirror images
     /// and P is the same but for its error.
-    fn straight_if_as_good(
-        &self,
-        kind: ShotKind,
-        nominal: &Nominal,
-        sampler: &Sampler<'_>,
-    ) -> (Nominal, Estimate) {
-        let search = self.profile.search();
-        let with_estimate = |nominal: Nominal| {
-            let target = search.standard_error;
-            let estimate = sampler.estimate(&nominal, target, search.seed, self.progress);
-            (nominal, estimate)
-        };
+    fn straight_if_as_good(&self, kind: ShotKind, nominal: &Nominal) -> (Nominal, Estimate) {
+        let with_estimate = |nominal| (nominal, self.estimate(&nominal, self.progress));
         let found = with_estimate(*nominal);
         let straight = Nominal {
             polar_rad: self.profile.location().angle_rad,
@@ -324,122 +312,138 @@ impl BestShotSearch<'_> {
             })
     }
 
-    /// Climbs from the first starts, and from those of the others that a trial finds promising;
-    /// returns the highest optimum, if any shot of it is made.
-    fn climb_from(
-        &self,
-        kind: ShotKind,
-        starts: &Starts,
-        sampler: &Sampler<'_>,
-        scramble: &Scramble,
-    ) -> Option<Nominal> {
-        let best = self.highest_optimum(kind, &starts.first, sampler, scramble)?;
-        let compared = f64::from(COMPARISON_FACTOR * self.profile.search().climb_samples);
-        let worth_a_climb = best.0 as f64 / compared - TRIAL_MARGIN;
-        let is_promising = |optimum: &Nominal| {
-            let made = sampler.count(optimum, scramble, (0, TRIAL_SAMPLES)).made();
-            self.is_other_optimum(optimum, &best.1)
-                && made as f64 / f64::from(TRIAL_SAMPLES) > worth_a_climb
-        };
-        let promising: Vec<Nominal> = starts
-            .others
-            .par_iter()
-            .map(|&start| self.climb(kind, start, sampler, scramble, TRIAL_SAMPLES))
-            .filter(is_promising)
-            .collect();
-        let other = self.highest_optimum(kind, &promising, sampler, scramble);
-        let share = best.0 as f64 / compared;
-        let error = (2.0 * compared * share * (1.0 - share)).sqrt();
-        Some(match other {
-            Some(other) if other.0 as f64 > best.0 as f64 + LEAST_GAIN * error => other.1,
-            _ => best.1,
-        })
-    }
-
-    /// Whether an optimum is another one: apart in pitch; where the pitch angle is fixed, in
-    /// direction or speed.
-    fn is_other_optimum(&self, optimum: &Nominal, known: &Nominal) -> bool {
-        if self
-            .profile
-            .search()
-            .choice
-            .includes(NominalVariable::Pitch)
-        {
-            return (optimum.pitch_rad - known.pitch_rad).abs() > SAME_OPTIMUM_RAD;
-        }
-        (optimum.polar_rad - known.polar_rad).abs() > SAME_DIRECTION_RAD
-            || (optimum.speed_m_s / known.speed_m_s - 1.0).abs() > SAME_SPEED
-    }
-
-    /// Climbs from every start; returns the highest optimum, if any shot of it is made, with the
-    /// number that are.
-    fn highest_optimum(
-        &self,
-        kind: ShotKind,
-        starts: &[Nominal],
-        sampler: &Sampler<'_>,
-        scramble: &Scramble,
-    ) -> Option<(u64, Nominal)> {
+    /// The highest optimum of each kind that is reached from some starts. `None` where no shot of
+    /// it is made.
+    fn optima(&self, starts: &[Start]) -> [Option<Nominal>; 2] {
         let points = self.profile.search().climb_samples;
-        let compared = (0, COMPARISON_FACTOR * points);
+        let few = (points / CLIMB_PART).max(CLIMB_LEAST);
         self.progress.begin("climbing", starts.len() as u64);
-        // The climbs run side by side: each of them takes one small step after the other.
-        let optima: Vec<(u64, Nominal)> = starts
+        let nominals = self.climb(starts, few);
+        self.progress.end();
+        let made = self.made(&nominals, points);
+        let mut promising: Vec<Start> = Vec::new();
+        for kind in ShotKind::ALL {
+            let mut optima: Vec<Optimum> = (starts.iter().zip(made.iter().zip(&nominals)))
+                .filter_map(|(start, (&m, &n))| (start.kind == kind).then_some((m, n)))
+                .collect();
+            // The best first. (Sorting is stable: of two that are level the first start's.)
+            optima.sort_by_key(|(made, _)| std::cmp::Reverse(*made));
+            promising.extend(
+                self.promising(&optima)
+                    .map(|nominal| Start { kind, nominal }),
+            );
+        }
+        self.highest_tops(&promising)
+    }
+
+    /// Those of some optima, the best first, that are near it in P and far from each other.
+    fn promising(&self, optima: &[Optimum]) -> impl Iterator<Item = Nominal> {
+        let points = f64::from(self.profile.search().climb_samples);
+        let least = |best: &Optimum| best.0 as f64 - PROMISING_MARGIN * points;
+        let least = optima.first().map_or(0.0, least);
+        let mut chosen: Vec<Nominal> = Vec::new();
+        for (_, optimum) in optima.iter().filter(|(made, _)| *made as f64 >= least) {
+            if chosen.len() < MOST_OPTIMA && chosen.iter().all(|c| self.are_apart(optimum, c)) {
+                chosen.push(*optimum);
+            }
+        }
+        chosen.into_iter()
+    }
+
+    /// Whether two optima are not the same one: apart in side spin, or in pitch; where the pitch
+    /// angle is fixed, in direction or speed.
+    fn are_apart(&self, a: &Nominal, b: &Nominal) -> bool {
+        let choice = self.profile.search().choice;
+        let relative_speed = a.speed_m_s / b.speed_m_s - 1.0;
+        let apart = if choice.includes(NominalVariable::Pitch) {
+            (a.pitch_rad - b.pitch_rad).abs() > SAME_OPTIMUM_RAD
+        } else {
+            (a.polar_rad - b.polar_rad).abs() > SAME_DIRECTION_RAD
+                || relative_speed.abs() > SAME_SPEED
+        };
+        apart || (a.side_spin_rad_s - b.side_spin_rad_s).abs() > SAME_SIDE_SPIN_RAD_S
+    }
+
+    /// The highest top of each kind of the parabolas about some optima; `None` where no shot of it
+    /// is made.
+    fn highest_tops(&self, starts: &[Start]) -> [Option<Nominal>; 2] {
+        let points = self.profile.search().climb_samples;
+        self.progress.begin("refining", starts.len() as u64);
+        let nominals: Vec<Nominal> = starts
             .par_iter()
-            .map(|&start| {
-                let optimum = self.climb(kind, start, sampler, scramble, points);
-                let made = sampler.count(&optimum, scramble, compared).made();
+            .map(|start| {
+                let once = self.top_of_parabolas(start, first_step, points);
+                let top = self.top_of_parabolas(&once, first_step, points);
                 self.progress.advance(1);
-                (made, optimum)
+                top.nominal
             })
             .collect();
         self.progress.end();
-        optima
-            .into_iter()
-            .reduce(|best, next| if next.0 > best.0 { next } else { best })
-            .filter(|(made, _)| *made > 0)
+        let made = self.made(&nominals, self.compared_points());
+        ShotKind::ALL.map(|kind| {
+            let highest = (starts.iter().zip(made.iter().zip(&nominals)))
+                .filter(|(start, (made, _))| start.kind == kind && **made > 0)
+                .map(|(_, optimum)| optimum)
+                .reduce(|best, next| if next.0 > best.0 { next } else { best });
+            highest.map(|(_, &nominal)| nominal)
+        })
     }
 
-    fn climb(
+    /// The number of points with which tops are compared.
+    fn compared_points(&self) -> u32 {
+        COMPARISON_FACTOR * self.profile.search().climb_samples
+    }
+
+    /// The optima that climbs with so many points reach.
+    fn climb(&self, starts: &[Start], points: u32) -> Vec<Nominal> {
+        let values = |nominals: &[Nominal]| self.made(nominals, points);
+        self.pattern_search().climb(starts, values, self.progress)
+    }
+
+    /// The top of the parabolas along all variables. (It can move those of the variables before.)
+    fn top_of_parabolas(
         &self,
-        kind: ShotKind,
-        start: Nominal,
-        sampler: &Sampler<'_>,
-        scramble: &Scramble,
+        start: &Start,
+        reach: impl Fn(NominalVariable) -> f64,
         points: u32,
-    ) -> Nominal {
-        let made = |nominal: &Nominal| sampler.count(nominal, scramble, (0, points)).made();
-        self.pattern_search().run(kind, start, Steps::ALL, made)
+    ) -> Start {
+        let values = |nominals: &[Nominal]| self.made(nominals, points);
+        self.pattern_search().top_of_parabolas(start, reach, values)
     }
 
-    fn pattern_search(&self) -> Climb<'_> {
-        Climb {
-            profile: self.profile,
-            bracket: &self.plan.bracket,
-        }
+    /// The numbers of made shots under the first points of the search's scramble.
+    fn made(&self, nominals: &[Nominal], points: u32) -> Vec<u64> {
+        let shots: Vec<_> = nominals.iter().map(|n| (n, &self.scramble)).collect();
+        let counts = self.sampler.counts(&shots, (0, points), &Silent);
+        counts.iter().map(Counts::made).collect()
     }
 
-    /// The optimum near one that was found with few points, for errors that a table does not have.
-    fn climb_with_more_points(
+    fn pattern_search(&self) -> PatternSearch<'_> {
+        PatternSearch::new(self.profile, &self.plan.bracket)
+    }
+
+    /// The optimum near one that was found with fewer points, for errors that a table does not
+    /// have.
+    fn parabolas_with_more_points(
         &self,
         kind: ShotKind,
-        start: Nominal,
-        sampler: &Sampler<'_>,
-        scramble: &Scramble,
+        optimum: Nominal,
     ) -> Result<Window, PlanError> {
-        let points = COMPARISON_FACTOR * self.profile.search().climb_samples;
-        let made = |nominal: &Nominal| sampler.count(nominal, scramble, (0, points)).made();
-        let search = self.pattern_search();
-        let optimum = search.run(kind, start, Steps::SMALL, made);
         let plan = self.plan.window(self.profile, &optimum)?;
         let reach = |variable| {
             let axis = plan.nominal.axis(variable);
             SAMPLED_PARABOLA_REACH * 0.5 * (axis.high - axis.low)
         };
-        let nominal = search.top_of_parabolas(kind, optimum, reach, made);
+        let points = self.compared_points();
+        let start = Start {
+            kind,
+            nominal: optimum,
+        };
+        let near = self.top_of_parabolas(&start, first_step, points);
+        let nominal = self.top_of_parabolas(&near, reach, points).nominal;
         let plan = self.plan.window(self.profile, &nominal)?;
         let curves = if self.topics.curves {
-            probability_curves::from_samples(self.profile, sampler, &plan, &nominal)
+            probability_curves::from_samples(self.profile, &self.sampler, &plan, &nominal)
         } else {
             Vec::new()
         };

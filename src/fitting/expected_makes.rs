@@ -124,6 +124,14 @@ pub struct ExpectedMakes {
 }
 
 impl ExpectedMakes {
+    /// By how many of its standard deviations the number of makes is greater than expected; about
+    /// standard normal if the chances are right. `None` where no result is in doubt.
+    #[must_use]
+    pub fn made_z(&self) -> Option<f64> {
+        let excess = self.made as f64 - self.expected;
+        (self.expected_sd > 0.0).then(|| excess / self.expected_sd)
+    }
+
     /// The three shots with the least chance of what became of them: line, chance of a make, and
     /// whether it went in.
     pub(super) fn most_surprising(&self) -> Vec<(u64, f64, bool)> {

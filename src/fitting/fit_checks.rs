@@ -213,7 +213,7 @@ const LEAST_SHOTS: usize = 10;
 /// Flights whose residuals are so many times those of the tracker were not measured by it.
 const MOST_RESIDUALS: f64 = 4.0;
 /// A test warns below this p-value: one session in two hundred without reason.
-const WARNING_LEVEL: f64 = 0.005;
+pub const WARNING_LEVEL: f64 = 0.005;
 
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);

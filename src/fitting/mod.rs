@@ -45,8 +45,8 @@ pub use expected_makes::{
     wilson_interval,
 };
 pub use fit_checks::{
-    FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, check_releases,
-    check_speed_unit, far_shots, p_value, shape_test, tails_of, warnings,
+    FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, WARNING_LEVEL,
+    check_releases, check_speed_unit, far_shots, p_value, shape_test, tails_of, warnings,
 };
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};

@@ -54,12 +54,13 @@ impl UnseenParameter {
     }
 
     /// The values that sources give: rad/s, or none. (Rule books let the ring absorb 35 to 50 % of
-    /// the energy; for backspin see [`PopulationPrior::MEASURED`](super::PopulationPrior).)
+    /// the energy, and estimates with two masses go down to 0.41; for backspin see
+    /// [`PopulationPrior::MEASURED`](super::PopulationPrior).)
     #[must_use]
     pub fn usual_range(self) -> (f64, f64) {
         match self {
             Self::Backspin => (0.5 * REV_RAD, 4.0 * REV_RAD),
-            Self::HoopRestitution => (0.45, 0.70),
+            Self::HoopRestitution => (0.41, 0.70),
         }
     }
 }

@@ -25,7 +25,7 @@ const SHOTS: &str =
     "assumed: between 0.41 +- 0.035 (measured, 27 three-point shots) and 0.47 to 0.54 (spheres)";
 const NO_LIFT: &str = "measured: none in 27 three-point shots (0.00 +- 0.05)";
 const SHELL: &str = "assumed: a thin shell";
-const HOOP_LOSS: &str = "assumed: beside the ball's own loss, rule books let the ring absorb 35 to 50 % of the energy; try 0.45 to 0.70";
+const HOOP_LOSS: &str = "assumed: beside the ball's own loss, rule books let the ring absorb 35 to 50 % of the energy; estimates go from 0.41 to 0.65, try 0.41 to 0.70";
 const FRICTION: &str =
     "assumed: leather on painted steel or glass; new composite balls have up to 0.8";
 const STIFFNESS: &str = "assumed: the paper's";

@@ -4,7 +4,7 @@ use super::best_shot_json::shot_record;
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::BestShots;
 use crate::shooter::{NominalVariable, Profile};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, rounded};
 use serde_json::Value;
 
 /// The header of [`curves_csv`].
@@ -92,7 +92,11 @@ pub fn curves_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
             for point in &curve.points {
                 let words = [kind.name(), curve.variable.name(), &unit].map(str::to_owned);
                 let numbers = [point.value / scale, point.probability, point.standard_error];
-                csv.row(words.into_iter().chain(numbers.map(|x| x.to_string())));
+                csv.row(
+                    words
+                        .into_iter()
+                        .chain(numbers.map(|x| rounded(x).to_string())),
+                );
             }
         }
     }
@@ -120,7 +124,7 @@ pub fn sensitivity_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
                 gain.map(|gain| gain.value),
                 gain.map(|gain| gain.standard_error),
             ]
-            .map(|x| x.map_or_else(String::new, |x| x.to_string()));
+            .map(|x| x.map_or_else(String::new, |x| rounded(x).to_string()));
             let words = [kind.name(), topic, variable, unit].map(str::to_owned);
             csv.row(words.iter().chain(&numbers));
         };

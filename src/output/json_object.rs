@@ -1,14 +1,15 @@
 //! Named values in order, as JSON objects.
 
+use crate::units::rounded;
 use serde_json::Value;
 
 /// Named values in the order in which they are written.
 pub type Record = Vec<(String, Value)>;
 
-/// A number as JSON; null if it is not finite.
+/// A number as JSON, with 12 significant digits; null if it is not finite.
 #[must_use]
 pub fn number(value: f64) -> Value {
-    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
+    serde_json::Number::from_f64(rounded(value)).map_or(Value::Null, Value::Number)
 }
 
 /// A record as a JSON object.

@@ -18,6 +18,7 @@ mod progress;
 mod shared_sample;
 mod sobol_integration;
 
+pub(crate) use made_shot_counts::Counts;
 pub use nominal_probability_table::{
     MAX_BATCH_BYTES, NominalProbabilities, NominalTable, TABLE_RMS_ERROR,
 };

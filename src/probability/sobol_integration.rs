@@ -14,6 +14,7 @@ use crate::math::sobol::{Scramble, ScrambleKey, Sobol};
 use crate::model::BallState;
 use crate::shooter::{Nominal, Profile, ReleaseDistribution};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Independent scrambles.
 pub const REPLICATES: u64 = 32;
@@ -23,11 +24,42 @@ pub const MIN_SHOTS: u64 = 2 * REPLICATES;
 pub const MAX_SHOTS: u64 = REPLICATES << 21;
 /// Points of the first round of each replicate.
 const FIRST_POINTS: u32 = 512;
-/// Least and greatest number of points of one parallel block: small enough to keep every thread
-/// busy, large enough for the lanes.
-const MIN_BLOCK: u32 = 256;
+/// Least and greatest number of points of one parallel block.
+const MIN_BLOCK: usize = 256;
 /// See [`MIN_BLOCK`].
-const MAX_BLOCK: u32 = 16_384;
+const MAX_BLOCK: usize = 16_384;
+/// A block of so many points fills the lanes well: blocks are not made smaller only to have several
+/// of them for each thread.
+const FULL_BLOCK: usize = 4096;
+/// Blocks for each thread, where there are points enough, so that all threads end at about the same
+/// time.
+const BLOCKS_PER_THREAD: usize = 4;
+
+/// The number of points of a block, of `total` that are simulated. No result depends on it.
+fn block_size(total: usize) -> usize {
+    let of_thread = total / rayon::current_num_threads();
+    (of_thread / BLOCKS_PER_THREAD)
+        .max(of_thread.min(FULL_BLOCK))
+        .clamp(MIN_BLOCK, MAX_BLOCK)
+}
+
+/// The parts of a range of points, where each shot has `points` of them: the index of a shot, and
+/// its points.
+fn parts(range: Range<usize>, points: usize) -> impl Iterator<Item = (usize, Range<usize>)> {
+    (range.start / points..range.end.div_ceil(points)).map(move |shot| {
+        let first = shot * points;
+        let begin = range.start.max(first) - first;
+        let end = range.end.min(first + points) - first;
+        (shot, begin..end)
+    })
+}
+
+/// Memory that a thread reuses for its blocks.
+#[derive(Default)]
+struct BlockMemory {
+    starts: Vec<BallState>,
+    workspace: BatchWorkspace,
+}
 
 /// Draws releases about nominal shots of one profile.
 #[derive(Debug)]
@@ -70,42 +102,62 @@ impl<'a> Sampler<'a> {
         self.release(nominal, (index / REPLICATES) as u32, &scramble)
     }
 
-    /// Counts for the points `from..to` of one scramble, on this thread.
-    fn block(
+    /// Counts for the points `from..to` of each nominal shot with its scramble, on the current
+    /// rayon pool. The points of all shots go into common blocks.
+    pub(crate) fn counts(
         &self,
-        nominal: &Nominal,
-        scramble: &Scramble,
+        shots: &[(&Nominal, &Scramble)],
         (from, to): (u32, u32),
-        workspace: &mut BatchWorkspace,
-    ) -> Counts {
-        let distribution = ReleaseDistribution::new(self.profile, nominal);
-        let mut starts: Vec<BallState> = Vec::with_capacity((to - from) as usize);
-        distribution.for_each_state(scramble, (from, to), |state| starts.push(state));
-        let simulator = self.profile.simulator();
-        Counts::of(simulator.finite_verdicts(&starts, workspace))
+        progress: &dyn Progress,
+    ) -> Vec<Counts> {
+        let points = (to - from) as usize;
+        let total = points * shots.len();
+        let block = block_size(total);
+        let counts_of_blocks: Vec<Vec<(usize, Counts)>> = (0..total.div_ceil(block))
+            .into_par_iter()
+            .map_init(BlockMemory::default, |memory, number| {
+                let begin = number * block;
+                let end = (begin + block).min(total);
+                let parts = parts(begin..end, points).map(|(shot, part)| {
+                    let range = (from + part.start as u32, from + part.end as u32);
+                    (shot, range)
+                });
+                let counts = self.count_block(shots, parts, memory);
+                progress.advance((end - begin) as u64);
+                counts
+            })
+            .collect();
+        let mut counts = vec![Counts::default(); shots.len()];
+        for (shot, of_part) in counts_of_blocks.into_iter().flatten() {
+            counts[shot] = counts[shot].plus(of_part);
+        }
+        counts
     }
 
-    /// Counts for the points `from..to` of one scramble, on the current rayon pool.
-    pub(crate) fn count(
+    /// Counts for some points of some shots, on this thread: each part is the index of a shot and
+    /// a range of points.
+    fn count_block(
         &self,
-        nominal: &Nominal,
-        scramble: &Scramble,
-        (from, to): (u32, u32),
-    ) -> Counts {
-        let threads = rayon::current_num_threads() as u32;
-        let block = ((to - from) / threads).clamp(MIN_BLOCK, MAX_BLOCK);
-        (from..to)
-            .into_par_iter()
-            .step_by(block as usize)
-            .map_init(BatchWorkspace::default, |workspace, start| {
-                self.block(
-                    nominal,
-                    scramble,
-                    (start, (start + block).min(to)),
-                    workspace,
-                )
+        shots: &[(&Nominal, &Scramble)],
+        parts: impl Iterator<Item = (usize, (u32, u32))>,
+        memory: &mut BlockMemory,
+    ) -> Vec<(usize, Counts)> {
+        let BlockMemory { starts, workspace } = memory;
+        starts.clear();
+        let drawn: Vec<(usize, Range<usize>)> = parts
+            .map(|(shot, points)| {
+                let before = starts.len();
+                let (nominal, scramble) = shots[shot];
+                let distribution = ReleaseDistribution::new(self.profile, nominal);
+                distribution.for_each_state(scramble, points, |state| starts.push(state));
+                (shot, before..starts.len())
             })
-            .reduce(Counts::default, Counts::plus)
+            .collect();
+        let verdicts = self.profile.simulator().finite_verdicts(starts, workspace);
+        drawn
+            .into_iter()
+            .map(|(shot, range)| (shot, Counts::of(&verdicts[range])))
+            .collect()
     }
 
     /// P of a nominal shot with at most the standard error `target`. The points are doubled until
@@ -136,6 +188,7 @@ impl<'a> Sampler<'a> {
         let scrambles: Vec<Scramble> = (0..REPLICATES)
             .map(|replicate| self.scramble(ScrambleKey { seed, replicate }))
             .collect();
+        let shots: Vec<(&Nominal, &Scramble)> = scrambles.iter().map(|s| (nominal, s)).collect();
         let mut counts = vec![Counts::default(); scrambles.len()];
         let mut points = 0;
         let mut last_error = 0.0;
@@ -143,14 +196,7 @@ impl<'a> Sampler<'a> {
         loop {
             let more = if points == 0 { first_points } else { points };
             progress.begin("integrating", u64::from(more) * REPLICATES);
-            let new: Vec<Counts> = scrambles
-                .par_iter()
-                .map(|scramble| {
-                    let counts = self.count(nominal, scramble, (points, points + more));
-                    progress.advance(u64::from(more));
-                    counts
-                })
-                .collect();
+            let new = self.counts(&shots, (points, points + more), progress);
             progress.end();
             for (sum, new) in counts.iter_mut().zip(new) {
                 *sum = sum.plus(new);

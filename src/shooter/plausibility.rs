@@ -23,6 +23,7 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     let speed_sd =
         errors.c10_m_s + USUAL_SPEED_M_S * (errors.c11 + USUAL_SPEED_M_S * errors.c12_s_m);
     let distance_m = profile.location().distance_m;
+    let units = profile.output().units;
     let (physics, nominal) = (profile.physics(), profile.nominal_overrides());
     let mut found = Vec::new();
     let mut say = |is_odd: bool, words: String| {
@@ -33,7 +34,7 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     let height = feet(shooter.release_height_m);
     say(
         !(1.5..=9.5).contains(&height),
-        match profile.output().units {
+        match units {
             UnitSystem::Imperial => format!(
                 "shooter.release_height: a release {height:.1} ft above the floor; players release at 5 to 9 ft"
             ),
@@ -45,10 +46,15 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     );
     say(
         feet(speed_sd) > 1.5,
-        format!(
-            "shooter.errors: speeds scatter by {:.1} ft/s (one standard deviation); players by 0.15 to 0.45 ft/s",
-            feet(speed_sd)
-        ),
+        match units {
+            UnitSystem::Imperial => format!(
+                "shooter.errors: speeds scatter by {:.1} ft/s (one standard deviation); players by 0.15 to 0.45 ft/s",
+                feet(speed_sd)
+            ),
+            UnitSystem::Metric => format!(
+                "shooter.errors: speeds scatter by {speed_sd:.2} m/s (one standard deviation); players by 0.05 to 0.14 m/s"
+            ),
+        },
     );
     for (key, angle_rad) in [
         ("c20 (pitch)", errors.c20_rad),
@@ -76,10 +82,15 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     );
     say(
         feet(distance_m) > 35.0,
-        format!(
-            "location: {:.0} ft from the hoop; three-point shots are from 20 to 30 ft, half a court is 42 ft",
-            feet(distance_m)
-        ),
+        match units {
+            UnitSystem::Imperial => format!(
+                "location: {:.0} ft from the hoop; three-point shots are from 20 to 30 ft, half a court is 42 ft",
+                feet(distance_m)
+            ),
+            UnitSystem::Metric => format!(
+                "location: {distance_m:.1} m from the hoop; three-point shots are from 6 to 9 m, half a court is 13 m"
+            ),
+        },
     );
     if let Some(pitch_rad) = nominal.pitch_rad {
         let pitch = pitch_rad / DEGREE_RAD;

@@ -31,18 +31,18 @@ const PROBABILITIES: [u64; 3] = [
 /// Speed, pitch angle, polar angle, backspin and P: direct, bank.
 const BEST_SHOTS: [[u64; 5]; 2] = [
     [
-        0x401b_94fa_04ba_960a,
-        0x3fef_f14f_f1f2_7d6e,
-        0x3feb_ed60_8847_9830,
+        0x401b_7ff6_ae82_378e,
+        0x3fef_7561_37fb_aa64,
+        0x3feb_f54e_81b4_e70b,
         0x4032_d97c_7f33_21d2,
-        0x3fe6_b280_0000_0000,
+        0x3fe6_b980_0000_0000,
     ],
     [
-        0x401c_b341_b1b1_512c,
-        0x3fee_6416_50d0_59a4,
-        0x3fe8_f1c1_45e8_7ab7,
+        0x401c_d270_5308_c3e1,
+        0x3fef_5994_56c1_9791,
+        0x3fe8_f692_a166_2047,
         0x4032_d97c_7f33_21d2,
-        0x3fe7_9380_0000_0000,
+        0x3fe7_9180_0000_0000,
     ],
 ];
 

@@ -105,7 +105,7 @@ fn contract_the_page_of_one_location_shows_the_sensitivity_and_works_in_a_browse
     );
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("How much rests on the physics"));
-    assert!(html.contains("hoop_restitution 0.45"));
+    assert!(html.contains("hoop_restitution 0.41"));
     let Some(chromium) = chromium() else { return };
     for width in [1280, 390] {
         let seen = visit(chromium, &page, width);

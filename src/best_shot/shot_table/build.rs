@@ -127,14 +127,14 @@ impl ShotTable {
             checks: Vec::new(),
         };
         if request.is_draft {
-            table.find_nodes(&mut search, &[], "finding shots")?;
+            table.find_nodes(&mut search, "finding shots")?;
             return Ok(table);
         }
         for halving in 0..=MOST_HALVINGS {
-            let [finding, checking] = stages_of_round(halving + 1);
+            let [finding, between, checking] = stages_of_round(halving + 1);
             let cells = table.cells();
-            let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-            table.find_nodes(&mut search, &middles, &finding)?;
+            table.find_nodes(&mut search, &finding)?;
+            table.find_middles(&mut search, &cells, &between)?;
             table.find_checks(&mut search, &cells, &checking)?;
             let [distances_m, angles_rad] = table.finer(&cells, &search, request.max_loss);
             let is_fine = distances_m.len() == table.distances_m.len()
@@ -147,7 +147,7 @@ impl ShotTable {
         }
         if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
             for split in 0..MOST_SPLITS {
-                let [finding, checking] = stages_of_round(MOST_HALVINGS + 2 + split);
+                let [_, between, checking] = stages_of_round(MOST_HALVINGS + 2 + split);
                 let costly: Vec<bool> = table
                     .cells()
                     .iter()
@@ -158,26 +158,39 @@ impl ShotTable {
                 }
                 table.split_at_jumps(&search, &costly, request.max_loss)?;
                 let cells = table.cells();
-                let middles: Vec<Location> = cells.iter().map(Cell::middle).collect();
-                search.find_shots(middles.iter(), &finding)?;
+                table.find_middles(&mut search, &cells, &between)?;
                 table.find_checks(&mut search, &cells, &checking)?;
             }
         }
         Ok(table)
     }
 
-    /// Finds the shots of all nodes, and those of other places.
+    /// Finds the shots of all nodes.
     fn find_nodes(
         &mut self,
         search: &mut TableSearch<'_>,
-        others: &[Location],
         stage: &str,
     ) -> Result<(), ShotTableError> {
         let nodes = grid(&self.distances_m, &self.angles_rad);
-        search.find_shots(nodes.iter().chain(others), stage)?;
+        search.find_shots(nodes.iter(), stage)?;
         let shots = nodes.iter().map(|node| search.shot_at(node).cloned());
         self.shots = shots.collect();
         Ok(())
+    }
+
+    /// Finds the shots in the middles of those cells that can be looked up there.
+    fn find_middles(
+        &self,
+        search: &mut TableSearch<'_>,
+        cells: &[Cell],
+        stage: &str,
+    ) -> Result<(), ShotTableError> {
+        let middles: Vec<Location> = cells
+            .iter()
+            .map(Cell::middle)
+            .filter(|&middle| self.interpolated(middle).is_some())
+            .collect();
+        search.find_shots(middles.iter(), stage)
     }
 
     fn find_checks(
@@ -298,10 +311,11 @@ fn is_costly(search: &TableSearch<'_>, cell: &Cell, max_loss: f64) -> bool {
     checks.any(|check| check.worse() > MARGIN * max_loss)
 }
 
-/// What progress calls the two stages of a round.
-fn stages_of_round(round: usize) -> [String; 2] {
+/// What progress calls the stages of a round.
+fn stages_of_round(round: usize) -> [String; 3] {
     let most = MOST_HALVINGS + 1 + MOST_SPLITS;
-    ["shots", "checks"].map(|stage| format!("{stage}, round {round} of {most} at most"))
+    ["shots", "shots between them", "checks"]
+        .map(|stage| format!("{stage}, round {round} of {most} at most"))
 }
 
 /// The best shot of a kind with values that the search leaves as they are.

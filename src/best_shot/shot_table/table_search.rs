@@ -114,6 +114,9 @@ impl<'a> TableSearch<'a> {
     ) -> Result<(), ShotTableError> {
         let is_new = |place: &&Location| !self.shots.contains_key(&key(place));
         let new: Vec<&Location> = places.filter(is_new).collect();
+        if new.is_empty() {
+            return Ok(());
+        }
         self.begin(stage, new.len());
         for &place in new {
             let shot = best(&self.profile.moved_to(place)?, self.kind)?.ok();

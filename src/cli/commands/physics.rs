@@ -2,7 +2,7 @@
 
 use crate::best_shot::{
     BestShot, NoShot, PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, SameShotProbability,
-    compare_physics, physics_variants,
+    compare_physics, physics_variants, together,
 };
 use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
@@ -12,7 +12,7 @@ use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use crate::fitting::{FittedShots, Interval, Measured, ShotsUnderPhysics, advise};
+use crate::fitting::{FittedShots, Interval, Measured, ShotsUnderPhysics, advise, wilson_interval};
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::advice_text::changes_in_words;
 use crate::output::fit_files::fit_json::interval_json;
@@ -151,6 +151,8 @@ struct FittedRows {
     measured: Measured,
     /// One for each row of the comparison.
     rows: Vec<Option<ShotsUnderPhysics>>,
+    /// Made and all measured shots with a result.
+    observed: (usize, usize),
 }
 
 impl FittedRows {
@@ -181,7 +183,68 @@ impl FittedRows {
             changes: changes_in_words(&advice, profile.location().angle_rad, fit.units),
             measured,
             rows,
+            observed: fit.observed[place],
         })
+    }
+
+    /// The interval of a value of the base row, wider by what the changes that nobody measured in
+    /// this gym may do to it together.
+    fn with_physics(
+        &self,
+        comparison: &PhysicsComparison,
+        of: impl Fn(&ShotsUnderPhysics) -> Option<Interval>,
+    ) -> Option<(f64, f64)> {
+        let base = of(self.rows[comparison.base].as_ref()?)?;
+        let rows = comparison.rows.iter().zip(&self.rows);
+        let changes: Vec<(&str, f64)> = rows
+            .filter(|(row, _)| row.is_unmeasured)
+            .filter_map(|(row, own)| Some((row.name.as_str(), of(own.as_ref()?)?.mean - base.mean)))
+            .collect();
+        let [down, up] = together(&changes);
+        Some((
+            base.mean - libm::hypot(base.mean - base.low, down),
+            base.mean + libm::hypot(base.high - base.mean, up),
+        ))
+    }
+
+    /// The intervals of the fit and of the physics in one, and what the makes say.
+    fn together_in_words(&self, comparison: &PhysicsComparison) -> String {
+        let Some((low, high)) = self.with_physics(comparison, |own| Some(own.usual)) else {
+            return String::new();
+        };
+        let mut text = format!(
+            "With what the shots leave open and what nobody measured in this gym together, P of the usual shot is {low:.2} to {high:.2}"
+        );
+        if let Some((low, high)) = self.with_physics(comparison, |own| Some(own.advised?[1])) {
+            text += &format!(
+                ", and the gain {:+.1} to {:+.1} points",
+                in_points(low),
+                in_points(high)
+            );
+        }
+        text += " (95 % interval of the fit, and the changes taken together as above: the root of the sum of squares).\n";
+        let (made, shots) = self.observed;
+        if shots == 0 {
+            return text;
+        }
+        let share = wilson_interval(made, shots);
+        text += &format!(
+            "Of the measured shots {made} of {shots} went in: {:.2} (95 %: {:.2} to {:.2}).",
+            share.share, share.low, share.high
+        );
+        let contradicted: Vec<&str> = (comparison.rows.iter().zip(&self.rows))
+            .filter_map(|(row, own)| Some((row.name.as_str(), own.as_ref()?.usual)))
+            .filter(|(_, usual)| usual.low > share.high || usual.high < share.low)
+            .map(|(name, _)| name)
+            .collect();
+        text += &match &contradicted[..] {
+            [] => " That rules out none of the rows.\n".to_owned(),
+            rows => format!(
+                " That does not meet the interval of P under: {}.\n",
+                rows.join(", ")
+            ),
+        };
+        text
     }
 
     /// What the advice gains in a row.
@@ -228,7 +291,7 @@ impl FittedRows {
             let [mean, low, high] = [gain.mean, gain.low, gain.high].map(in_points);
             format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
         };
-        // `with hoop_restitution 0.45`, or `ncaa, hoop_restitution 0.45` where the profile's
+        // `with hoop_restitution 0.41`, or `ncaa, hoop_restitution 0.41` where the profile's
         // physics has no air.
         let change = |row: &PhysicsRow| {
             let words = row.name.split_once(' ');
@@ -367,9 +430,10 @@ fn comparison_text(
     );
     let of_fit = match fitted {
         Some(fitted) => format!(
-            "\nP of the usual shot, and what the advice adds in makes of 100, with 95 % intervals of what the fit leaves open:\n{}\n{}",
+            "\nP of the usual shot, and what the advice adds in makes of 100, with 95 % intervals of what the fit leaves open:\n{}\n{}{}",
             fitted.table(comparison).trim_fmt(),
-            fitted.in_words(comparison)
+            fitted.in_words(comparison),
+            fitted.together_in_words(comparison)
         ),
         None => "(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
     };

@@ -127,6 +127,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     let prediction = object(vec![
         named("expected_makes", number(makes.expected)),
         named("expected_makes_sd", number(makes.expected_sd)),
+        named("made_z", makes.made_z().map_or(Value::Null, number)),
         named("brier", number(makes.brier)),
         named("log_loss", number(makes.log_loss)),
         named("brier_of_share", number(makes.losses_of_share[0])),

@@ -3,7 +3,8 @@
 use super::fit_json::FitSource;
 use super::parameters::{parameters, value_units};
 use crate::fitting::{
-    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, p_value, values_at_height,
+    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, p_value,
+    values_at_height,
 };
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 
@@ -79,14 +80,17 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     if makes.labelled > 0 {
         let share = &makes.share;
         text += &format!(
-            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected from these shots: {:.1} ± {:.1} makes\n",
+            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected from these shots: {:.1} ± {:.1} makes{}\n",
             makes.made,
             makes.labelled,
             percent(share.share),
             100.0 * share.low,
             100.0 * share.high,
             makes.expected,
-            makes.expected_sd
+            makes.expected_sd,
+            makes
+                .made_z()
+                .map_or_else(String::new, |z| format!(" (z {z:+.1})"))
         );
         if fit.places.len() > 1 {
             for place in 0..fit.places.len() {
@@ -195,7 +199,7 @@ fn tests_text(fit: &ShooterFit) -> String {
         )
     });
     format!(
-        "Tests: normal releases (Mardia) skewness {}, kurtosis {}{order}.\n",
+        "Tests: normal releases (Mardia) skewness {}, kurtosis {}{order}. Each warns below {WARNING_LEVEL}.\n",
         p_value(fit.shape.skewness_p),
         p_value(fit.shape.kurtosis_p)
     )

@@ -8,7 +8,7 @@ use crate::fitting::AngleOverDraws;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::{number, object, provenance};
 use crate::shooter::{NominalVariable, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, rounded};
 use serde_json::Value;
 
 /// A loss of P that the sentence about the angles counts as none.
@@ -237,10 +237,10 @@ pub fn by_pitch_csv(
             .filter(|(name, ..)| is_other(name))
             .map(
                 |(name, _, value, size)| match row.shot.as_ref().map(value) {
-                    Some(value) if value.is_finite() => (value / size).to_string(),
+                    Some(value) if value.is_finite() => rounded(value / size).to_string(),
                     None if name == "probability" => row
                         .not_clean
-                        .map_or_else(String::new, |(_, p)| p.to_string()),
+                        .map_or_else(String::new, |(_, p)| rounded(p).to_string()),
                     _ => String::new(),
                 },
             )

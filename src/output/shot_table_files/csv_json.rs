@@ -5,7 +5,7 @@ use super::notes::{notes, physics_note, shooter_note};
 use crate::best_shot::{InterpolationCheck, ShotTable};
 use crate::output::json_object::{number, object, provenance};
 use crate::shooter::Profile;
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, UnitSystem, rounded};
 use serde_json::Value;
 
 /// The table as CSV; empty values where no shot goes in.
@@ -28,7 +28,7 @@ pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
         let cells: Vec<String> = columns
             .iter()
             .map(|(_, _, value, size)| match shot.map(value) {
-                Some(value) if value.is_finite() => (value / size).to_string(),
+                Some(value) if value.is_finite() => rounded(value / size).to_string(),
                 _ => String::new(),
             })
             .collect();
