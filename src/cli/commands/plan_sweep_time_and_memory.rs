@@ -104,15 +104,21 @@ fn calibration_spots(jobs: &Jobs) -> Vec<usize> {
     spread_out(spots, most.min(spots))
 }
 
-/// `count` of `total` spots, far apart, in an order in which the first few are far apart too.
+/// `count` of `total` spots, far apart, in an order in which the first few are far apart too: the
+/// van der Corput sequence, from the middle on.
 fn spread_out(total: usize, count: usize) -> Vec<usize> {
-    let mut places: Vec<usize> = (0..count).collect();
-    let bits = count.next_power_of_two().trailing_zeros();
-    places.sort_by_key(|i| i.reverse_bits() >> (usize::BITS - bits.max(1)));
-    places
-        .into_iter()
-        .map(|i| (2 * i + 1) * total / (2 * count))
-        .collect()
+    let mut spots: Vec<usize> = Vec::new();
+    for k in 1_u32.. {
+        if spots.len() == count.min(total) {
+            break;
+        }
+        let part = f64::from(k.reverse_bits()) / 2.0_f64.powi(32);
+        let spot = (part * total as f64) as usize;
+        if !spots.contains(&spot) {
+            spots.push(spot);
+        }
+    }
+    spots
 }
 
 /// Memory of the table of a spot, bytes. From some spots nothing can go in; they have no table.
