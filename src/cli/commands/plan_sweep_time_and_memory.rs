@@ -112,8 +112,8 @@ fn spread_out(total: usize, count: usize) -> Vec<usize> {
         if spots.len() == count.min(total) {
             break;
         }
-        let part = f64::from(k.reverse_bits()) / 2.0_f64.powi(32);
-        let spot = (part * total as f64) as usize;
+        // The reversed bits are a fraction of 2^32.
+        let spot = ((u64::from(k.reverse_bits()) * total as u64) >> 32) as usize;
         if !spots.contains(&spot) {
             spots.push(spot);
         }
