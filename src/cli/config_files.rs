@@ -70,16 +70,8 @@ pub(crate) fn load_profile(
     Ok(load(path, physics, &[], quiet)?.0)
 }
 
-/// The same for a command that fixes some nominal values itself.
-pub(crate) fn load_profile_with_fixed(
-    path: &Path,
-    physics: &PhysicsArg,
-    (fixed, quiet): (&[NominalVariable], bool),
-) -> Result<Profile, Failure> {
-    Ok(load(path, physics, fixed, quiet)?.0)
-}
-
-/// A profile with its text, to which the other physics is added.
+/// A profile with its text, to which the other physics is added; for a command that fixes some
+/// nominal values itself.
 pub(crate) fn load_profile_with_text(
     path: &Path,
     physics: &PhysicsArg,

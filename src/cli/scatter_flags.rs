@@ -13,7 +13,7 @@ use std::path::Path;
 pub(crate) struct ScatterOptions {
     /// Make an error of the profile smaller or greater, such as 'speed=-20%': speed, pitch, polar
     /// or backspin; may be repeated.
-    #[arg(long, value_name = "ERROR=PERCENT", conflicts_with = "draws")]
+    #[arg(long, value_name = "ERROR=PERCENT")]
     scatter: Vec<String>,
 }
 

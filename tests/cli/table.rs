@@ -45,6 +45,25 @@ fn table(folder: &TempDir, more: &[&str]) -> Answer {
     Answer::of(&mut command)
 }
 
+/// Half of the error of the speed: more shots go in.
+#[test]
+fn contract_a_table_of_a_steadier_launcher() {
+    let folder = TempDir::new().unwrap();
+    let p = |more: &[&str]| {
+        let range = ["--distances", "12 ft", "--draft", "--format", "json"];
+        let table = table(&folder, &[&range[..], more].concat());
+        table.exits(0).json()["shots"][0]["probability"]
+            .as_f64()
+            .unwrap()
+    };
+    assert!(p(&["--scatter", "speed=-50%"]) > p(&[]) + 0.05);
+    table(
+        &folder,
+        &["--distances", "12 ft", "--scatter", "speed=half"],
+    )
+    .exits(2);
+}
+
 /// A table that is stopped goes on where it was, and is the one that is made in one go.
 #[cfg(unix)]
 #[test]

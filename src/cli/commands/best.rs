@@ -47,7 +47,7 @@ pub(crate) struct BestOptions {
     pub(crate) out: Option<PathBuf>,
     /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
     /// scatter, and how sure it is that bank beats direct.
-    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Also print how each kind of shot goes in, and what every error, backspin and height are
     /// worth.

@@ -66,7 +66,7 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) backspin: Option<String>,
     /// The folder of a fit: also say how uncertain P at each angle is, and its difference from the
     /// best angle, by what the shots do not tell about the scatter.
-    #[arg(long, value_name = "FIT_DIR", conflicts_with = "distances")]
+    #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["distances", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.
     #[arg(long, short, value_name = "FILE")]

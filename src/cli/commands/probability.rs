@@ -93,7 +93,7 @@ pub(crate) struct ProbabilityOptions {
     pub(crate) units: Option<UnitsArg>,
     /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
     /// scatter.
-    #[arg(long, value_name = "FIT_DIR", conflicts_with = "json")]
+    #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of text.
     #[arg(long)]

@@ -3,12 +3,13 @@
 use crate::best_shot::{
     ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
 };
-use crate::cli::config_files::load_profile_with_fixed;
+use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::signals;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_remark, time_in_words};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
@@ -23,6 +24,7 @@ use clap::{Args, ValueEnum};
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -58,6 +60,8 @@ pub(crate) struct TableOptions {
     pub(crate) kind: KindArg,
     #[command(flatten)]
     pub(crate) fixed: FixedOptions,
+    #[command(flatten)]
+    pub(crate) scatter: ScatterOptions,
     /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds
     /// no nodes (with `--kind best` those where a kind begins, ends or becomes the better one).
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
@@ -131,7 +135,8 @@ impl TableFormat {
 
 pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
-    let mut profile = load_profile_with_fixed(&options.profile, &options.physics, (&fixed, quiet))?;
+    let loaded = load_profile_with_text(&options.profile, &options.physics, (&fixed, quiet))?;
+    let (mut profile, _) = options.scatter.changed(loaded, &options.profile)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
@@ -291,7 +296,14 @@ fn compute(
         None => Vec::new(),
     };
     let mut failed = false;
+    let mut forecast = TimeForecast::new(request, places_of(&known));
     let mut keep = |finding: &TableFinding| {
+        if matches!(finding, TableFinding::Shot { .. })
+            && let Some(words) = forecast.after_a_place()
+            && !quiet
+        {
+            print_remark(&words);
+        }
         if let Some(unfinished) = &mut unfinished
             && !failed
             && let Err(error) = unfinished.keep(finding)
@@ -305,6 +317,50 @@ fn compute(
     let progress = ProgressBars::new(quiet);
     let table = ShotTable::resume((profile, request), &known, &mut keep, &progress)?;
     Ok(table)
+}
+
+/// About how long a table takes, told by its first places.
+struct TimeForecast {
+    began: Instant,
+    computed: usize,
+    /// Searches for a shot.
+    searches: usize,
+}
+
+impl TimeForecast {
+    /// It is told after so many places.
+    const PLACES: usize = 3;
+    /// A shorter time is not told.
+    const LEAST_S: f64 = 20.0;
+
+    /// That of a table of which `known` shots were found before.
+    fn new(request: &ShotTableRequest, known: usize) -> Self {
+        let nodes = request.distances_m.len() * request.angles_rad.len();
+        let kinds = match request.kind {
+            TableKind::One(_) => 1,
+            TableKind::Better => 2,
+        };
+        // The shots between the nodes are searched too.
+        let of_node = if request.is_draft { 1 } else { 2 };
+        Self {
+            began: Instant::now(),
+            computed: 0,
+            searches: (nodes * kinds * of_node).saturating_sub(known),
+        }
+    }
+
+    /// What to say after one more place.
+    fn after_a_place(&mut self) -> Option<String> {
+        self.computed += 1;
+        let each_s = self.began.elapsed().as_secs_f64() / self.computed as f64;
+        let whole_s = each_s * self.searches as f64;
+        (self.computed == Self::PLACES && whole_s > Self::LEAST_S).then(|| {
+            format!(
+                "the whole table: about {}, or more where shots begin or end, and where nodes are added",
+                time_in_words(whole_s)
+            )
+        })
+    }
 }
 
 /// The number of places without a shot, of those that were asked for.
