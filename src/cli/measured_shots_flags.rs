@@ -108,6 +108,8 @@ pub(crate) struct MeasuredFile {
     pub(crate) seed: u64,
     pub(crate) tails: TailsArg,
     pub(crate) backspin_rad_s: Option<f64>,
+    /// The sessions that were asked for; empty for all.
+    pub(crate) sessions: Vec<String>,
 }
 
 /// The physics of fits where none is named.
@@ -343,6 +345,7 @@ impl MeasuredShotsOptions {
             unused: columns.unused().into_iter().map(str::to_owned).collect(),
             seed: self.seed,
             tails: self.tails,
+            sessions: sessions.to_vec(),
             backspin_rad_s,
         })
     }
@@ -563,7 +566,11 @@ impl MeasuredFile {
         shots: &ShooterShots,
         physics: &Physics,
     ) -> Result<ShooterFit, ShooterFitError> {
-        let name = self.name_of(shots);
+        // Two fits of one file must not have one title.
+        let parts: Vec<String> = std::iter::once(self.name_of(shots))
+            .chain(self.sessions.clone())
+            .collect();
+        let name = parts.join(", ");
         let test = ShooterTest {
             name: &name,
             places: &shots.places,

@@ -40,6 +40,8 @@ pub struct KindComparison {
 /// The advice for one place.
 #[derive(Clone, Debug)]
 pub struct Advice {
+    /// The number of measured shots.
+    pub shots: usize,
     /// The kind of the usual shot; the best shot is of the same kind.
     pub kind: ShotKind,
     /// The usual release: means over the draws.
@@ -188,6 +190,7 @@ pub fn advise(
         ..advised_probability
     };
     Ok(Advice {
+        shots: posterior.shots,
         kind,
         usual,
         spin: posterior.spin,

@@ -12,6 +12,7 @@ use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
 use super::measured_release::{VALUE_NAMES, Values};
 use super::posterior::Draw;
+use crate::math::normal_distribution::quantile;
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, FOOT_M};
 
@@ -30,6 +31,8 @@ pub const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 const SAME_AIM_RAD: f64 = 0.05 * DEGREE_RAD;
 /// The same for the release angle, rad.
 const SAME_PITCH_RAD: f64 = 0.1 * DEGREE_RAD;
+/// The side of a change is sure from this share of the draws on.
+const SURE_SIDE: f64 = 0.975;
 /// The least gain in P that is worth a change.
 const WORTH_A_CHANGE: f64 = 0.005;
 
@@ -63,13 +66,32 @@ pub struct AdviceStep {
     pub release: Values,
     /// What it adds to P.
     pub gain: Interval,
+    /// The share of the draws in which the change goes to the same side: a shooter whose usual aim
+    /// is hardly known cannot be told to which side to change it.
+    pub same_side: f64,
 }
 
 impl AdviceStep {
-    /// Whether the step gains at least half a point, and its interval lies above 0.
+    /// Whether the step gains at least half a point, its interval lies above 0, and the side of
+    /// the change is as sure.
     #[must_use]
     pub fn is_sure(&self) -> bool {
-        self.gain.low > 0.0 && self.gain.mean > WORTH_A_CHANGE
+        self.gain.low > 0.0 && self.gain.mean > WORTH_A_CHANGE && self.same_side >= SURE_SIDE
+    }
+
+    /// How many shots in place of `shots` would make the step sure, if it gains what it seems to;
+    /// `None` if it is sure or gains too little.
+    #[must_use]
+    pub fn sure_after(&self, shots: usize) -> Option<f64> {
+        let Interval { mean, low, .. } = self.gain;
+        let is_open = !self.is_sure() && mean > WORTH_A_CHANGE;
+        // The interval narrows with the root of the number of shots.
+        let narrower = (mean - low) / mean;
+        let of_side = quantile(SURE_SIDE) / quantile(self.same_side.clamp(0.51, 0.999)).max(0.025);
+        is_open.then(|| {
+            let factor = narrower.max(of_side).max(1.0);
+            shots as f64 * factor * factor
+        })
     }
 }
 
@@ -282,10 +304,12 @@ impl<'a> Shooting<'a> {
         let mut before = none;
         let mut steps = Vec::new();
         for (cause, change) in order {
+            let release = change.of_draw(self.typical, self.place);
             steps.push(AdviceStep {
                 cause,
-                release: change.of_draw(self.typical, self.place),
+                release,
                 gain: self.gain(change, before),
+                same_side: self.same_side(cause, release[cause.0] - usual[cause.0]),
             });
             before = change;
         }
@@ -301,6 +325,17 @@ impl<'a> Shooting<'a> {
             steps,
         };
         (steps, advised)
+    }
+}
+
+impl Shooting<'_> {
+    /// The share of the draws in which the usual release lies on the same side of the advised one.
+    fn same_side(&self, cause: Cause, by: f64) -> f64 {
+        let usual = self.typical.means[self.place][cause.0];
+        let advised = usual + by;
+        let of_draws = self.draws.iter().map(|draw| draw.means[self.place]);
+        let same = of_draws.filter(|means| (advised - means[cause.0]) * by > 0.0);
+        same.count() as f64 / self.draws.len() as f64
     }
 }
 

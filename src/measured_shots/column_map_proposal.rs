@@ -18,11 +18,18 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "releasein",
             "releasecm",
             "releaseft",
+            "heightatrelease",
+            "hrelease",
         ],
     ),
     ("entry_angle", &["entry", "incoming"]),
     ("depth", &["depth", "longshort", "shortlong"]),
-    ("speed", &["speed", "velocity", "velo", "v0", "mph", "kmh"]),
+    (
+        "speed",
+        &[
+            "speed", "velocity", "velo", "v0", "vrelease", "releasev", "mph", "kmh",
+        ],
+    ),
     (
         "pitch",
         &[
@@ -56,7 +63,7 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
     (
         "made",
         &[
-            "made", "make", "result", "outcome", "goal", "basket", "hit", "scored",
+            "made", "make", "result", "outcome", "goal", "basket", "hit", "scored", "success",
         ],
     ),
     (
@@ -555,6 +562,9 @@ mod tests {
         assert_eq!(unit_of("Spin", Quantity::Backspin), None);
         assert_eq!(unit_of("spin_hz", Quantity::Backspin), Some("rev_s"));
         assert_eq!(target_of("RelHt", true, &[]), Some("release_height"));
+        assert_eq!(target_of("h_release", false, &[]), Some("release_height"));
+        assert_eq!(target_of("v_release", false, &[]), Some("speed"));
+        assert_eq!(target_of("success", false, &[]), Some("made"));
         assert_eq!(
             target_of("Angle", true, &["entry_angle"]),
             Some("court_angle")

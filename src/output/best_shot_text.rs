@@ -56,8 +56,13 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
         .iter()
         .map(|(kind, shot)| format!(" The best {} shot makes {}.", kind.name(), in_hundred(shot)))
         .collect();
+    // A tenth of a metre per second is more than most shooters scatter by.
+    let digits = match units {
+        UnitSystem::Imperial => 1,
+        UnitSystem::Metric => 2,
+    };
     let mut text = format!(
-        "{place}.\n{how}: {} in 100.{others}\nRelease it at {:.1} {long}/s, {:.0} deg up, {spin}.\n",
+        "{place}.\n{how}: {} in 100.{others}\nRelease it at {:.digits$} {long}/s, {:.0} deg up, {spin}.\n",
         in_hundred(shot),
         nominal.speed_m_s / metre,
         nominal.pitch_rad / DEGREE_RAD

@@ -42,6 +42,8 @@ pub const MOST_NODES: usize = 2000;
 const MARGIN: f64 = 0.75;
 /// Most times that a step between two nodes is halved.
 pub const MOST_HALVINGS: usize = 4;
+/// A kind whose P is lower by more than this is not the better one between two nodes either.
+const WORSE_KIND: f64 = 0.05;
 /// Most times that a cell is split where the best shot may jump. The branches of both sides do not
 /// always reach its middle, so one split does not find every jump.
 const MOST_SPLITS: usize = 3;
@@ -132,8 +134,8 @@ impl ShotTable {
         }
         for halving in 0..=MOST_HALVINGS {
             let [finding, between, checking] = stages_of_round(halving + 1);
-            let cells = table.cells();
             table.find_nodes(&mut search, &finding)?;
+            let cells = table.relevant_cells(&search, request.kind);
             table.find_middles(&mut search, &cells, &between)?;
             table.find_checks(&mut search, &cells, &checking)?;
             let [distances_m, angles_rad] = table.finer(&cells, &search, request.max_loss);
@@ -148,16 +150,17 @@ impl ShotTable {
         if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
             for split in 0..MOST_SPLITS {
                 let [_, between, checking] = stages_of_round(MOST_HALVINGS + 2 + split);
+                let is_relevant = |cell: &Cell| is_relevant(&search, cell, request.kind);
                 let costly: Vec<bool> = table
                     .cells()
                     .iter()
-                    .map(|cell| is_costly(&search, cell, request.max_loss))
+                    .map(|cell| is_costly(&search, cell, request.max_loss) && is_relevant(cell))
                     .collect();
                 if !costly.contains(&true) {
                     break;
                 }
                 table.split_at_jumps(&search, &costly, request.max_loss)?;
-                let cells = table.cells();
+                let cells = table.relevant_cells(&search, request.kind);
                 table.find_middles(&mut search, &cells, &between)?;
                 table.find_checks(&mut search, &cells, &checking)?;
             }
@@ -224,6 +227,13 @@ impl ShotTable {
             })
         };
         angles.iter().flat_map(line).collect()
+    }
+
+    /// The cells that matter for the table.
+    fn relevant_cells(&self, search: &TableSearch<'_>, kind: TableKind) -> Vec<Cell> {
+        let mut cells = self.cells();
+        cells.retain(|cell| is_relevant(search, cell, kind));
+        cells
     }
 
     /// Distances and angles, with the middles of those cells where a check found more than
@@ -309,6 +319,17 @@ impl ShotTable {
 fn is_costly(search: &TableSearch<'_>, cell: &Cell, max_loss: f64) -> bool {
     let mut checks = search.checks_of(cell);
     checks.any(|check| check.worse() > MARGIN * max_loss)
+}
+
+/// Whether a cell matters: in a table of the better kind not where the other kind is better by more
+/// than [`WORSE_KIND`] at all corners.
+fn is_relevant(search: &TableSearch<'_>, cell: &Cell, kind: TableKind) -> bool {
+    let is_near = |shot: &TableShot| {
+        let other = shot.other_kind.unwrap_or(0.0);
+        shot.probability > other - WORSE_KIND
+    };
+    let mut corners = cell.corners().into_iter();
+    kind != TableKind::Better || corners.any(|corner| search.shot_at(&corner).is_some_and(is_near))
 }
 
 /// What progress calls the stages of a round.

@@ -7,9 +7,7 @@ use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{Posterior, advise};
-use crate::output::fit_files::advice_text::{
-    advice_json, advice_text, landing_in_words, other_kind_not_advised,
-};
+use crate::output::fit_files::advice_text::{advice_json, advice_text, brief_advice_text};
 use crate::shooter::Profile;
 use crate::units::UnitSystem;
 use clap::Args;
@@ -160,14 +158,11 @@ fn answer(
             ))?;
         }
         let angle = location.angle_rad;
-        let text = advice_text(name, &advice, observed, angle, units);
-        // The sentences end with an empty line.
-        let first = text.split_once("\n\n").filter(|_| options.brief);
-        let told = first.map(|(first, _)| {
-            let landing = landing_in_words(&advice, units);
-            format!("{first}\n{landing}{}", other_kind_not_advised(&advice))
-        });
-        print_prose(&told.unwrap_or(text))?;
+        let text = match options.brief {
+            true => brief_advice_text(name, &advice, observed, angle, units),
+            false => advice_text(name, &advice, observed, angle, units),
+        };
+        print_prose(&text)?;
     }
     Ok(())
 }

@@ -262,10 +262,20 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         }
         // First the interval that `fit` prints.
         text += &format!(
-            "\n{} shots make the 95 % interval of P reach {points} points to each side; {} make its standard deviation {points} points.\n",
+            "\n{} shots in all make the 95 % interval of P reach {points} points to each side; {} make its standard deviation {points} points.\n",
             in_words(shots_for(&rows, points / 100.0 / TWO_SIDED_95)),
             in_words(shots).to_lowercase()
         );
+        if let Some(first) = &first {
+            let of_interval = shots_for(&rows, points / 100.0 / TWO_SIDED_95);
+            if of_interval > first.shots && of_interval < MOST_SHOTS {
+                text += &format!(
+                    "Together with the {} shots of the first session that is about {} more.\n",
+                    first.shots,
+                    two_digits((of_interval - first.shots) as f64)
+                );
+            }
+        }
     }
     let of_errors = rows.iter().map(|row| row.simulation_error);
     let of_error = of_errors.fold(0.0, f64::max);
@@ -421,7 +431,7 @@ fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: 
             })
             .collect();
         text += &format!(
-            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
+            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}The second session is taken to have about the same P and scatter. Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
             first.shots,
             lines(&columns(&of_p), &columns(&of_falls)),
             hidden(&first.p),

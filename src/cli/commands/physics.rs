@@ -188,7 +188,7 @@ impl FittedRows {
     }
 
     /// The interval of a value of the base row, wider by what the changes that nobody measured in
-    /// this gym may do to it together.
+    /// this gym may do to it together; without those that the makes rule out.
     fn with_physics(
         &self,
         comparison: &PhysicsComparison,
@@ -197,7 +197,9 @@ impl FittedRows {
         let base = of(self.rows[comparison.base].as_ref()?)?;
         let rows = comparison.rows.iter().zip(&self.rows);
         let changes: Vec<(&str, f64)> = rows
-            .filter(|(row, _)| row.is_unmeasured)
+            .filter(|(row, own)| {
+                row.is_unmeasured && !own.as_ref().is_some_and(|own| self.makes_rule_out(own))
+            })
             .filter_map(|(row, own)| Some((row.name.as_str(), of(own.as_ref()?)?.mean - base.mean)))
             .collect();
         let [down, up] = together(&changes);
@@ -205,6 +207,13 @@ impl FittedRows {
             base.mean - libm::hypot(base.mean - base.low, down),
             base.mean + libm::hypot(base.high - base.mean, up),
         ))
+    }
+
+    /// Whether the interval of P does not meet that of the makes.
+    fn makes_rule_out(&self, own: &ShotsUnderPhysics) -> bool {
+        let (made, shots) = self.observed;
+        let share = wilson_interval(made, shots);
+        shots > 0 && (own.usual.low > share.high || own.usual.high < share.low)
     }
 
     /// The intervals of the fit and of the physics in one, and what the makes say.
@@ -233,14 +242,14 @@ impl FittedRows {
             share.share, share.low, share.high
         );
         let contradicted: Vec<&str> = (comparison.rows.iter().zip(&self.rows))
-            .filter_map(|(row, own)| Some((row.name.as_str(), own.as_ref()?.usual)))
-            .filter(|(_, usual)| usual.low > share.high || usual.high < share.low)
+            .filter_map(|(row, own)| Some((row.name.as_str(), own.as_ref()?)))
+            .filter(|(_, own)| self.makes_rule_out(own))
             .map(|(name, _)| name)
             .collect();
         text += &match &contradicted[..] {
             [] => " That rules out none of the rows.\n".to_owned(),
             rows => format!(
-                " That does not meet the interval of P under: {}.\n",
+                " That rules out, and the ranges above leave out: {} (there the interval of P does not meet that of the makes).\n",
                 rows.join(", ")
             ),
         };

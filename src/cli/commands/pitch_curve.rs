@@ -98,6 +98,12 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     let loaded = options.scatter.changed(loaded, &options.profile)?;
     let loaded = with_fixed(loaded, &fixed, &options.profile)?;
     let (mut profile, _) = moved(loaded, &options.place)?;
+    let choice = profile.search().choice;
+    if choice.iter().all(|variable| given.contains(&variable)) {
+        return Err(Failure::usage(
+            "search.choose of the profile names nothing that is left to search at a given pitch angle; add the speed or polar, or ask `bankshot probability PROFILE --pitch ANGLE` about one shot",
+        ));
+    }
     let pitches_rad = pitches_rad(options.pitches.as_deref(), &profile)?;
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;

@@ -4,11 +4,15 @@ use super::sweep_summary;
 use crate::best_shot::{compare_physics, physics_variants};
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::{Failure, code, refuse_missing};
+use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
+use crate::fitting::advise;
 use crate::output::atomic_file;
+use crate::output::fit_files::advice_text::brief_advice_text;
+use crate::plots::svg::escaped;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{physics_probabilities, sweep_difference_map};
 use crate::report::ReportError;
@@ -29,7 +33,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 pub(crate) struct ReportOptions {
-    /// The folder of a `best`, `compare`, `sweep` or `fit` run.
+    /// The folder of a `best`, `compare`, `sweep` or `fit` run. The page of a fit gets the advice.
     pub(crate) folder: PathBuf,
     /// Of a `best` run: add what the answer rests on, as `bankshot physics` does (a minute or two).
     #[arg(long)]
@@ -52,7 +56,7 @@ pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
         )));
     }
     if folder.join(FIT_FILE).exists() {
-        return page_of_fit(folder);
+        return page_of_fit(folder, quiet);
     }
     match sweep_of(folder) {
         Some(sweep) => report_sweep(folder, &sweep, quiet),
@@ -60,8 +64,9 @@ pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
     }
 }
 
-/// A fit has its page already, with plots of shots that its folder does not hold.
-fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
+/// A fit has its page already, with plots of shots that its folder does not hold. The advice is
+/// added to it.
+fn page_of_fit(folder: &Path, quiet: bool) -> Result<u8, Failure> {
     let page = folder.join("report.html");
     if !page.exists() {
         return Err(Failure::usage(format!(
@@ -69,9 +74,46 @@ fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
             page.display()
         )));
     }
+    let html = read_text(&page)?;
+    let parts = html.split_once(ADVICE_BEGINS).and_then(|(before, rest)| {
+        let (_, after) = rest.split_once(SECTION_ENDS)?;
+        Some((before, after))
+    });
+    let Some((before, after)) = parts else {
+        return Err(Failure::usage(format!(
+            "{}: has no place for the advice; it was written by another version: run `bankshot fit` again",
+            page.display()
+        )));
+    };
+    let fit = fit_folder::read(folder)?;
+    let bars = ProgressBars::new(quiet);
+    let mut advice = String::from("<h2>What to change</h2>\n");
+    for (place, profile) in fit.profiles.iter().enumerate() {
+        let of_place = advise(profile, &fit.posterior, place, &bars)?;
+        let text = brief_advice_text(
+            &profile.shooter().name,
+            &of_place,
+            Some(fit.observed[place]),
+            profile.location().angle_rad,
+            fit.units,
+        );
+        if fit.profiles.len() > 1 {
+            let words = profile.location().in_words(fit.units);
+            advice += &format!("<h3>{}</h3>\n", escaped(&words));
+        }
+        advice += &format!("<p class=\"answer\">{}</p>\n", escaped(text.trim_end()));
+    }
+    let html = format!("{before}{ADVICE_BEGINS}\n{advice}{SECTION_ENDS}{after}");
+    atomic_file::write_unlinked(&page, html.as_bytes())
+        .map_err(|error| Failure::io(page.display(), &error))?;
     print_answer(&format!("{}\n", page.display()))?;
     Ok(code::DONE)
 }
+
+/// The section of a page that the advice of a fit is written into.
+const ADVICE_BEGINS: &str = "<section id=\"advice\">";
+/// See [`ADVICE_BEGINS`].
+const SECTION_ENDS: &str = "</section>";
 
 /// The sweep in a folder, or the sweeps whose plots are in it.
 struct SweepPaths {
@@ -151,8 +193,9 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
     let profile = folder.join(PROFILE_FILE);
     if !profile.exists() {
         return Err(Failure::usage(format!(
-            "{}: is not the folder of a `best`, `compare`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST})",
-            folder.display()
+            "{}: is not the folder of a `best`, `compare`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST}){}",
+            folder.display(),
+            runs_within(folder)
         )));
     }
     let read_if_exists = |name: &str| {
@@ -168,6 +211,29 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
     BestShotRun::parse(&texts, &profile.display().to_string())
         .and_then(|run| best_shot_page(&run, &ProgressBars::new(quiet)))
         .map_err(|error| failure(folder, &error))
+}
+
+/// What to name in place of a folder that only holds folders of runs, or a page already.
+fn runs_within(folder: &Path) -> String {
+    const PAGE_OF_TEAM: &str = "team.html";
+    if folder.join(PAGE_OF_TEAM).is_file() {
+        return format!("; the page of a team is {PAGE_OF_TEAM} in it");
+    }
+    let is_run = |path: &Path| {
+        let mut files = [PROFILE_FILE, SWEEP_MANIFEST, FIT_FILE].iter();
+        files.any(|file| path.join(file).is_file())
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let runs = entries.map(|entry| entry.path());
+    let mut runs: Vec<String> = runs
+        .filter(|path| is_run(path))
+        .map(|path| path.display().to_string())
+        .collect();
+    runs.sort();
+    match &runs[..] {
+        [] => String::new(),
+        runs => format!("; name a run in it: {}", runs.join(", ")),
+    }
 }
 
 fn failure(folder: &Path, error: &ReportError) -> Failure {

@@ -227,7 +227,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let missing = missing_places(&table);
     if missing > 0 && !quiet {
         print_remark(&format!(
-            "no shot goes in from {missing} of the places that were asked for (exit code {})",
+            "no clean shot goes in from {missing} of the places that were asked for: they have no values (exit code {}); `bankshot best --distance` says what the most probable shot makes there",
             code::INCOMPLETE
         ));
     }

@@ -144,13 +144,36 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
         && by_m_s >= SAME_SPEED_M_S
         && (speed.mean < 0.0 || pitch.mean < 0.0)
     {
-        text += &format!(
-            " Change speed and angle together: the new speed alone makes {:.0} %, the new angle alone {:.0} %.",
-            100.0 * (p + speed.mean),
-            100.0 * (p + pitch.mean)
-        );
+        let [of_speed, of_pitch] = [speed, pitch].map(|gain| 100.0 * (p + gain.mean));
+        text += &if pitch.mean < 0.0 && speed.mean > 0.5 * gain.mean {
+            format!(
+                " Begin with the speed, which alone makes {of_speed:.0} %: the new angle without it makes {of_pitch:.0} %."
+            )
+        } else {
+            format!(
+                " Change speed and angle together: the new speed alone makes {of_speed:.0} %, the new angle alone {of_pitch:.0} %."
+            )
+        };
     }
     text + "\n"
+}
+
+/// How many more shots would make the step sure that seems to gain most, in a sentence; empty where
+/// that cannot be told.
+fn more_shots_in_words(advice: &Advice) -> String {
+    /// More than this many times the shots is no plan.
+    const MOST_TIMES: f64 = 10.0;
+    let steps = advice.steps.iter().flat_map(|steps| &steps.steps);
+    let open = steps.filter_map(|step| Some((step.gain.mean, step.sure_after(advice.shots)?)));
+    let most = open.max_by(|a, b| a.0.total_cmp(&b.0));
+    let more = most.map_or(0.0, |(_, shots)| shots - advice.shots as f64);
+    if !(more > 0.0 && more < MOST_TIMES * advice.shots as f64) {
+        return String::new();
+    }
+    format!(
+        " About {:.0} more shots would make a step sure, if it gains what it seems to.",
+        libm::ceil(more / 10.0) * 10.0
+    )
 }
 
 /// The other kind of shot, in a sentence, where it is surely better and by a shot in 100.
@@ -179,7 +202,7 @@ fn other_kind_in_words(advice: &Advice) -> String {
         return String::new();
     }
     format!(
-        "{words} makes {:.0} %, the best {} one {:.0} % ({} is better in {:.0} % of the draws).\n",
+        "{words} makes {:.0} %, the best {} one {:.0} % (by these shots {} is better with a chance of {:.0} %).\n",
         100.0 * other.mean,
         advice.kind.name(),
         100.0 * own.mean,
@@ -201,7 +224,7 @@ pub fn other_kind_not_advised(advice: &Advice) -> String {
     let [direct, bank] = kinds.probabilities.map(|p| 100.0 * p.mean);
     let sure = 100.0 * kinds.bank_is_better;
     format!(
-        "Bank or direct: the best bank shot makes {bank:.0} %, the best direct one {direct:.0} % (bank is better in {sure:.0} % of the draws).\n"
+        "Bank or direct: the best bank shot makes {bank:.0} %, the best direct one {direct:.0} % (by these shots bank is better with a chance of {sure:.0} %).\n"
     )
 }
 
@@ -340,25 +363,19 @@ pub fn advice_text(
     match (&advice.gain, sure) {
         (_, Some(steps)) => text += &advised_in_words(&words, advice, steps),
         (Some(gain), None) if gain.low > 0.0 && gain.mean > 0.005 => {
-            let mut target = advice
-                .best
-                .as_ref()
-                .map_or(advice.usual, |best| values_of(&best.nominal));
-            if advice.spin != SpinSource::Measured {
-                target[Cause::BACKSPIN.0] = advice.usual[Cause::BACKSPIN.0];
-            }
             text += &format!(
-                "The best shot gains {:.1} points (95 %: {:+.1} to {:+.1}), but no step towards it is sure alone. Make all of them together ({}), or measure more first.\n",
+                "The best shot gains {:.1} points (95 %: {:+.1} to {:+.1}), but no step towards it is sure, so none is advised: keep your release.{}\n",
                 100.0 * gain.mean,
                 100.0 * gain.low,
                 100.0 * gain.high,
-                words.of_releases(&advice.usual, &target)
+                more_shots_in_words(advice)
             );
         }
         (Some(gain), None) if gain.mean > 0.005 => {
             text += &format!(
-                "Another release may gain {:.1} points, but these shots cannot tell it from luck: measure more before you change anything.\n",
-                100.0 * gain.mean
+                "Another release may gain {:.1} points, but these shots cannot tell it from luck: measure more before you change anything.{}\n",
+                100.0 * gain.mean,
+                more_shots_in_words(advice)
             );
         }
         (Some(_), None) => text += "Keep your release: no other one is worth a change.\n",
@@ -472,6 +489,24 @@ pub fn advice_text(
     }
     text += "\nThe intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.\n";
     text
+}
+
+/// The answer for the player: the sentences, where the ball should come down, and bank or direct.
+#[must_use]
+pub fn brief_advice_text(
+    name: &str,
+    advice: &Advice,
+    observed: Observed,
+    court_angle_rad: f64,
+    units: UnitSystem,
+) -> String {
+    let text = advice_text(name, advice, observed, court_angle_rad, units);
+    // The sentences end with an empty line.
+    let first = text
+        .split_once("\n\n")
+        .map_or(text.as_str(), |(first, _)| first);
+    let landing = landing_in_words(advice, units);
+    format!("{first}\n{landing}{}", other_kind_not_advised(advice))
 }
 
 /// The answer for programs.

@@ -30,6 +30,11 @@ impl DistanceShots {
         self.shots[row].probability()
     }
 
+    /// Whether a clean shot goes in at one of the angles.
+    fn is_in_reach(&self) -> bool {
+        self.shots.iter().any(|at| at.shot.is_some())
+    }
+
     /// P at a pitch angle in a table.
     fn cell(&self, row: usize, kind: TableKind) -> String {
         let at = &self.shots[row];
@@ -49,23 +54,23 @@ const LEVEL: f64 = 0.01;
 const ACROSS: usize = 8;
 
 /// Mean and least P over the distances at a pitch angle.
-fn mean_and_least(from: &[DistanceShots], row: usize) -> (f64, f64) {
+fn mean_and_least(from: &[&DistanceShots], row: usize) -> (f64, f64) {
     let all = from.iter().map(|shots| shots.probability(row));
     let (sum, least) = all.fold((0.0, 1.0_f64), |(sum, least), p| (sum + p, least.min(p)));
     (sum / from.len() as f64, least)
 }
 
 /// The pitch angle of a row, in degrees.
-fn degrees(from: &[DistanceShots], row: usize) -> String {
+fn degrees(from: &[&DistanceShots], row: usize) -> String {
     let text = format!("{:.1}", from[0].shots[row].pitch_rad / DEGREE_RAD);
     text.trim_end_matches(".0").to_owned()
 }
 
 /// What one pitch angle costs against the best of the angles at each distance.
-fn cost_in_words(from: &[DistanceShots], row: usize, units: UnitSystem) -> String {
+fn cost_in_words(from: &[&DistanceShots], row: usize, units: UnitSystem) -> String {
     let costs: Vec<(f64, &DistanceShots)> = from
         .iter()
-        .map(|shots| {
+        .map(|&shots| {
             let all = (0..shots.shots.len()).map(|row| shots.probability(row));
             (all.fold(0.0, f64::max) - shots.probability(row), shots)
         })
@@ -96,6 +101,20 @@ pub fn pitch_over_distances_text(
         return String::new();
     };
     let (long, _) = units.length();
+    let everywhere = from;
+    let (mut from, beyond): (Vec<&DistanceShots>, Vec<&DistanceShots>) =
+        everywhere.iter().partition(|shots| shots.is_in_reach());
+    let out_of_reach: Vec<String> = match from.is_empty() {
+        true => Vec::new(),
+        false => beyond
+            .iter()
+            .map(|shots| format!("{}", shots.distance(units)))
+            .collect(),
+    };
+    if from.is_empty() {
+        from = beyond;
+    }
+    let from = &from[..];
     let rows: Vec<(f64, f64)> = (0..first.shots.len())
         .map(|row| mean_and_least(from, row))
         .collect();
@@ -113,7 +132,12 @@ pub fn pitch_over_distances_text(
     let high = (best + 1..rows.len()).take_while(is_level).last();
     let high = high.unwrap_or(best);
     let mut words = format!(
-        "One pitch angle for all {} distances: {} deg makes the most {}shots on average, {:.1} of 100",
+        "One pitch angle for {} {} distances: {} deg makes the most {}shots on average, {:.1} of 100",
+        if out_of_reach.is_empty() {
+            "all"
+        } else {
+            "the"
+        },
         from.len(),
         degrees(best),
         kind_before_shot(kind),
@@ -140,6 +164,15 @@ pub fn pitch_over_distances_text(
             degrees(steady),
             100.0 * rows[steady].1
         );
+        if steady != best {
+            words += &cost_in_words(from, steady, units);
+        }
+    }
+    if !out_of_reach.is_empty() {
+        words += &format!(
+            " Left out of these, and of mean and least: {} {long}, where no clean shot goes in at any of the angles.",
+            out_of_reach.join(", ")
+        );
     }
     if rows.len() > 1 && (best == 0 || best + 1 == rows.len()) {
         words += &format!(
@@ -154,11 +187,13 @@ pub fn pitch_over_distances_text(
         kind_before_shot(kind)
     ));
     let limit = speed_limit_in_words(&first.profile, units);
-    let all = || from.iter().flat_map(|shots| &shots.shots);
+    let all = || everywhere.iter().flat_map(|shots| &shots.shots);
     let signs = [
         (
             all().any(|row| row.shot.is_none() && row.not_clean.is_none()),
-            format!("-: no shot within the limits{limit} goes in; it counts as 0."),
+            format!(
+                "-: no shot within the limits{limit} goes in; where other angles have one it counts as 0."
+            ),
         ),
         (
             all().any(|row| row.not_clean.is_some() && row.shot.is_none()),
@@ -172,8 +207,8 @@ pub fn pitch_over_distances_text(
     let mut widths = vec![5];
     widths.extend([6; ACROSS]);
     widths.extend([6, 6]);
-    for (number, across) in from.chunks(ACROSS).enumerate() {
-        let is_last = (number + 1) * ACROSS >= from.len();
+    for (number, across) in everywhere.chunks(ACROSS).enumerate() {
+        let is_last = (number + 1) * ACROSS >= everywhere.len();
         let last = ["mean", "least"].map(str::to_owned);
         let last = || last.iter().filter(|_| is_last).cloned();
         let heads = across.iter().map(|shots| decimal(shots.distance(units), 2));

@@ -10,6 +10,11 @@ use comfy_table::{Table, presets};
 
 /// Longest name of a player in the tables, in characters.
 pub(super) const LONGEST_NAME: usize = 24;
+/// Longest place in a list, in characters.
+const LONGEST_PLACE: usize = 60;
+/// What to say where a player's two sides differ.
+pub(super) const SIDES_DIFFER: &str = "Left and right differ for players whose aim is correlated with speed or angle. After a fit of few shots that can be chance: its profile.toml has the intervals.\n";
+
 /// A chance in 100.
 pub(super) fn in_hundred(p: f64) -> String {
     format!("{:.1}", 100.0 * p)
@@ -198,7 +203,7 @@ fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>>
             in_hundred(mean),
             match unsure {
                 0 => format!("{banks} of {places} places"),
-                unsure => format!("{banks} of {places}, unsure at {unsure}"),
+                unsure => format!("{banks} of {places}, perhaps {unsure} more"),
             },
             format!("{own} of {} places", best.len()),
         ]
@@ -259,31 +264,42 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
 
 /// P of the bank shot at some places, a line for each, which begins with `indent`.
 fn place_list(places: &[&PlaceProbabilities], indent: &str, units: UnitSystem) -> String {
+    // A place stands for its mirror image too.
+    let mut listed: Vec<(String, Vec<&PlaceProbabilities>)> = Vec::new();
+    for &place in places {
+        let words = place.in_words_with_mirror(places, units);
+        match listed.iter_mut().find(|(known, _)| *known == words) {
+            Some((_, same)) => same.push(place),
+            None => listed.push((words, vec![place])),
+        }
+    }
     let mut text = String::new();
-    let mut listed: Vec<String> = Vec::new();
-    for chances in places {
-        // A place stands for its mirror image too.
-        let words = chances.in_words_with_mirror(places, units);
-        if listed.contains(&words) {
-            continue;
-        }
-        if listed.len() < MOST_BANK_PLACES {
-            let points =
-                |p: Option<Difference>| p.map_or("none".to_owned(), |p| in_hundred(p.value));
-            text += &format!(
-                "{indent}{}: {} (direct {})\n",
-                shortened(&words, 50),
-                points(chances.bank),
-                points(chances.direct),
-            );
-        }
-        listed.push(words);
+    for (words, same) in listed.iter().take(MOST_BANK_PLACES) {
+        text += &format!(
+            "{indent}{}: {} (direct {})\n",
+            shortened(words, LONGEST_PLACE),
+            least_to_most(same.iter().map(|place| place.bank)),
+            least_to_most(same.iter().map(|place| place.direct)),
+        );
     }
     if listed.len() > MOST_BANK_PLACES {
         let more = listed.len() - MOST_BANK_PLACES;
         text += &format!("{indent}and {more} more: team.csv\n");
     }
     text
+}
+
+/// P in 100 of a shot from one place, or from both sides: `80.6 to 82.2` where they differ.
+fn least_to_most(of_sides: impl Iterator<Item = Option<Difference>>) -> String {
+    let mut points: Vec<f64> = of_sides.flatten().map(|p| p.value).collect();
+    points.sort_by(f64::total_cmp);
+    match (points.first(), points.last()) {
+        (Some(&least), Some(&most)) if in_hundred(least) != in_hundred(most) => {
+            format!("{} to {}", in_hundred(least), in_hundred(most))
+        }
+        (Some(&p), _) => in_hundred(p),
+        _ => "none".to_owned(),
+    }
 }
 
 /// The same of all players, the surest first.

@@ -35,8 +35,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use court_results::{
-    LONGEST_NAME, PlayerSweep, best_players, in_hundred, table_of, team_csv, team_page, team_text,
-    whole_percent,
+    LONGEST_NAME, PlayerSweep, SIDES_DIFFER, best_players, in_hundred, table_of, team_csv,
+    team_page, team_text, whole_percent,
 };
 
 #[derive(Args, Debug)]
@@ -373,16 +373,19 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         let file = format!("{}/poster.html", run_folder::safe_name(&player.name));
         (player.name.clone(), file)
     });
-    let page = team_page(&players, maps, posters.collect(), &warnings, units);
+    let has_several_places = players.iter().any(|player| player.places.len() > 1);
+    let sides_differ = is_one_sided && has_several_places;
+    let remarks = match sides_differ {
+        true => warnings + SIDES_DIFFER,
+        false => warnings,
+    };
+    let page = team_page(&players, maps, posters.collect(), &remarks, units);
     let page_file = options.out.join("team.html");
     atomic_file::write(&page_file, page.html().as_bytes())
         .map_err(|error| Failure::io(page_file.display(), &error))?;
     print_prose(&team_text(&players, units))?;
-    let has_several_places = players.iter().any(|player| player.places.len() > 1);
-    if is_one_sided && has_several_places {
-        print_prose(
-            "Left and right differ for players whose aim is correlated with speed or angle. After a fit of few shots that can be chance: its profile.toml has the intervals.\n",
-        )?;
+    if sides_differ {
+        print_prose(SIDES_DIFFER)?;
     }
     if !quiet {
         print_remark(&format!(
