@@ -1098,3 +1098,24 @@ fn contract_warnings_of_a_fit_follow_its_profile() {
         .says("max_backspin is 1.50 rev/s")
         .says("fit them again with --backspin '1.50 rev/s'");
 }
+
+/// The page of a fit gets the advice, and once only.
+#[test]
+fn contract_a_report_of_a_fit_has_the_advice() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("fit");
+    fit("docs/data/gym_sensor.csv", &out, &[]).exits(0);
+    let page = || fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(!page().contains("What to change"));
+    let report = || Answer::of(bankshot().arg("report").arg(&out).arg("--quiet"));
+    report().exits(0);
+    let once = page();
+    assert_eq!(once.matches("What to change").count(), 1);
+    assert!(once.contains("What to train"));
+    report().exits(0);
+    assert_eq!(page(), once);
+    // A folder that holds runs is not one.
+    Answer::of(bankshot().arg("report").arg(folder.path()))
+        .exits(2)
+        .says("name a run in it");
+}

@@ -101,7 +101,8 @@ fn page_of_fit(folder: &Path, quiet: bool) -> Result<u8, Failure> {
             let words = profile.location().in_words(fit.units);
             advice += &format!("<h3>{}</h3>\n", escaped(&words));
         }
-        advice += &format!("<p class=\"answer\">{}</p>\n", escaped(text.trim_end()));
+        let lines: Vec<String> = text.lines().map(escaped).collect();
+        advice += &format!("<p class=\"answer\">{}</p>\n", lines.join("<br>\n"));
     }
     let html = format!("{before}{ADVICE_BEGINS}\n{advice}{SECTION_ENDS}{after}");
     atomic_file::write_unlinked(&page, html.as_bytes())

@@ -450,8 +450,7 @@ pub fn advice_text(
             from = step.release;
         }
     }
-    let is_at_limit = |best: &BestShot| best.at_limits.contains(&Limit::MaxBackspin);
-    if advice.best.as_ref().is_some_and(is_at_limit) {
+    if uses_all_backspin(advice) {
         text += "  The best shot uses all the backspin allowed: max_backspin of the profile, assumed.\n";
     }
     if advice.spin != SpinSource::Measured {
@@ -506,7 +505,23 @@ pub fn brief_advice_text(
         .split_once("\n\n")
         .map_or(text.as_str(), |(first, _)| first);
     let landing = landing_in_words(advice, units);
-    format!("{first}\n{landing}{}", other_kind_not_advised(advice))
+    let changes_spin = |steps: &AdviceSteps| steps.is_changed[Cause::BACKSPIN.0];
+    let is_at_limit = uses_all_backspin(advice) && advice.steps.as_ref().is_some_and(changes_spin);
+    let limit = if is_at_limit {
+        "That backspin is max_backspin of the profile, which is assumed.\n"
+    } else {
+        ""
+    };
+    format!(
+        "{first}\n{limit}{landing}{}",
+        other_kind_not_advised(advice)
+    )
+}
+
+/// Whether the best shot uses all the backspin that is allowed.
+fn uses_all_backspin(advice: &Advice) -> bool {
+    let is_at_limit = |best: &BestShot| best.at_limits.contains(&Limit::MaxBackspin);
+    advice.best.as_ref().is_some_and(is_at_limit)
 }
 
 /// The answer for programs.
