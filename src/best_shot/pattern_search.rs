@@ -5,7 +5,7 @@ use crate::probability::Progress;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
-/// Greatest number of shots that are tried from one start.
+/// About the greatest number of shots that are tried from one start, with all steps together.
 const MAX_TRIALS: u32 = 200;
 
 /// Two shots whose variables differ by less are the same but for rounding, SI units.

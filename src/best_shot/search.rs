@@ -43,6 +43,8 @@ const SAME_DIRECTION_RAD: f64 = 0.02;
 const SAME_SPEED: f64 = 0.02;
 /// The same for a side spin, rad/s.
 const SAME_SIDE_SPIN_RAD_S: f64 = 6.0;
+/// A loss of P that is none by chance.
+const LEAST_LOSS: f64 = 0.01;
 /// Tops are compared with this many times the Sobol points of the parabolas.
 const COMPARISON_FACTOR: u32 = 8;
 /// Greatest number of windows in a row.
@@ -315,7 +317,7 @@ impl<'a> BestShotSearch<'a> {
     /// The highest optimum of each kind that is reached from some starts. `None` where no shot of
     /// it is made.
     fn optima(&self, starts: &[Start]) -> [Option<Nominal>; 2] {
-        let points = self.profile.search().climb_samples;
+        let points = self.points();
         let few = (points / CLIMB_PART).max(CLIMB_LEAST);
         self.progress.begin("climbing", starts.len() as u64);
         let nominals = self.climb(starts, few);
@@ -338,7 +340,7 @@ impl<'a> BestShotSearch<'a> {
 
     /// Those of some optima, the best first, that are near it in P and far from each other.
     fn promising(&self, optima: &[Optimum]) -> impl Iterator<Item = Nominal> {
-        let points = f64::from(self.profile.search().climb_samples);
+        let points = f64::from(self.points());
         let least = |best: &Optimum| best.0 as f64 - PROMISING_MARGIN * points;
         let least = optima.first().map_or(0.0, least);
         let mut chosen: Vec<Nominal> = Vec::new();
@@ -367,7 +369,7 @@ impl<'a> BestShotSearch<'a> {
     /// The highest top of each kind of the parabolas about some optima; `None` where no shot of it
     /// is made.
     fn highest_tops(&self, starts: &[Start]) -> [Option<Nominal>; 2] {
-        let points = self.profile.search().climb_samples;
+        let points = self.points();
         self.progress.begin("refining", starts.len() as u64);
         let nominals: Vec<Nominal> = starts
             .par_iter()
@@ -375,7 +377,7 @@ impl<'a> BestShotSearch<'a> {
                 let once = self.top_of_parabolas(start, first_step, points);
                 let top = self.top_of_parabolas(&once, first_step, points);
                 self.progress.advance(1);
-                top.nominal
+                self.unless_worse(top.nominal, start.nominal, points)
             })
             .collect();
         self.progress.end();
@@ -389,9 +391,26 @@ impl<'a> BestShotSearch<'a> {
         })
     }
 
+    /// The top of parabolas; but the shot that they were taken about, where that is better by more
+    /// than the points err: P of a very accurate shooter is no parabola.
+    fn unless_worse(&self, top: Nominal, optimum: Nominal, points: u32) -> Nominal {
+        let made = self.made(&[top, optimum], points);
+        let lost = made[1] as f64 - made[0] as f64;
+        if lost > LEAST_LOSS * f64::from(points) {
+            optimum
+        } else {
+            top
+        }
+    }
+
+    /// The number of points of the parabolas.
+    fn points(&self) -> u32 {
+        self.profile.search().climb_samples.max(CLIMB_LEAST)
+    }
+
     /// The number of points with which tops are compared.
     fn compared_points(&self) -> u32 {
-        COMPARISON_FACTOR * self.profile.search().climb_samples
+        COMPARISON_FACTOR * self.points()
     }
 
     /// The optima that climbs with so many points reach.
@@ -440,7 +459,8 @@ impl<'a> BestShotSearch<'a> {
             nominal: optimum,
         };
         let near = self.top_of_parabolas(&start, first_step, points);
-        let nominal = self.top_of_parabolas(&near, reach, points).nominal;
+        let top = self.top_of_parabolas(&near, reach, points).nominal;
+        let nominal = self.unless_worse(top, optimum, points);
         let plan = self.plan.window(self.profile, &nominal)?;
         let curves = if self.topics.curves {
             probability_curves::from_samples(self.profile, &self.sampler, &plan, &nominal)

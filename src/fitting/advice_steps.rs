@@ -309,7 +309,7 @@ impl<'a> Shooting<'a> {
                 cause,
                 release,
                 gain: self.gain(change, before),
-                same_side: self.same_side(cause, release[cause.0] - usual[cause.0]),
+                same_side: self.same_side(usual[cause.0], release[cause.0], cause),
             });
             before = change;
         }
@@ -329,12 +329,14 @@ impl<'a> Shooting<'a> {
 }
 
 impl Shooting<'_> {
-    /// The share of the draws in which the usual release lies on the same side of the advised one.
-    fn same_side(&self, cause: Cause, by: f64) -> f64 {
-        let usual = self.typical.means[self.place][cause.0];
-        let advised = usual + by;
-        let of_draws = self.draws.iter().map(|draw| draw.means[self.place]);
-        let same = of_draws.filter(|means| (advised - means[cause.0]) * by > 0.0);
+    /// The share of the draws whose usual value lies on the same side of the advised one as the
+    /// typical `usual` value.
+    fn same_side(&self, usual: f64, advised: f64, cause: Cause) -> f64 {
+        let of_draws = self
+            .draws
+            .iter()
+            .map(|draw| draw.means[self.place][cause.0]);
+        let same = of_draws.filter(|mean| (advised - mean) * (advised - usual) > 0.0);
         same.count() as f64 / self.draws.len() as f64
     }
 }

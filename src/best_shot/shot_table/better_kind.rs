@@ -25,7 +25,7 @@ struct Stretch {
 pub(super) fn merged(
     profile: &Profile,
     tables: [ShotTable; 2],
-    max_loss: f64,
+    (max_loss, is_draft): (f64, bool),
 ) -> Result<ShotTable, ShotTableError> {
     let angle_rad = tables[0].angles_rad[0];
     let stretches = stretches(&tables, LEAST_GAIN.min(0.5 * max_loss));
@@ -65,7 +65,7 @@ pub(super) fn merged(
         checks: Vec::new(),
     };
     for stretch in &stretches {
-        table.check_stretch(profile, stretch, &tables)?;
+        table.check_stretch(profile, stretch, &tables, is_draft)?;
     }
     Ok(table)
 }
@@ -187,6 +187,7 @@ impl ShotTable {
         profile: &Profile,
         stretch: &Stretch,
         tables: &[ShotTable; 2],
+        is_draft: bool,
     ) -> Result<(), ShotTableError> {
         let (own, other) = (
             of_kind(tables, stretch.kind),
@@ -198,10 +199,15 @@ impl ShotTable {
             if step[0] >= step[1] || step[0] < stretch.from_m || step[1] > stretch.to_m {
                 continue;
             }
-            if own.distances_m.windows(2).any(|pair| pair == step) {
-                let inside = |distance_m: f64| step[0] < distance_m && distance_m < step[1];
-                let of_own = own.checks.iter().copied();
-                checks.extend(of_own.filter(|check| inside(check.location.distance_m)));
+            let inside = |distance_m: f64| step[0] < distance_m && distance_m < step[1];
+            let of_own = own.checks.iter().copied();
+            let of_own: Vec<_> = of_own
+                .filter(|check| inside(check.location.distance_m))
+                .collect();
+            let is_own = own.distances_m.windows(2).any(|pair| pair == step);
+            // Of a cell that did not seem to matter the own table has no checks.
+            if is_own && (is_draft || !of_own.is_empty()) {
+                checks.extend(of_own);
                 continue;
             }
             let cell = Cell {

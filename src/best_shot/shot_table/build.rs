@@ -42,7 +42,8 @@ pub const MOST_NODES: usize = 2000;
 const MARGIN: f64 = 0.75;
 /// Most times that a step between two nodes is halved.
 pub const MOST_HALVINGS: usize = 4;
-/// A kind whose P is lower by more than this is not the better one between two nodes either.
+/// A kind whose P is lower by more than this at both nodes and in the middle is not looked at
+/// between them.
 const WORSE_KIND: f64 = 0.05;
 /// Most times that a cell is split where the best shot may jump. The branches of both sides do not
 /// always reach its middle, so one split does not find every jump.
@@ -97,7 +98,7 @@ impl ShotTable {
                     Self::of_kind(&request, search)
                 };
                 let tables = [of_kind(ShotKind::Direct)?, of_kind(ShotKind::Bank)?];
-                merged(profile, tables, request.max_loss)?
+                merged(profile, tables, (request.max_loss, request.is_draft))?
             }
         };
         if request.is_draft {
@@ -135,6 +136,10 @@ impl ShotTable {
         for halving in 0..=MOST_HALVINGS {
             let [finding, between, checking] = stages_of_round(halving + 1);
             table.find_nodes(&mut search, &finding)?;
+            if halving == 0 {
+                // Of all: where they are is what the middles of a coarse table tell.
+                table.find_middles(&mut search, &table.cells(), &between)?;
+            }
             let cells = table.relevant_cells(&search, request.kind);
             table.find_middles(&mut search, &cells, &between)?;
             table.find_checks(&mut search, &cells, &checking)?;
@@ -322,14 +327,15 @@ fn is_costly(search: &TableSearch<'_>, cell: &Cell, max_loss: f64) -> bool {
 }
 
 /// Whether a cell matters: in a table of the better kind not where the other kind is better by more
-/// than [`WORSE_KIND`] at all corners.
+/// than [`WORSE_KIND`] at all corners and in the middle. (Its best shot need not be a clean one.
+/// Where it is not, `merged` checks the cell.)
 fn is_relevant(search: &TableSearch<'_>, cell: &Cell, kind: TableKind) -> bool {
     let is_near = |shot: &TableShot| {
         let other = shot.other_kind.unwrap_or(0.0);
         shot.probability > other - WORSE_KIND
     };
-    let mut corners = cell.corners().into_iter();
-    kind != TableKind::Better || corners.any(|corner| search.shot_at(&corner).is_some_and(is_near))
+    let mut places = cell.corners().into_iter().chain([cell.middle()]);
+    kind != TableKind::Better || places.any(|place| search.shot_at(&place).is_some_and(is_near))
 }
 
 /// What progress calls the stages of a round.

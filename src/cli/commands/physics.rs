@@ -188,7 +188,7 @@ impl FittedRows {
     }
 
     /// The interval of a value of the base row, wider by what the changes that nobody measured in
-    /// this gym may do to it together; without those that the makes rule out.
+    /// this gym may do to it together.
     fn with_physics(
         &self,
         comparison: &PhysicsComparison,
@@ -197,9 +197,7 @@ impl FittedRows {
         let base = of(self.rows[comparison.base].as_ref()?)?;
         let rows = comparison.rows.iter().zip(&self.rows);
         let changes: Vec<(&str, f64)> = rows
-            .filter(|(row, own)| {
-                row.is_unmeasured && !own.as_ref().is_some_and(|own| self.makes_rule_out(own))
-            })
+            .filter(|(row, _)| row.is_unmeasured)
             .filter_map(|(row, own)| Some((row.name.as_str(), of(own.as_ref()?)?.mean - base.mean)))
             .collect();
         let [down, up] = together(&changes);
@@ -210,7 +208,7 @@ impl FittedRows {
     }
 
     /// Whether the interval of P does not meet that of the makes.
-    fn makes_rule_out(&self, own: &ShotsUnderPhysics) -> bool {
+    fn do_makes_contradict(&self, own: &ShotsUnderPhysics) -> bool {
         let (made, shots) = self.observed;
         let share = wilson_interval(made, shots);
         shots > 0 && (own.usual.low > share.high || own.usual.high < share.low)
@@ -222,7 +220,11 @@ impl FittedRows {
             return String::new();
         };
         let mut text = format!(
-            "With what the shots leave open and what nobody measured in this gym together, P of the usual shot is {low:.2} to {high:.2}"
+            "With what the shots leave open and what nobody measured in this gym together, P of the usual shot{} is {low:.2} to {high:.2}",
+            match comparison.base {
+                0 => String::new(),
+                base => format!(" under {}", comparison.rows[base].name),
+            }
         );
         if let Some((low, high)) = self.with_physics(comparison, |own| Some(own.advised?[1])) {
             text += &format!(
@@ -243,13 +245,13 @@ impl FittedRows {
         );
         let contradicted: Vec<&str> = (comparison.rows.iter().zip(&self.rows))
             .filter_map(|(row, own)| Some((row.name.as_str(), own.as_ref()?)))
-            .filter(|(_, own)| self.makes_rule_out(own))
+            .filter(|(_, own)| self.do_makes_contradict(own))
             .map(|(name, _)| name)
             .collect();
         text += &match &contradicted[..] {
-            [] => " That rules out none of the rows.\n".to_owned(),
+            [] => " That speaks against none of the rows.\n".to_owned(),
             rows => format!(
-                " That rules out, and the ranges above leave out: {} (there the interval of P does not meet that of the makes).\n",
+                " That speaks against these, where the intervals do not meet: {}. (The range before does not heed that.)\n",
                 rows.join(", ")
             ),
         };

@@ -102,7 +102,7 @@ fn page_of_fit(folder: &Path, quiet: bool) -> Result<u8, Failure> {
             advice += &format!("<h3>{}</h3>\n", escaped(&words));
         }
         let lines: Vec<String> = text.lines().map(escaped).collect();
-        advice += &format!("<p class=\"answer\">{}</p>\n", lines.join("<br>\n"));
+        advice += &format!("<p class=\"answer\">{}</p>\n", lines.join("\n"));
     }
     let html = format!("{before}{ADVICE_BEGINS}\n{advice}{SECTION_ENDS}{after}");
     atomic_file::write_unlinked(&page, html.as_bytes())

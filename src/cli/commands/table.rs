@@ -356,7 +356,7 @@ impl TimeForecast {
         let whole_s = each_s * self.searches as f64;
         (self.computed == Self::PLACES && whole_s > Self::LEAST_S).then(|| {
             format!(
-                "the whole table: about {}, or more where shots begin or end, and where nodes are added",
+                "the searches take about {}; the checks between the places, ends of the shots and added places come on top",
                 time_in_words(whole_s)
             )
         })

@@ -158,15 +158,14 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
     text + "\n"
 }
 
-/// How many more shots would make the step sure that seems to gain most, in a sentence; empty where
-/// that cannot be told.
+/// How many more shots would make a step sure, in a sentence; empty where none is open, or they
+/// would be too many.
 fn more_shots_in_words(advice: &Advice) -> String {
     /// More than this many times the shots is no plan.
     const MOST_TIMES: f64 = 10.0;
     let steps = advice.steps.iter().flat_map(|steps| &steps.steps);
-    let open = steps.filter_map(|step| Some((step.gain.mean, step.sure_after(advice.shots)?)));
-    let most = open.max_by(|a, b| a.0.total_cmp(&b.0));
-    let more = most.map_or(0.0, |(_, shots)| shots - advice.shots as f64);
+    let after = steps.filter_map(|step| step.sure_after(advice.shots));
+    let more = after.fold(f64::INFINITY, f64::min) - advice.shots as f64;
     if !(more > 0.0 && more < MOST_TIMES * advice.shots as f64) {
         return String::new();
     }
