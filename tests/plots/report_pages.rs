@@ -71,7 +71,7 @@ fn contract_the_page_of_a_sweep_works_in_a_browser() {
         assert_eq!(seen["turned"], json!(["descending", true]), "{seen:#}");
         assert_eq!(seen["places"], 9, "{seen:#}");
         assert_eq!(seen["chosen"], 2, "{seen:#}");
-        let from = "From 8 ft from the hoop, 40 deg to the right.";
+        let from = "From 8 ft from the hoop, straight in front.";
         assert_starts_with(&seen["shown"], &format!("{from} Direct: P "));
         assert_starts_with(&seen["bank"], &format!("{from} Bank: P "));
         assert_eq!(seen["playing"], "Stop");
