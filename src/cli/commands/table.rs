@@ -33,7 +33,7 @@ interpolated. This is checked at the quarters of each step: where it costs more 
 interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
 Begin with --draft, which leaves out the checks: a second or two for each place. \
 The table is made in rounds: each looks at the places that the one before added. \
-Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes two to four minutes on two cores, with a free pitch more; \
+Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes one to four minutes on two cores, with a free pitch more; \
 --kind best makes a table of each kind, which takes twice as long or more; with --max-loss 1 no nodes are added, which takes half of the time or less.
 With --output a stopped table is not lost: what it found is kept beside the file, and the same command goes on with it.
 
