@@ -65,8 +65,9 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         same.map(|(_, place)| *place).collect()
     };
     let as_sure = found.iter().filter(|(p, _)| best.0 - p < AS_SURE).count();
-    let named = best.1.in_words_with_mirror(&alike(best.0), units);
-    let is_both = named != best.1.in_words(units);
+    let like_best = alike(best.0);
+    let named = best.1.in_players_words(&like_best, units);
+    let is_both = best.1.has_mirror_in(&like_best);
     let others = as_sure.saturating_sub(if is_both { 2 } else { 1 });
     let is_one_place = found.len() == 1;
     let mut sentences = vec![
@@ -94,7 +95,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     if !is_one_place {
         sentences.push(format!(
             "Your hardest place: {}. {} of 100 go in there.",
-            worst.1.in_words_with_mirror(&alike(worst.0), units),
+            worst.1.in_players_words(&alike(worst.0), units),
             of_hundred(worst.0)
         ));
     }
@@ -213,11 +214,11 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         .iter()
         .filter(|place| in_hundred(place.bank) == in_hundred(most.bank));
     let alike: Vec<&PlaceProbabilities> = alike.copied().collect();
-    let place = most.in_words_with_mirror(&alike, units);
+    let place = most.in_players_words(&alike, units);
     let aim = most.board_aim_in_words(units).map(|aim| {
         // Of a place and its mirror image, the aim is on the same side of the board as the shooter,
         // or on the other.
-        let is_of_both = place != most.in_words(units);
+        let is_of_both = most.has_mirror_in(&alike);
         let is_own_side = most
             .board_aim_m
             .is_some_and(|(across_m, _)| across_m * most.place.y_m > 0.0);
@@ -231,10 +232,12 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         }
     });
     format!(
-        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most {}{}: {} of 100 go in{direct}. Aim at {}.",
-        if most.name.is_some() { "at " } else { "" },
-        place,
+        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most here: {place}. {} of 100 go in{direct}. {} aim at {}.",
         most.bank.map_or_else(String::new, |p| of_hundred(p.value)),
+        match bank.len() == alike.len() {
+            true => "From there",
+            false => "From there (each place has its own aim)",
+        },
         aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
     )
 }

@@ -21,8 +21,8 @@ pub struct TeamPage {
     pub tables: Vec<PageTable>,
     /// The maps side by side.
     pub maps: Option<Plot>,
-    /// Name and file of each player's poster.
-    pub posters: Vec<(String, String)>,
+    /// The file of the posters, beside the page; `None` without any.
+    pub posters: Option<String>,
     /// What else must be said.
     pub footer: String,
 }
@@ -65,14 +65,15 @@ fn lines(text: &str) -> String {
 }
 
 impl TeamPage {
-    /// The page as one HTML file. The posters stay files of their own.
+    /// The page as one HTML file. The posters stay a file of their own.
     #[must_use]
     pub fn html(&self) -> String {
-        let posters: Vec<String> = self
-            .posters
-            .iter()
-            .map(|(name, file)| format!("<a href=\"{}\">{}</a>", escaped(file), escaped(name)))
-            .collect();
+        let posters = self.posters.as_ref().map_or_else(String::new, |file| {
+            let file = escaped(file);
+            format!(
+                "<p>A poster to print for each player: <a href=\"{file}\">{file}</a>, a file beside this page.</p>\n"
+            )
+        });
         let maps = self.maps.as_ref().map_or_else(String::new, |plot| {
             format!(
                 "<figure class=\"wide\">\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
@@ -85,12 +86,11 @@ impl TeamPage {
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>The team</title>\n\
              <style>\n{}figure.wide {{ width: 100%; }}\n\
              @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
-             <p class=\"answer\">{}</p>\n{}{maps}<p>Posters to print: {}</p>\n\
+             <p class=\"answer\">{}</p>\n{}{maps}{posters}\
              <footer><p>{}</p></footer>\n</html>\n",
             include_str!("../../assets/report/page.css"),
             lines(&self.answer),
             self.tables.iter().map(PageTable::html).collect::<String>(),
-            posters.join(", "),
             lines(&self.footer)
         )
     }

@@ -82,6 +82,45 @@ impl Location {
             .replace("on the right", "on either side")
     }
 
+    /// The place as players name it, such as `the left wing, 11 ft from the hoop`: the part of the
+    /// court, and the distance to half a foot or a tenth of a metre.
+    #[must_use]
+    pub fn in_players_words(&self, units: UnitSystem) -> String {
+        let side = if self.angle_rad > 0.0 {
+            "right"
+        } else {
+            "left"
+        };
+        self.in_players_words_of(&format!("the {side}"), units)
+    }
+
+    /// The same for a place and its mirror image together: `either wing, 11 ft from the hoop`.
+    #[must_use]
+    pub fn in_players_words_on_either_side(&self, units: UnitSystem) -> String {
+        self.in_players_words_of("either", units)
+    }
+
+    /// With the side of the court, such as `the left`.
+    fn in_players_words_of(&self, side: &str, units: UnitSystem) -> String {
+        let (long, metre) = units.length();
+        let step = match units {
+            UnitSystem::Imperial => 0.5,
+            UnitSystem::Metric => 0.1,
+        };
+        // f64 prints no more digits than it needs: 11, 11.5 and 3.4.
+        let steps = (self.distance_m / metre / step).round();
+        let distance = (steps * step * 10.0).round() / 10.0;
+        let part = match (self.angle_rad / DEGREE_RAD).abs() {
+            angle if angle < 10.0 => "straight in front".to_owned(),
+            angle if angle < 30.0 => format!("between the middle and {side} wing"),
+            angle if angle < 65.0 => format!("{side} wing"),
+            angle if angle < 80.0 => format!("{side} side near the baseline"),
+            angle if angle <= 90.5 => format!("{side} side along the baseline"),
+            _ => format!("{side} side behind the hoop"),
+        };
+        format!("{part}, {distance} {long} from the hoop")
+    }
+
     /// From the coordinates x (from the board towards midcourt) and y, m.
     #[must_use]
     pub fn from_xy(x_m: f64, y_m: f64) -> Self {

@@ -167,7 +167,7 @@ impl PlaceProbabilities {
         Some(difference(self.bank?, self.direct?))
     }
 
-    /// The place: its name in quotes, or where it is.
+    /// The place: its name, or where it is.
     #[must_use]
     pub fn in_words(&self, units: UnitSystem) -> String {
         self.name
@@ -179,14 +179,33 @@ impl PlaceProbabilities {
     /// too.
     #[must_use]
     pub fn in_words_with_mirror(&self, listed: &[&Self], units: UnitSystem) -> String {
+        if !self.has_mirror_in(listed) {
+            return self.in_words(units);
+        }
+        self.place.location().in_words_on_either_side(units)
+    }
+
+    /// The place in a player's words: its name, or the part of the court; with its mirror image
+    /// where that is in the list too.
+    #[must_use]
+    pub fn in_players_words(&self, listed: &[&Self], units: UnitSystem) -> String {
+        match &self.name {
+            Some(name) => name.clone(),
+            None if self.has_mirror_in(listed) => {
+                self.place.location().in_players_words_on_either_side(units)
+            }
+            None => self.place.location().in_players_words(units),
+        }
+    }
+
+    /// Whether the mirror image of the place is in a list too.
+    #[must_use]
+    pub fn has_mirror_in(&self, listed: &[&Self]) -> bool {
         let (x_m, y_m) = (self.place.x_m, self.place.y_m);
         let is_mirror = |other: &&Self| {
             libm::hypot(other.place.x_m - x_m, other.place.y_m + y_m) < SAME_PLACE_M
         };
-        if self.name.is_some() || libm::fabs(y_m) < SAME_PLACE_M || !listed.iter().any(is_mirror) {
-            return self.in_words(units);
-        }
-        self.place.location().in_words_on_either_side(units)
+        self.name.is_none() && libm::fabs(y_m) >= SAME_PLACE_M && listed.iter().any(is_mirror)
     }
 
     /// Where on the board the bank shot is aimed, such as `14 in above the ring, 8 in left of the

@@ -53,6 +53,7 @@ fn contract_a_team_has_a_table_maps_and_posters() {
         [
             "ann",
             "bo-b",
+            "posters.html",
             "team.csv",
             "team.html",
             "team.png",
@@ -68,8 +69,11 @@ fn contract_a_team_has_a_table_maps_and_posters() {
         assert!(html.contains("Your surest place: ") && !html.contains("<b>"));
     }
     let page = fs::read_to_string(out.join("team.html")).unwrap();
-    assert!(page.contains("href=\"ann/poster.html\"") && page.contains(">the best of the team<"));
+    assert!(page.contains("href=\"posters.html\"") && page.contains(">the best of the team<"));
     assert!(!page.contains("<b>"));
+    let posters = fs::read_to_string(out.join("posters.html")).unwrap();
+    assert_eq!(posters.matches("<section>").count(), 2);
+    assert!(!posters.contains("<b>"));
     let maps = fs::read_to_string(out.join("team.svg")).unwrap();
     assert!(maps.contains(">the best of the team<") && maps.contains(">level<"));
     let csv = fs::read_to_string(out.join("team.csv")).unwrap();

@@ -85,6 +85,7 @@ pub(super) fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
 
 pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
     let (unit, metre) = units.length();
+    let (short, short_metre) = units.short_length();
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
     let mut text =
         format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_players");
@@ -96,6 +97,8 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             "bank error",
             "shoot",
             "sure %",
+            &format!("bank aim right of the board's middle {short}"),
+            &format!("bank aim above the ring {short}"),
         ] {
             text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
         }
@@ -132,6 +135,15 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             text += &format!(",{}", chances.preference().map_or("", Preference::name));
             let share = chances.share_of_preferred();
             text += &share.map_or(",".to_owned(), |share| format!(",{}", whole_percent(share)));
+            text += &chances
+                .board_aim_m
+                .map_or(",,".to_owned(), |(across_m, above_m)| {
+                    format!(
+                        ",{:.1},{:.1}",
+                        across_m / short_metre,
+                        above_m / short_metre
+                    )
+                });
         }
         text.push('\n');
     }
@@ -248,8 +260,17 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
 /// From where a player should bank, and from where that is open.
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let name = shortened(&player.name, LONGEST_NAME);
-    let surely = place_list(&player.bank_places(), "  ", units);
-    let perhaps = place_list(&player.unsure_places(), "    ", units);
+    let aim = |place: &PlaceProbabilities| {
+        let aim = place.board_aim_in_words(units);
+        aim.map(|aim| format!("aim at the board, {aim}"))
+    };
+    let share = |place: &PlaceProbabilities| {
+        let share = place.share_of_preferred()?;
+        let kind = place.preference()?.name();
+        Some(format!("{kind} with {} % certainty", whole_percent(share)))
+    };
+    let surely = place_list(&player.bank_places(), ("  ", &aim), units);
+    let perhaps = place_list(&player.unsure_places(), ("    ", &share), units);
     let mut text = match (surely.is_empty(), perhaps.is_empty()) {
         (true, true) => format!("{name}: no place where a bank shot is better by 1 in 100.\n"),
         (true, false) => format!("{name}: no place yet where a bank shot is surely better.\n"),
@@ -262,8 +283,13 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     text
 }
 
-/// P of the bank shot at some places, a line for each, which begins with `indent`.
-fn place_list(places: &[&PlaceProbabilities], indent: &str, units: UnitSystem) -> String {
+/// P of the bank shot at some places, a line for each, which begins with `indent`, and below it
+/// what else there is to say of the place.
+fn place_list(
+    places: &[&PlaceProbabilities],
+    (indent, more): (&str, &dyn Fn(&PlaceProbabilities) -> Option<String>),
+    units: UnitSystem,
+) -> String {
     // A place stands for its mirror image too.
     let mut listed: Vec<(String, Vec<&PlaceProbabilities>)> = Vec::new();
     for &place in places {
@@ -274,13 +300,25 @@ fn place_list(places: &[&PlaceProbabilities], indent: &str, units: UnitSystem) -
         }
     }
     let mut text = String::new();
-    for (words, same) in listed.iter().take(MOST_BANK_PLACES) {
+    for (words, mut same) in listed.iter().cloned().take(MOST_BANK_PLACES) {
+        same.sort_by(|a, b| a.place.y_m.total_cmp(&b.place.y_m));
         text += &format!(
             "{indent}{}: {} (direct {})\n",
-            shortened(words, LONGEST_PLACE),
+            shortened(&words, LONGEST_PLACE),
             least_to_most(same.iter().map(|place| place.bank)),
             least_to_most(same.iter().map(|place| place.direct)),
         );
+        for &place in &same {
+            // Of both sides together it says of which side each line is.
+            let side = match same.len() > 1 {
+                true if place.place.y_m > 0.0 => "from the right: ",
+                true => "from the left: ",
+                false => "",
+            };
+            if let Some(words) = more(place) {
+                text += &format!("{indent}  {side}{words}\n");
+            }
+        }
     }
     if listed.len() > MOST_BANK_PLACES {
         let more = listed.len() - MOST_BANK_PLACES;
@@ -338,7 +376,7 @@ pub(super) fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
 pub(super) fn team_page(
     players: &[PlayerSweep],
     maps: Option<Plot>,
-    posters: Vec<(String, String)>,
+    posters: Option<String>,
     warnings: &str,
     units: UnitSystem,
 ) -> TeamPage {

@@ -18,11 +18,12 @@ use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_prose, print_remark, time_in_words};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::output::atomic_file;
+use crate::plots::player_poster::PlayerPoster;
 use crate::plots::svg::shortened;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
 use crate::probability::Progress;
-use crate::report::poster_page::poster_page;
+use crate::report::poster_page::{poster_page, posters_page};
 use crate::shooter::{Profile, ReleaseVariable, implausible_values};
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
@@ -44,8 +45,8 @@ use court_results::{
 Without --sweep each player shoots from the location of their profile, or all from --distance and --angle, and one table is printed.
 
 With --sweep each player shoots from every place of the sweep; it needs no shooter of its own, and one that it has is left out. \
-A region \"places\" takes a list of places with names, from a CSV file. OUT/team.html is a page to look at, OUT/team.csv has \
-every place and player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map, and a poster to print (poster.html). Stop it whenever you like; \
+A region \"places\" takes a list of places with names, from a CSV file. OUT/team.html is a page to look at, OUT/posters.html has a sheet to print for each player, OUT/team.csv has \
+every place and player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map and the poster. Stop it whenever you like; \
 the same command continues.
 
 Examples:
@@ -322,7 +323,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         });
     }
     let units = sweeps[0].2.settings.output.units;
-    let (mut players, mut finished) = (Vec::new(), Vec::new());
+    let (mut players, mut finished, mut posters) = (Vec::new(), Vec::new(), Vec::new());
     let count = sweeps.len();
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
         forecast_in_words(count, &sweeps[0].2)
@@ -345,7 +346,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         if let Some(fit) = &fit {
             find_sureness(&mut places, &config, fit, &ProgressBars::new(quiet))?;
         }
-        write_pictures(folder, &name, (&config, &rows), &places)?;
+        posters.extend(write_pictures(folder, &name, (&config, &rows), &places)?);
         players.push(PlayerSweep { name, places });
         finished.push((config, rows));
     }
@@ -369,17 +370,19 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     let file = options.out.join("team.csv");
     atomic_file::write(&file, csv.as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
-    let posters = players.iter().map(|player| {
-        let file = format!("{}/poster.html", run_folder::safe_name(&player.name));
-        (player.name.clone(), file)
-    });
+    let posters_name = (!posters.is_empty()).then(|| "posters.html".to_owned());
+    if let Some(name) = &posters_name {
+        let file = options.out.join(name);
+        atomic_file::write(&file, posters_page(&posters).as_bytes())
+            .map_err(|error| Failure::io(file.display(), &error))?;
+    }
     let has_several_places = players.iter().any(|player| player.places.len() > 1);
     let sides_differ = is_one_sided && has_several_places;
     let remarks = match sides_differ {
         true => warnings + SIDES_DIFFER,
         false => warnings,
     };
-    let page = team_page(&players, maps, posters.collect(), &remarks, units);
+    let page = team_page(&players, maps, posters_name, &remarks, units);
     let page_file = options.out.join("team.html");
     atomic_file::write(&page_file, page.html().as_bytes())
         .map_err(|error| Failure::io(page_file.display(), &error))?;
@@ -389,7 +392,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
     }
     if !quiet {
         print_remark(&format!(
-            "written: {} (to look at or print), team.csv and team.svg beside it, and in each player's folder bank_and_direct.svg and poster.html",
+            "written: {} (to look at or print); beside it posters.html (a sheet to print for each player), team.csv and team.svg; in each player's folder bank_and_direct.svg and poster.html",
             page_file.display()
         ));
         if let [first, second, ..] = &folders[..] {
@@ -443,21 +446,23 @@ fn forecast_in_words(players: usize, first: &SweepConfig) -> Option<String> {
     Some(format!("{players}: about {time} in all"))
 }
 
-/// A player's map and poster.
+/// Writes a player's map and poster; returns the poster.
 fn write_pictures(
     folder: &Path,
     name: &str,
     (config, rows): (&SweepConfig, &BTreeMap<u64, ResultRow>),
     places: &[PlaceProbabilities],
-) -> Result<(), Failure> {
+) -> Result<Option<PlayerPoster>, Failure> {
     let results = SweepResults::new(config, rows).with_chances(places.to_vec());
     let mut plots = Vec::new();
     plots.extend(sweep_bank_direct_map::draw(&results));
-    if let Some(poster) = player_poster::draw(&results) {
+    let poster = player_poster::draw(&results);
+    if let Some(poster) = &poster {
         let file = folder.join("poster.html");
-        atomic_file::write(&file, poster_page(name, &poster).as_bytes())
+        atomic_file::write(&file, poster_page(name, poster).as_bytes())
             .map_err(|error| Failure::io(file.display(), &error))?;
-        plots.push(poster.plot);
+        plots.push(poster.plot.clone());
     }
-    plot_files::write(folder, &plots)
+    plot_files::write(folder, &plots)?;
+    Ok(poster)
 }
