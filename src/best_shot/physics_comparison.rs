@@ -97,45 +97,44 @@ impl PhysicsComparison {
         errors.flatten().fold(0.0, f64::max)
     }
 
+    /// P of the best direct shot.
+    #[must_use]
+    pub fn direct_p(row: &PhysicsRow) -> Option<f64> {
+        let shot = row.direct.as_ref().ok()?;
+        Some(shot.estimate.probability)
+    }
+
+    /// P of [`Self::same_shot`].
+    #[must_use]
+    pub fn same_shot_p(row: &PhysicsRow) -> Option<f64> {
+        Some(row.same_shot.as_ref()?.probability)
+    }
+
     /// One sentence or two: how far P of the best direct shot rests on what nobody measured in this
     /// gym, and how far that of [`Self::same_shot`] does.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
-        let list = |changes: &[(&str, f64)]| {
-            let words = changes.iter().map(|(name, by)| {
-                let name = name.split_once(' ').map_or(*name, |(_, change)| change);
-                // Rounded first, and 0 added: no negative zero.
-                format!("{name} {:+.1}", libm::round(1000.0 * by) / 10.0 + 0.0)
-            });
-            words.collect::<Vec<_>>().join(", ")
+        let base = self.rows.get(self.base)?;
+        let range = |p: &dyn Fn(&PhysicsRow) -> Option<f64>| {
+            let changes = self.unmeasured_changes(p);
+            let here = p(base).filter(|_| !changes.is_empty())?;
+            let [down, up] = together(&changes);
+            let ends = [here + down, here + up].map(|p| p.clamp(0.0, 1.0));
+            Some(format!("{here:.2} ({:.2} to {:.2})", ends[0], ends[1]))
         };
-        let direct = |row: &PhysicsRow| {
-            let shot = row.direct.as_ref().ok()?;
-            Some(shot.estimate.probability)
-        };
-        let best = self.unmeasured_changes(direct);
-        if best.is_empty() {
-            return None;
-        }
-        let same = |row: &PhysicsRow| Some(row.same_shot.as_ref()?.probability);
-        let same = self.unmeasured_changes(same);
-        let together = |changes: &[(&str, f64)]| {
-            // Rounded first, and 0 added: no negative zero.
-            let [down, up] = together(changes).map(|by| libm::round(100.0 * by) + 0.0);
-            format!("together about {down:+.0} to {up:+.0}")
+        let direct = range(&Self::direct_p)?;
+        let under = match self.base {
+            0 => String::new(),
+            _ => format!(" under {}", base.name),
         };
         let mut text = format!(
-            "What nobody measured in this gym, by what it does to the best direct shot, in makes of 100: {} ({}).",
-            list(&best),
-            together(&best)
+            "P of the best direct shot{under}, with the range that what nobody measured in this gym leaves: {direct}."
         );
-        if !same.is_empty() {
+        if let Some(same) = range(&Self::same_shot_p) {
             text += &format!(
-                " To {}, {}: {} ({}).",
+                " P of {}, {}: {same}.",
                 self.same_shot.in_words(),
-                self.same_shot.what_stays(),
-                list(&same),
-                together(&same)
+                self.same_shot.what_stays()
             );
         }
         Some(text)

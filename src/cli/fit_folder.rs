@@ -394,18 +394,18 @@ pub(crate) fn read_draws_of<'a>(
     Ok(Some((folder, fit)))
 }
 
-/// P of a nominal shot over the draws of a fit, in words.
-pub(crate) fn text_over_draws(
-    (folder, fit): (&Path, &FitFolder),
+/// P of a nominal shot over the draws of a fit.
+pub(crate) fn shot_over_draws(
+    fit: &FitFolder,
     profile: &Profile,
     nominal: &Nominal,
-) -> Result<String, Failure> {
-    let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
-    Ok(format!(
-        "{}: {}\n",
-        which_draws(folder, fit),
-        probability_text(&p)
-    ))
+) -> Result<DrawProbabilities, Failure> {
+    probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)
+}
+
+/// P of a nominal shot over the draws of a fit, in words.
+pub(crate) fn text_over_draws((folder, fit): (&Path, &FitFolder), p: &DrawProbabilities) -> String {
+    format!("{}: {}\n", which_draws(folder, fit), probability_text(p))
 }
 
 /// P of the best shot of each kind over the draws of a fit, and of bank less direct, in words.

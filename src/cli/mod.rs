@@ -12,6 +12,7 @@ mod fit_folder;
 mod fixed_value_flags;
 mod measured_shots_flags;
 mod nominal_shot_flags;
+mod output_files;
 mod plot_files;
 mod progress_bars;
 mod run_folder;

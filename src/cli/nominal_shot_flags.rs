@@ -13,7 +13,7 @@ const MAX_SPEED_M_S: f64 = 1000.0;
 const MAX_SPIN_RAD_S: f64 = 10_000.0;
 
 /// The flags of a nominal shot. Each overrides the profile's `[nominal]` table.
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub(crate) struct NominalOptions {
     /// Speed of the release, such as '23.5 ft/s'.
     #[arg(long, allow_hyphen_values = true)]
@@ -119,10 +119,26 @@ impl NominalOptions {
 
     /// The nominal shot.
     pub(crate) fn resolve(&self, profile: &Profile) -> Result<Nominal, Failure> {
+        self.resolve_with(profile, None)
+    }
+
+    /// The nominal shot with a value (SI) that is given in place of the one of the flags.
+    pub(crate) fn resolve_with(
+        &self,
+        profile: &Profile,
+        given: Option<(NominalVariable, f64)>,
+    ) -> Result<Nominal, Failure> {
         let mut nominal = Nominal::default();
         let mut errors = Vec::new();
         for variable in NominalVariable::ALL {
-            match self.value(variable, profile) {
+            let value = match given {
+                Some((of, value)) if of == variable => match allowed(variable, value) {
+                    None => Ok(value),
+                    Some(allowed) => Err(format!("the {} must be {allowed}", variable.name())),
+                },
+                _ => self.value(variable, profile),
+            };
+            match value {
                 Ok(value) => *nominal.get_mut(variable) = value,
                 Err(error) => errors.push(error),
             }

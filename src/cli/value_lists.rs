@@ -12,6 +12,8 @@ pub(crate) fn ascending_values(
 ) -> Result<Vec<f64>, Failure> {
     let example = match dimension {
         Dimension::Angle => "'0 deg, 30 deg' or '0 deg to 60 deg by 15 deg'",
+        Dimension::Speed => "'7 m/s, 8 m/s' or '22 ft/s to 26 ft/s by 0.5 ft/s'",
+        Dimension::Spin => "'1 rev/s, 2 rev/s' or '0 rev/s to 3 rev/s by 0.5 rev/s'",
         _ => "'2 m, 3 m' or '6 ft to 20 ft by 1 ft'",
     };
     let refuse = |message: String| {
@@ -46,7 +48,7 @@ pub(crate) fn ascending_values(
             let ends = (0..=last.len()).filter(|end| last.is_char_boundary(*end));
             let number_end = ends.filter(|end| last[..*end].parse::<f64>().is_ok()).max();
             let rest = number_end.map_or("", |end| last[end..].trim());
-            let is_one = |c: char| c.is_alphabetic() || c == '_' || c == '\u{b0}';
+            let is_one = |c: char| c.is_alphabetic() || matches!(c, '_' | '/' | '\u{b0}');
             let unit = if rest.chars().all(is_one) { rest } else { "" };
             let has_no_unit = |value: &&str| value.parse::<f64>().is_ok();
             let parse_in_unit = |value: &&str| {

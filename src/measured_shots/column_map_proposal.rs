@@ -206,6 +206,9 @@ pub fn map_proposal(columns: &Columns) -> String {
     }
     text +=
         "\n  without --physics the shots are taken to be at the men's college ball and hoop (ncaa)";
+    if maps.iter().any(|map| is_metric(map)) {
+        text += "\n  answers are in feet and ft/s: --units metric gives metres and m/s";
+    }
     let is_known = |quantity: Quantity| {
         taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
     };
@@ -230,6 +233,13 @@ pub fn map_proposal(columns: &Columns) -> String {
         }
     }
     text
+}
+
+/// Whether a map such as `--map 'speed=v:m/s'` has a metric unit.
+fn is_metric(map: &str) -> bool {
+    let unit = map.trim_end_matches('\'').rsplit(':').next();
+    let unit = unit.map(|unit| unit.split(['+', '-']).next().unwrap_or(unit));
+    matches!(unit, Some("m" | "cm" | "mm" | "m/s" | "cm/s" | "km/h"))
 }
 
 /// Whether three of the columns are the coordinates of a ball.

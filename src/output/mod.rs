@@ -7,6 +7,7 @@ pub mod best_shot_json;
 pub mod best_shot_text;
 pub mod fit_files;
 pub mod json_object;
+pub mod probability_along_variable;
 pub mod probability_text_json;
 pub mod shot_table_files;
 pub mod simulation_files;

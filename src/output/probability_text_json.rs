@@ -1,7 +1,9 @@
 //! The answer of `probability`: P of one nominal shot, as text and as JSON.
 
+use super::fit_files::fit_json::probability_json;
 use super::json_object::{Record, number, object, provenance};
 use crate::analysis::miss_breakdown::MissBreakdown;
+use crate::fitting::DrawProbabilities;
 use crate::probability::Estimate;
 use crate::shooter::{Nominal, Profile, ReleaseVariable};
 use crate::units::{DEGREE_RAD, Dimension, REV_RAD};
@@ -91,9 +93,12 @@ impl ProbabilityAnswer<'_> {
     }
 }
 
-/// The answer as one JSON object.
+/// The answer as one JSON object; P over the draws of a fit may be in it.
 #[must_use]
-pub fn answer_json(answer: &ProbabilityAnswer<'_>) -> Value {
+pub fn answer_json(
+    answer: &ProbabilityAnswer<'_>,
+    over_draws: Option<&DrawProbabilities>,
+) -> Value {
     let estimate = answer.estimate;
     let numbers = |values: Vec<(String, f64)>| {
         object(
@@ -151,6 +156,7 @@ pub fn answer_json(answer: &ProbabilityAnswer<'_>) -> Value {
     ];
     record.extend(provenance(answer.profile.hash()));
     record.push(("seed".to_owned(), answer.seed.into()));
+    record.extend(over_draws.map(|p| ("over_draws".to_owned(), probability_json(p))));
     object(record)
 }
 

@@ -14,6 +14,7 @@ pub mod paper_figures;
 pub mod physics_probabilities;
 pub mod player_poster;
 mod polyline_thinning;
+pub mod probability_along_variable;
 pub mod probability_curves;
 pub mod rasterise;
 pub mod release_map;

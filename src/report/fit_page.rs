@@ -7,6 +7,7 @@ use super::shot_in_words::ReportShot;
 use crate::fitting::{ShooterFit, nominal_of};
 use crate::model::league_courts::League;
 use crate::output::fit_files::fit_json::FitSource;
+use crate::output::fit_files::fit_text::tests_text;
 use crate::output::fit_files::parameters::parameters;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
@@ -153,7 +154,7 @@ fn parameter_table(fit: &ShooterFit, kind: &str, units: UnitSystem) -> HtmlTable
     let columns = ["parameter", "unit", "mean", "2.5 %", "97.5 %", "source"];
     HtmlTable {
         caption: "What was fitted".to_owned(),
-        note: String::new(),
+        note: tests_text(fit),
         columns: columns.map(str::to_owned).to_vec(),
         rows: parameters(&fit.posterior, kind, units)
             .into_iter()

@@ -137,7 +137,12 @@ fn answer(config: &SweepConfig, shots: &[ReportShot], comparison: Option<&Plot>)
             shot.location.in_words(units)
         }
     };
-    let compared = comparison.map_or(String::new(), |plot| format!(" {}", plot.caption));
+    let compared = comparison.map_or(String::new(), |plot| {
+        format!(
+            " {} The profile is taken as exact: for a measured player `bankshot team` says where bank or direct is not sure.",
+            plot.caption
+        )
+    });
     Some(format!(
         "The surest place is {}: {:.1} of 100 go in with the {} shot. The hardest is {}: {:.1} with the {} shot.{compared}",
         in_words(best),

@@ -753,6 +753,47 @@ fn contract_speeds_beside_landings_are_compared_with_them() {
     );
 }
 
+/// Authority: two equal sessions with errors a and b of one shot show a difference d with
+/// (1.96 + 0.84)^2 (a^2 + b^2) / d^2 shots each, and a is what the rows of the table give.
+#[test]
+fn contract_design_says_how_many_shots_show_a_difference() {
+    let folder = TempDir::new().unwrap();
+    let usual = fs::read_to_string("configs/free_throw.toml").unwrap();
+    let nominal =
+        "\n[nominal]\nspeed = \"24.2 ft/s\"\npitch = \"51 deg\"\nbackspin = \"3 rev/s\"\n";
+    let first = write_file(&folder, "usual.toml", usual.clone() + nominal);
+    let tired = usual.replace("c10 = \"0.25 ft/s\"", "c10 = \"0.5 ft/s\"");
+    assert_ne!(tired, usual);
+    let second = write_file(&folder, "tired.toml", tired + nominal);
+    let design = |profile: &std::path::Path, more: &[&str]| {
+        let mut command = bankshot();
+        command.arg("design").arg(profile);
+        command.args(["--shots", "100", "--repetitions", "8", "--json", "--quiet"]);
+        Answer::of(command.args(more)).exits(0).json()
+    };
+    let both = design(&first, &["--against", second.to_str().unwrap()]);
+    let of_second = design(&second, &[]);
+    let of_one_shot =
+        |json: &serde_json::Value, key: &str| 10.0 * json["tests"][0][key].as_f64().unwrap();
+    let known = |change: f64, key: &str| {
+        let [a, b] = [&both, &of_second].map(|json| of_one_shot(json, key));
+        let root = (1.96 + 0.8416) / change;
+        root * root * (a * a + b * b)
+    };
+    let differences = both["against"]["differences"].as_array().unwrap();
+    let [p, speed, ..] = &differences[..] else {
+        panic!("{differences:?}")
+    };
+    let shots = |of: &serde_json::Value| of["shots_in_each_of_two"].as_f64().unwrap();
+    let change = of_second["probability"].as_f64().unwrap() - both["probability"].as_f64().unwrap();
+    assert!((p["change"].as_f64().unwrap() - change).abs() < 1e-12 && change < -0.1);
+    assert!((shots(p) / known(change, "probability_error") - 1.0).abs() < 1e-9);
+    assert!((speed["change"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    let known = known(std::f64::consts::LN_2, "speed_sd_relative_error");
+    assert!((shots(speed) / known - 1.0).abs() < 1e-9);
+    assert!(both["against"]["differences"][0]["shots_in_second_session"].is_null());
+}
+
 #[test]
 fn contract_design_says_what_a_test_will_tell() {
     let flags = [

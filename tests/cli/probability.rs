@@ -344,3 +344,53 @@ fn contract_scatter_changes_an_error_as_an_edit_would() {
     let twice = ["--scatter", "speed=-20%", "--scatter", "speed=-10%"];
     run(&own, &twice).exits(2).says("speed is given twice");
 }
+
+/// P along a variable is that of the single shots, and the shot of a flag needs no value of it.
+#[test]
+fn contract_vary_gives_the_p_of_each_shot() {
+    let folder = TempDir::new().unwrap();
+    let csv = folder.path().join("p.csv");
+    let plot = folder.path().join("p.svg");
+    let vary = |flags: &[&str]| probability(&[&["--target", "0.004"], flags].concat());
+    let answer = vary(&[
+        "--vary",
+        "aim=-1, 0, 1 deg",
+        "--json",
+        "-o",
+        csv.to_str().unwrap(),
+        "--plot",
+        plot.to_str().unwrap(),
+    ]);
+    let json = answer.exits(0).json();
+    let points = json["points"].as_array().unwrap().clone();
+    assert_eq!(points.len(), 3);
+    for (point, aim) in points.iter().zip(["-1 deg", "0 deg", "1 deg"]) {
+        let alone = vary(&["--aim", aim, "--json"]).exits(0).json();
+        for key in ["probability", "standard_error", "shots"] {
+            assert_eq!(point[key], alone[key], "{aim} {key}");
+        }
+        assert_eq!(point["misses"]["left"], alone["shares"]["left"], "{aim}");
+    }
+    let text = std::fs::read_to_string(&csv).unwrap();
+    assert_eq!(text.lines().count(), 4);
+    assert!(text.starts_with("aim_deg,probability,standard_error,shots,short,"));
+    assert!(
+        std::fs::read_to_string(&plot)
+            .unwrap()
+            .contains("aim (deg)")
+    );
+    // A list of spins or speeds may have its unit once.
+    vary(&["--vary", "backspin=1, 2 rev/s"])
+        .exits(0)
+        .prints("Of these values of the backspin, ");
+    vary(&["--vary", "pich=50 deg"])
+        .exits(2)
+        .says("--vary: \"pich\" is no variable of a shot; write one of speed, pitch, polar");
+    vary(&["--vary", "pitch"]).exits(2).says("has no =");
+    vary(&["--vary", "pitch=100 deg"])
+        .exits(2)
+        .says("the pitch must be from -90 to 90 deg");
+    vary(&["--vary", "pitch=50 deg", "-o", "p.java"])
+        .exits(2)
+        .says("the name must end in .csv, .json or .txt");
+}

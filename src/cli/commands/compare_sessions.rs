@@ -439,6 +439,9 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
         size: 0.01,
         comparison: compare_probabilities([&before.probabilities, &after.probabilities], shots),
     }];
+    let is_spin_measured = posteriors
+        .iter()
+        .all(|posterior| posterior.spin == SpinSource::Measured);
     for (i, (unit, size)) in
         value_units(options.measured.units_or(before.units.unwrap_or_default()))
             .into_iter()
@@ -446,7 +449,7 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
     {
         let is_spin = i == VALUE_NAMES.len() - 1;
         // A spin that was not measured in both sessions tells nothing of a change.
-        if is_spin && posteriors.iter().any(|p| p.spin != SpinSource::Measured) {
+        if is_spin && !is_spin_measured {
             continue;
         }
         let mut add = |what: &str, comparison: SessionComparison| {
@@ -463,7 +466,10 @@ fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<Ses
         );
         add("sd", compare_sessions(posteriors, |draw| draw.sds[i]));
     }
-    for (a, b) in [(0, 1), (0, 2), (1, 2)] {
+    for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
+        if b == VALUE_NAMES.len() - 1 && !is_spin_measured {
+            continue;
+        }
         changes.push(SessionChange {
             name: format!("corr_{}_{}", VALUE_NAMES[a], VALUE_NAMES[b]),
             unit: "",

@@ -292,22 +292,11 @@ impl FittedRows {
         table
     }
 
-    /// What it gains under the physics of the profile, and under those that nobody measured in this
-    /// gym.
-    fn in_words(&self, comparison: &PhysicsComparison) -> String {
+    /// Whether the advice is sure under the physics that nobody measured in this gym.
+    fn is_sure_in_words(&self, comparison: &PhysicsComparison) -> String {
         if self.changes.is_empty() {
             return "`bankshot advise` advises no change to this shooter.\n".to_owned();
         }
-        let points = |gain: &Interval| {
-            let [mean, low, high] = [gain.mean, gain.low, gain.high].map(in_points);
-            format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
-        };
-        // `with hoop_restitution 0.41`, or `ncaa, hoop_restitution 0.41` where the profile's
-        // physics has no air.
-        let change = |row: &PhysicsRow| {
-            let words = row.name.split_once(' ');
-            words.map_or(row.name.clone(), |(_, change)| change.to_owned())
-        };
         let names = |wanted: &dyn Fn(Option<Interval>) -> bool| {
             let rows = comparison.rows.iter().enumerate();
             let rows = rows.filter(|(i, row)| row.is_unmeasured && wanted(self.gain(*i)));
@@ -343,7 +332,20 @@ impl FittedRows {
                 lost.join(", ")
             );
         }
-        text += &format!("The advice ({})", self.changes);
+        text
+    }
+
+    /// What the advice gains under the physics of the profile, and under those that nobody measured
+    /// in this gym; empty where nothing is advised.
+    fn gains_in_words(&self, comparison: &PhysicsComparison) -> String {
+        if self.changes.is_empty() {
+            return String::new();
+        }
+        let points = |gain: &Interval| {
+            let [mean, low, high] = [gain.mean, gain.low, gain.high].map(in_points);
+            format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
+        };
+        let mut text = format!("The advice ({})", self.changes);
         if let Some(own) = self.gain(0) {
             text += &format!(" gains {} under the first row's physics", points(&own));
         }
@@ -372,6 +374,13 @@ impl FittedRows {
         };
         text
     }
+}
+
+/// What a row changes: `hoop_restitution 0.41` of `with hoop_restitution 0.41`, or of `ncaa,
+/// hoop_restitution 0.41` where the profile's physics has no air.
+fn change(row: &PhysicsRow) -> String {
+    let words = row.name.split_once(' ');
+    words.map_or(row.name.clone(), |(_, change)| change.to_owned())
 }
 
 /// A difference of P in makes of 100, rounded. (0 is added: no negative zero.)
@@ -430,9 +439,16 @@ fn comparison_text(
             number(row.same_shot.map(|p| p.probability), 3),
         ]);
     }
-    let summary = comparison.in_words().map_or_else(String::new, |words| {
-        format!("{words} `bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed.\n")
-    });
+    let mut answer = comparison
+        .in_words()
+        .map_or_else(String::new, |words| words + "\n\n");
+    if let Some(fitted) = fitted {
+        answer += &format!(
+            "{}\n{}\n",
+            fitted.together_in_words(comparison),
+            fitted.is_sure_in_words(comparison)
+        );
+    }
     let error = comparison.greatest_standard_error();
     let last_column = format!(
         "the P of {}, {}.\n",
@@ -441,22 +457,60 @@ fn comparison_text(
     );
     let of_fit = match fitted {
         Some(fitted) => format!(
-            "\nP of the usual shot, and what the advice adds in makes of 100, with 95 % intervals of what the fit leaves open:\n{}\n{}{}",
+            "\nP of the usual shot, and what the advice adds in makes of 100, with 95 % intervals of what the fit leaves open:\n{}\n{}",
             fitted.table(comparison).trim_fmt(),
-            fitted.in_words(comparison),
-            fitted.together_in_words(comparison)
+            fitted.gains_in_words(comparison)
         ),
-        None => "(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
+        None => "\n(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
     };
     let first_row = match comparison.rows.first() {
         Some(row) if row.name == GIVEN => "The first row is the physics of --physics",
         _ => "The first row is the profile's own physics",
     };
     format!(
-        "{}\n{summary}Each P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
+        "{answer}{}\n{}Each P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
         table.trim_fmt(),
+        changes_text(comparison),
         if has_air { "with" } else { "ncaa," },
         if has_air { "it" } else { "ncaa" },
+    )
+}
+
+/// What each change that nobody measured does to P of the best direct shot and of the usual one.
+fn changes_text(comparison: &PhysicsComparison) -> String {
+    let best = comparison.unmeasured_changes(PhysicsComparison::direct_p);
+    let same = comparison.unmeasured_changes(PhysicsComparison::same_shot_p);
+    if best.is_empty() && same.is_empty() {
+        return String::new();
+    }
+    let of = |changes: &[(&str, f64)], name: &str| {
+        let change = changes.iter().find(|(of, _)| *of == name);
+        change.map_or("-".to_owned(), |(_, by)| format!("{:+.1}", in_points(*by)))
+    };
+    let header = ["change", "best\ndirect shot", "same\nshot"];
+    let mut table = table_with(header.map(str::to_owned).to_vec());
+    // Those that do most first.
+    let most = |name: &str| {
+        let both = best.iter().chain(&same);
+        let of_name = both.filter(|(of, _)| *of == name);
+        of_name.fold(0.0_f64, |most, (_, by)| most.max(by.abs()))
+    };
+    let rows = comparison.rows.iter().filter(|row| row.is_unmeasured);
+    let mut names: Vec<&str> = rows.map(|row| row.name.as_str()).collect();
+    names.sort_by(|a, b| most(b).total_cmp(&most(a)));
+    for name in names {
+        let change = name.split_once(' ').map_or(name, |(_, change)| change);
+        table.add_row(vec![change.to_owned(), of(&best, name), of(&same, name)]);
+    }
+    let both = [&best, &same].map(|changes| {
+        let [down, up] = together(changes).map(|by| libm::round(100.0 * by) + 0.0);
+        format!("{down:+.0} to {up:+.0}")
+    });
+    let [of_best, of_same] = both;
+    table.add_row(vec!["together about".to_owned(), of_best, of_same]);
+    format!(
+        "\nWhat nobody measured in this gym, by what it does to P, in makes of 100 (`bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed):\n{}\n",
+        table.trim_fmt()
     )
 }
 

@@ -1,20 +1,20 @@
 //! `bankshot pitch-curve`: the best shot at each of several pitch angles, from one place or from
 //! several distances.
 
-use super::table::{KindArg, TableFormat};
+use super::table::KindArg;
 use crate::best_shot::{MOST_NODES, best_by_pitch};
 use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::fixed_value_flags::FixedOptions;
 use crate::cli::nominal_shot_flags::PlaceOptions;
+use crate::cli::output_files::{self, OutputForm};
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::{print_answer, print_remark, wrapped};
+use crate::cli::terminal::{print_answer, wrapped};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use crate::output::atomic_file;
 use crate::output::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
 use crate::output::shot_table_files::pitch_over_distances::{
     DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
@@ -24,14 +24,14 @@ use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, Dimension};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The pitch angles, if none are given.
 const DEFAULT_PITCHES: &str = "40 deg to 65 deg by 2.5 deg";
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each angle, from each distance, is a search of its own: one or two seconds on two cores.
+Each angle, from each distance, is a search of its own: one or two seconds on two cores. Near the best angle P is flat: the best of these and the angle of `bankshot best` can differ by a degree or two, and P hardly. The speed and the aim follow the angle; for one shot whose speed stays, see `bankshot probability PROFILE --vary 'pitch=..'`.
 
 Examples:
   bankshot pitch-curve configs/free_throw.toml
@@ -86,10 +86,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
-    for path in &options.output {
-        form_of(path)?;
-        refuse_missing_folder(path)?;
-    }
+    output_files::check(&options.output)?;
     let fixed = FixedOptions::of_backspin(options.backspin.clone());
     // The pitch angle is given too.
     let mut given = fixed.variables();
@@ -149,10 +146,10 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         let json = by_pitch_json(&rows, &over_draws, kind, &profile, units);
         format!("{json:#}\n")
     };
-    write_outputs(&options.output, |form| match form {
-        TableFormat::Csv => by_pitch_csv(&rows, &over_draws, kind, units),
-        TableFormat::Json => json(),
-        _ => text(),
+    output_files::write(&options.output, |form| match form {
+        OutputForm::Csv => by_pitch_csv(&rows, &over_draws, kind, units),
+        OutputForm::Json => json(),
+        OutputForm::Text => text(),
     })?;
     if let Some(path) = &options.plot
         && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, (&rows, &over_draws), units)
@@ -160,7 +157,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         plot_files::write_one(path, &plot)?;
     }
     print_answer(&if options.json { json() } else { text() })?;
-    print_written(options, quiet);
+    output_files::print_written(options.output.iter().chain(&options.plot), quiet);
     Ok(if rows.iter().any(|row| row.shot.is_some()) {
         code::DONE
     } else {
@@ -211,53 +208,19 @@ fn run_from_distances(
     bars.end();
     let text = || pitch_over_distances_text(&from, kind, units);
     let json = || format!("{:#}\n", pitch_over_distances_json(&from, kind, units));
-    write_outputs(&options.output, |form| match form {
-        TableFormat::Csv => pitch_over_distances_csv(&from, kind, units),
-        TableFormat::Json => json(),
-        _ => text(),
+    output_files::write(&options.output, |form| match form {
+        OutputForm::Csv => pitch_over_distances_csv(&from, kind, units),
+        OutputForm::Json => json(),
+        OutputForm::Text => text(),
     })?;
     print_answer(&if options.json { json() } else { text() })?;
-    print_written(options, quiet);
+    output_files::print_written(options.output.iter().chain(&options.plot), quiet);
     let mut rows = from.iter().flat_map(|shots| &shots.shots);
     Ok(if rows.any(|row| row.shot.is_some()) {
         code::DONE
     } else {
         code::INCOMPLETE
     })
-}
-
-/// Writes the outputs, each in the form that its name asks for.
-fn write_outputs(
-    paths: &[PathBuf],
-    content: impl Fn(TableFormat) -> String,
-) -> Result<(), Failure> {
-    for path in paths {
-        atomic_file::write(path, content(form_of(path)?).as_bytes())
-            .map_err(|error| Failure::io(path.display(), &error))?;
-    }
-    Ok(())
-}
-
-/// Says before a search that an output could not be written after it.
-fn refuse_missing_folder(path: &Path) -> Result<(), Failure> {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => Err(Failure {
-            code: code::IO,
-            message: format!("--output: there is no folder {}", folder.display()),
-        }),
-        _ => Ok(()),
-    }
-}
-
-fn print_written(options: &PitchCurveOptions, quiet: bool) {
-    if quiet {
-        return;
-    }
-    for path in options.output.iter().chain(&options.plot) {
-        if path.exists() {
-            print_remark(&format!("written: {}", path.display()));
-        }
-    }
 }
 
 /// The pitch angles, rad, between 1 and 89 deg.
@@ -293,15 +256,4 @@ fn pitches_rad(given: Option<&str>, profile: &Profile) -> Result<Vec<f64>, Failu
         }
     }
     Ok(pitches_rad)
-}
-
-/// The form that a file's name asks for.
-fn form_of(path: &Path) -> Result<TableFormat, Failure> {
-    match TableFormat::of_output(path) {
-        Ok(form @ (TableFormat::Csv | TableFormat::Json | TableFormat::Text)) => Ok(form),
-        _ => Err(Failure::usage(format!(
-            "--output: {}: the name must end in .csv, .json or .txt",
-            path.display()
-        ))),
-    }
 }

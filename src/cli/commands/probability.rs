@@ -1,11 +1,13 @@
 //! `bankshot probability`: P of one nominal shot under up to nine errors.
 
-use super::trace;
+use super::{probability_along, trace};
 use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::{NominalOptions, PlaceOptions};
+use crate::cli::output_files;
+use crate::cli::plot_files::PlotType;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
@@ -58,9 +60,11 @@ Examples:
     --pitch '53.5 deg' --backspin '3 rev/s'
   bankshot probability configs/errors_in_all_nine_variables.toml \\
     --target 0.0003 --json
-  bankshot probability configs/errors_in_all_nine_variables.toml --replay 1:2049")]
+  bankshot probability configs/errors_in_all_nine_variables.toml --replay 1:2049
+  bankshot probability results/season-fit --draws results/season-fit \\
+    --vary 'pitch=45 deg to 60 deg by 1 deg' --plot pitch.png")]
 pub(crate) struct ProbabilityOptions {
-    /// The shooter's profile.
+    /// The shooter's profile, or the folder of a fit: its usual shot.
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
@@ -93,8 +97,18 @@ pub(crate) struct ProbabilityOptions {
     pub(crate) units: Option<UnitsArg>,
     /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
     /// scatter.
-    #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
+    #[arg(long, value_name = "FIT_DIR", conflicts_with = "scatter")]
     pub(crate) draws: Option<PathBuf>,
+    /// Give one variable of the shot several values, the rest as it is: P at each of them. Speed,
+    /// pitch, polar, aim, backspin, side_spin or rifle_spin.
+    #[arg(long, value_name = "VARIABLE=LIST|RANGE", conflicts_with_all = ["replay", "method", "budget", "grid"])]
+    pub(crate) vary: Option<String>,
+    /// With --vary: write P at each value into a file (.csv, .json or .txt); may be repeated.
+    #[arg(long, short, value_name = "FILE", requires = "vary")]
+    pub(crate) output: Vec<PathBuf>,
+    /// With --vary: draw P over the variable (.svg or .png).
+    #[arg(long, value_name = "FILE", requires = "vary")]
+    pub(crate) plot: Option<PathBuf>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub(crate) json: bool,
@@ -119,8 +133,16 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     if let Some(units) = options.units {
         profile = profile.with(|settings| settings.output.units = units.into())?;
     }
-    let nominal = options.nominal.resolve(&profile)?;
+    output_files::check(&options.output)?;
+    if let Some(path) = &options.plot {
+        PlotType::of(path)?;
+    }
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
+    if let Some(vary) = &options.vary {
+        let fit = draws.as_ref().map(|(_, fit)| fit);
+        return probability_along::run(options, (&profile, fit), vary, quiet);
+    }
+    let nominal = options.nominal.resolve(&profile)?;
     if let Some((seed, index)) = options.replay {
         let release = replayed(options.method, &profile, &nominal, seed, index)?;
         return trace::show(&profile, &release, options.json);
@@ -147,21 +169,22 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         seed: precision.seed,
         target: precision.target,
     };
+    let of_draws = draws
+        .as_ref()
+        .map(|(_, fit)| fit_folder::shot_over_draws(fit, &profile, &nominal))
+        .transpose()?;
     if options.json {
-        print_answer(&format!("{:#}\n", answer_json(&answer)))?;
+        let json = answer_json(&answer, of_draws.as_ref());
+        print_answer(&format!("{json:#}\n"))?;
     } else {
         let mut text = answer_text(&answer);
         if options.draws.is_none() {
             text += PROFILE_IS_EXACT;
         }
+        if let (Some((folder, fit)), Some(p)) = (&draws, &of_draws) {
+            text += &fit_folder::text_over_draws((folder, fit), p);
+        }
         print_prose(&text)?;
-    }
-    if let Some((folder, fit)) = &draws {
-        print_prose(&fit_folder::text_over_draws(
-            (folder, fit),
-            &profile,
-            &nominal,
-        )?)?;
     }
     if estimate.standard_error <= precision.target {
         return Ok(code::DONE);

@@ -177,7 +177,8 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
 }
 
 /// The tests of the shots in one sentence, whether they warn or not.
-fn tests_text(fit: &ShooterFit) -> String {
+#[must_use]
+pub fn tests_text(fit: &ShooterFit) -> String {
     let all = fit.trends.iter().flat_map(|trend| {
         [
             Some(("drift", trend.drift_p)),

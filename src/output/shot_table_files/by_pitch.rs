@@ -88,6 +88,7 @@ pub fn by_pitch_text(
         return text + &wrapped(&words);
     };
     text += &wrapped(&in_words(rows, (best_row, best), kind, units));
+    text += &other_kind_in_words(rows, best, kind);
     text += &wrapped(&physics_note(profile, units));
     let spin = if profile.search().choice.includes(NominalVariable::Backspin) {
         "the speed, the aim and the spin are the best ones (--backspin keeps one)"
@@ -147,6 +148,23 @@ pub fn by_pitch_text(
     };
     text + &wrapped(&format!(
         "P has a numerical standard error of at most {error:.4}; P of {other} at that angle is from a short search.",
+    ))
+}
+
+/// That the other kind makes more than the best of these, if it does.
+fn other_kind_in_words(rows: &[ShotAtPitch], best: &TableShot, kind: TableKind) -> String {
+    let TableKind::One(kind) = kind else {
+        return String::new();
+    };
+    let others = found(rows).filter_map(|(_, shot)| shot.other_kind);
+    let most = others.fold(0.0, f64::max);
+    if most <= best.probability + LEVEL {
+        return String::new();
+    }
+    wrapped(&format!(
+        "At some of these angles the {} shot makes up to {:.0} of 100: --kind best takes the better one.",
+        kind.other().name(),
+        100.0 * most
     ))
 }
 

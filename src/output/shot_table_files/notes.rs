@@ -1,5 +1,6 @@
 //! What a reader of a table of best shots must know.
 
+use super::table_text::speed_limit_in_words;
 use crate::best_shot::{ShotKind, ShotTable, TableKind, TableShot};
 use crate::model::SolidId;
 use crate::shooter::{Location, Profile, ReleaseVariable};
@@ -13,6 +14,7 @@ pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<Str
         kinds_note(table, units),
         steep_note(table, units),
         range_note(table, units),
+        no_shot_note(table, profile, units),
         Some(check_note(table, units)),
         added_note(table, units),
         jump_note(table, units),
@@ -113,6 +115,18 @@ fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     (!texts.is_empty()).then(|| format!("P is {}.", texts.join("; ")))
 }
 
+/// Where no clean shot goes in, and the greatest speed, if the profile has one.
+fn no_shot_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option<String> {
+    let places = Places::where_row(table, |shot| shot.is_none());
+    (!places.is_empty()).then(|| {
+        format!(
+            "No clean shot within the limits{}: {}. (One that misses without errors may go in with them: `bankshot pitch-curve PROFILE --distances ..` has its P.)",
+            speed_limit_in_words(profile, units),
+            places.text(table, units)
+        )
+    })
+}
+
 /// Where the interpolated P falls to a level beyond a row that is above it, towards the row before
 /// (-1) or after (1), m; at the row itself where there is none, or none with a shot.
 fn crossing_m(table: &ShotTable, row: usize, step: isize, level: f64) -> f64 {
@@ -166,11 +180,16 @@ struct Places(Vec<Vec<(usize, usize)>>);
 impl Places {
     /// The rows whose shot is `wanted`.
     fn of(table: &ShotTable, mut wanted: impl FnMut(&TableShot) -> bool) -> Self {
+        Self::where_row(table, |shot| shot.is_some_and(&mut wanted))
+    }
+
+    /// The rows that are `wanted`, with or without a shot.
+    fn where_row(table: &ShotTable, mut wanted: impl FnMut(Option<&TableShot>) -> bool) -> Self {
         let mut stretches: Vec<Vec<(usize, usize)>> = Vec::new();
         for angle in 0..table.angles_rad.len() {
             let mut is_continued = false;
             for distance in 0..table.distances_m.len() {
-                let is_wanted = table.at(angle, distance).is_some_and(&mut wanted);
+                let is_wanted = wanted(table.at(angle, distance));
                 match stretches.last_mut() {
                     Some(stretch) if is_wanted && is_continued => stretch.push((angle, distance)),
                     _ if is_wanted => stretches.push(vec![(angle, distance)]),

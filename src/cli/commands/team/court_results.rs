@@ -300,7 +300,7 @@ fn place_list(
         }
     }
     let mut text = String::new();
-    for (words, mut same) in listed.iter().cloned().take(MOST_BANK_PLACES) {
+    for (words, mut same) in listed.iter().take(MOST_BANK_PLACES).cloned() {
         same.sort_by(|a, b| a.place.y_m.total_cmp(&b.place.y_m));
         text += &format!(
             "{indent}{}: {} (direct {})\n",

@@ -1,19 +1,25 @@
 //! `bankshot design`: what a test of some size will tell, before anyone shoots.
 
+mod against;
+mod changes;
+
+use self::against::Against;
+use self::changes::{
+    FirstSession, MOST_SHOTS, changes_json, least_change, shots_for, shots_for_changes,
+};
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::find_kinds;
 use crate::cli::config_files::{load_profile, read_text};
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::tracker_noise;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{self, PhysicsArg, UnitsArg};
 use crate::fitting::{
-    Covariance, DesignRow, FitError, Landing, POWER, Place, SessionError, TWO_SIDED_95, Tracker,
-    TrackerNoise, design, landing_of, nominal_of, release_of_landing, tracked_flight_noise,
-    values_of,
+    Covariance, DesignRow, FitError, Landing, Place, TWO_SIDED_95, Tracker, TrackerNoise, design,
+    landing_of, nominal_of, release_of_landing, tracked_flight_noise, values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
@@ -30,12 +36,13 @@ use std::path::{Path, PathBuf};
 Simulates tests of each size with the tracker's errors, fits them, and says how well the scatter and P come out. The usual \
 shot comes from the flags, then from the profile's [nominal] table, else it is the best one; of a fit's folder it is the measured one. It takes a minute or two.
 
-It also says how many shots show that the shooter has changed: of a fit's folder, in a second session against the shots that were fitted; of a profile, in each of two equal sessions, and with --first N in a second one against N shots.
+It also says how many shots show that the shooter has changed: of a fit's folder, in a second session against the shots that were fitted; of a profile, in each of two equal sessions, and with --first N in a second one against N shots. With --against OTHER, how many shots show that the two differ: in P, and in each scatter.
 
 Examples:
   bankshot design results/gym-sensor-fit --tracker noah --target 3
   bankshot design configs/free_throw.toml --speed '24.2 ft/s' \\
-    --pitch '51 deg' --shots 25,50,100,200 --tracker noah")]
+    --pitch '51 deg' --shots 25,50,100,200 --tracker noah
+  bankshot design results/rested --against results/tired")]
 pub(crate) struct DesignOptions {
     /// A profile like that of the shooter, or the folder of a fit.
     pub(crate) profile: PathBuf,
@@ -57,6 +64,10 @@ pub(crate) struct DesignOptions {
     /// [default: those of the fit, as they were measured; of a profile, none].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(10..=5000))]
     pub(crate) first: Option<u32>,
+    /// A second profile, or the folder of a second fit, such as the same shooter when tired: ask
+    /// how many shots show how the two differ.
+    #[arg(long, value_name = "PROFILE|FIT_DIR")]
+    pub(crate) against: Option<PathBuf>,
     /// Changes of P that a second session is to show, in points.
     #[arg(long, value_name = "POINTS", value_delimiter = ',', default_value = "5,10,20", value_parser = value_parsers::points)]
     pub(crate) change: Vec<f64>,
@@ -105,17 +116,51 @@ fn tracker_named(name: &str, sees: Option<Source>) -> Result<TrackerOfTest, Fail
     Ok(TrackerOfTest { name, noise, sees })
 }
 
-pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
-    let named = options
-        .tracker
-        .as_deref()
-        .map(|name| tracker_named(name, None))
-        .transpose()?;
-    let mut fitted = None;
-    let (profile, nominal, (own_tracker, sees), own_units) = if options.profile.is_dir() {
-        let fit = fit_folder::read(&options.profile)?;
+/// The shot that a session repeats.
+struct TestedShot {
+    profile: Profile,
+    nominal: Nominal,
+    probability: f64,
+    /// The tracker of a fit and what it sees; lab without one.
+    tracker: (String, Option<Source>),
+    units: UnitSystem,
+    /// The session that was fitted.
+    fitted: Option<FirstSession>,
+}
+
+impl TestedShot {
+    /// Of the folder of a fit the usual shot at the place; of a profile the named shot, else the
+    /// best one.
+    fn read(
+        path: &Path,
+        options: &DesignOptions,
+        named: &NominalOptions,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        if !path.is_dir() {
+            if options.place.is_some() {
+                return Err(Failure::usage(
+                    "--place: only the folder of a fit has places",
+                ));
+            }
+            let profile = load_profile(path, &options.physics, quiet)?;
+            let nominal = if named.is_given(&profile) {
+                named.resolve(&profile)?
+            } else {
+                best_nominal(&profile, quiet)?
+            };
+            return Ok(Self {
+                probability: probability(&profile, &nominal),
+                units: profile.output().units,
+                profile,
+                nominal,
+                tracker: ("lab".to_owned(), None),
+                fitted: None,
+            });
+        }
+        let fit = fit_folder::read(path)?;
         let place = fit.place_numbered(options.place)?;
-        let usual = nominal_of(&fit.posterior.typical().means[place]);
+        let nominal = nominal_of(&fit.posterior.typical().means[place]);
         if fit.profiles.len() > 1 && !quiet {
             print_remark(&format!(
                 "the fit has {} places: tests from place {}, {}",
@@ -124,24 +169,39 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 fit.profiles[place].location().in_words(fit.units)
             ));
         }
-        fitted = Some(FirstSession::of_fit(&fit, place));
-        let tracker = (fit.tracker, Some(fit.source));
-        (fit.profiles[place].clone(), usual, tracker, fit.units)
-    } else if options.place.is_some() {
-        return Err(Failure::usage(
-            "--place: only the folder of a fit has places",
-        ));
-    } else {
-        let profile = load_profile(&options.profile, &options.physics, quiet)?;
-        let nominal = if options.nominal.is_given(&profile) {
-            options.nominal.resolve(&profile)?
-        } else {
-            best_nominal(&profile, quiet)?
-        };
-        let units = profile.output().units;
-        (profile, nominal, ("lab".to_owned(), None), units)
-    };
-    let units = options.units.map_or(own_units, UnitSystem::from);
+        Ok(Self {
+            probability: probability(&fit.profiles[place], &nominal),
+            nominal,
+            fitted: Some(FirstSession::of_fit(&fit, place)),
+            units: fit.units,
+            profile: fit.profiles[place].clone(),
+            tracker: (fit.tracker, Some(fit.source)),
+        })
+    }
+}
+
+/// P of a shot, to the profile's standard error.
+fn probability(profile: &Profile, nominal: &Nominal) -> f64 {
+    let search = profile.search();
+    let sampler = Sampler::new(profile);
+    let estimate = sampler.estimate(nominal, search.standard_error, search.seed, &Silent);
+    estimate.probability
+}
+
+pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
+    let named = options
+        .tracker
+        .as_deref()
+        .map(|name| tracker_named(name, None))
+        .transpose()?;
+    let first_shot = TestedShot::read(&options.profile, options, &options.nominal, quiet)?;
+    let second_shot = options
+        .against
+        .as_deref()
+        .map(|path| TestedShot::read(path, options, &NominalOptions::default(), quiet))
+        .transpose()?;
+    let (own_tracker, sees) = first_shot.tracker.clone();
+    let units = options.units.map_or(first_shot.units, UnitSystem::from);
     let tracker = match named {
         Some(tracker) => tracker,
         None => tracker_named(&own_tracker, sees).map_err(|failure| Failure {
@@ -156,16 +216,14 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             ..failure
         })?,
     };
-    let noise = noise(&tracker, &profile, &nominal)?;
+    let (profile, nominal) = (&first_shot.profile, &first_shot.nominal);
+    let own_noise = noise(&tracker, profile, nominal)?;
     let bars = ProgressBars::new(quiet);
-    let search = profile.search();
-    let sampler = Sampler::new(&profile);
-    let usual = sampler.estimate(&nominal, search.standard_error, search.seed, &Silent);
-    let simulate = |sizes: &[usize]| {
+    let simulate_of = |shot: &TestedShot, noise: &Covariance, sizes: &[usize]| {
         design(
-            &profile,
-            &nominal,
-            &noise,
+            &shot.profile,
+            &shot.nominal,
+            noise,
             sizes,
             options.repetitions,
             &bars,
@@ -178,6 +236,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             message: error.to_string(),
         })
     };
+    let simulate = |sizes: &[usize]| simulate_of(&first_shot, &own_noise, sizes);
     let mut sizes: Vec<usize> = options.shots.iter().map(|n| *n as usize).collect();
     sizes.extend(options.first.map(|shots| shots as usize));
     sizes.sort_unstable();
@@ -187,7 +246,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let first = options
         .first
         .map(|shots| FirstSession::designed(&rows, shots as usize))
-        .or(fitted);
+        .or(first_shot.fitted.clone());
     let mut needed = None;
     let mut added = None;
     if let Some(points) = options.target {
@@ -199,15 +258,35 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         }
         needed = Some((points, shots));
     }
+    let against = second_shot
+        .as_ref()
+        .map(|second| {
+            let second_noise = noise(&tracker, &second.profile, &second.nominal)?;
+            let second_rows = simulate_of(second, &second_noise, &sizes)?;
+            let both_rows = [&rows[..], &second_rows];
+            let own_name = &second.profile.shooter().name;
+            // Two sessions of one shooter have one name.
+            let name = match (&options.against, profile.shooter().name == *own_name) {
+                (Some(path), true) => path.display().to_string(),
+                _ => own_name.clone(),
+            };
+            Ok::<_, Failure>(Against::new(
+                name,
+                [&first_shot, second],
+                both_rows,
+                first.as_ref(),
+            ))
+        })
+        .transpose()?;
     if options.json {
         let name = &profile.shooter().name;
         return print_answer(&format!(
             "{:#}\n",
             json(
                 name,
-                (&tracker, usual.probability),
+                (&tracker, first_shot.probability),
                 (&rows, first.as_ref(), &options.change),
-                needed
+                (needed, against.as_ref())
             )
         ));
     }
@@ -215,11 +294,11 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let mut text = format!(
         "{}: tests of the {} shot at {:.2} {long}/s and {:.1} deg, {}, which makes {:.1} of 100; with {} ({}), {} simulated tests of each size; all errors are one standard deviation (a 95 % interval reaches twice as far to each side)\n\n{:>6}  {:^29}  {:^24}  {:>14}\n{:>6} {:>9} {:>9} {:>9}  {:>11} {:>12}  {:>14}\n",
         profile.shooter().name,
-        ShotKind::of(&profile, &nominal).name(),
+        ShotKind::of(profile, nominal).name(),
         nominal.speed_m_s / metre,
         nominal.pitch_rad / DEGREE_RAD,
         profile.location().in_words(units),
-        100.0 * usual.probability,
+        100.0 * first_shot.probability,
         tracker.name.0,
         tracker.name.1,
         options.repetitions,
@@ -252,6 +331,9 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         "\n{}\n",
         shots_for_changes(&rows, first.as_ref(), &options.change)
     );
+    if let Some(against) = &against {
+        text += &format!("\n{}", against.text(first.as_ref()));
+    }
     if let Some((points, shots)) = needed {
         let in_words = |shots: usize| match shots {
             MOST_SHOTS.. => format!("More than {MOST_SHOTS}"),
@@ -279,7 +361,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     }
     let of_errors = rows.iter().map(|row| row.simulation_error);
     let of_error = of_errors.fold(0.0, f64::max);
-    let sd = |i: usize, size: f64| noise[(i, i)].max(0.0).sqrt() / size;
+    let sd = |i: usize, size: f64| own_noise[(i, i)].max(0.0).sqrt() / size;
     text += &format!(
         "\nWith {} simulated tests the errors of P are known to {:.0} %, the numbers of shots to {:.0} % (one standard deviation; --repetitions).\nAt this shot the tracker errs by {:.decimals$} {long}/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
         options.repetitions,
@@ -318,193 +400,11 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
     Ok(best.nominal)
 }
 
-/// The smallest and the largest test.
-const LEAST_SHOTS: f64 = 10.0;
-const MOST_SHOTS: usize = 5000;
-
-/// A session that is there already.
-struct FirstSession {
-    shots: usize,
-    /// How far it knows P, and the scatter (relative).
-    p: SessionError,
-    scatter: SessionError,
-}
-
-impl FirstSession {
-    /// The shots of a fit at a place: as the fit knows them.
-    fn of_fit(fit: &FitFolder, place: usize) -> Self {
-        // Those of other places tell the scatter, not this P.
-        let shots = match fit.profiles.len() {
-            1 => fit.posterior.shots,
-            _ => fit.observed[place].1.max(1),
-        };
-        let known_to = |error: f64| SessionError {
-            of_one_shot: error * (shots as f64).sqrt(),
-            shots: shots as f64,
-        };
-        let sds = (0..3).map(|i| {
-            let sd = fit.posterior.summary(|draw| draw.sds[i]);
-            sd.sd / sd.mean
-        });
-        Self {
-            shots,
-            p: known_to(fit.usual_probabilities(place).interval().sd),
-            scatter: known_to(sds.sum::<f64>() / 3.0),
-        }
-    }
-
-    /// So many shots with the tracker of the designed tests.
-    fn designed(rows: &[DesignRow], shots: usize) -> Self {
-        Self {
-            shots,
-            p: known_after(rows, shots, |row| row.probability_error),
-            scatter: known_after(rows, shots, DesignRow::sd_error),
-        }
-    }
-}
-
-/// The least change of P that shows between the first session (without one, another of the row's
-/// size) and one of the row's size: at the level of 95 %, with a power of 80 %.
-fn least_change(row: &DesignRow, first: Option<&FirstSession>) -> f64 {
-    let before = first.map_or(row.probability_error, |first| first.p.error());
-    POWER * libm::hypot(before, row.probability_error)
-}
-
-/// How far a session of so many shots knows something, from the row of the nearest size.
-fn known_after(
-    rows: &[DesignRow],
-    shots: usize,
-    error: impl Fn(&DesignRow) -> f64,
-) -> SessionError {
-    let nearest = rows.iter().min_by_key(|row| row.shots.abs_diff(shots));
-    SessionError {
-        of_one_shot: nearest.map_or(0.0, |row| error(row) * (row.shots as f64).sqrt()),
-        shots: shots as f64,
-    }
-}
-
-/// How many shots show that P or a scatter has changed, in two equal sessions and against a first
-/// one.
-fn shots_for_changes(rows: &[DesignRow], first: Option<&FirstSession>, changes: &[f64]) -> String {
-    let falls = [0.1, 0.2, 0.3];
-    let most = rows.last().map_or(0, |row| row.shots);
-    let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
-    let in_words = |shots: Option<f64>| match shots {
-        None => "never".to_owned(),
-        Some(shots) if !shots.is_finite() => "-".to_owned(),
-        Some(shots) if shots < LEAST_SHOTS => format!("fewer than {LEAST_SHOTS}"),
-        Some(shots) if shots > MOST_SHOTS as f64 => format!("more than {MOST_SHOTS}"),
-        Some(shots) => format!("about {}", two_digits(shots)),
-    };
-    let columns = |words: &[String]| words.join(", ");
-    let of_each: Vec<String> = changes
-        .iter()
-        .map(|points| in_words(Some(shots_in_each(rows, points / 100.0))))
-        .collect();
-    let falls_each =
-        falls.map(|fall| in_words(Some(SessionError::each_session(scatter, fall, 1.0 - fall))));
-    let listed: Vec<String> = changes.iter().map(|points| format!("{points}")).collect();
-    let listed = in_a_row(&listed);
-    let lines = |of_p: &str, of_falls: &str| {
-        format!(
-            "  P changed by {listed} points: {of_p}\n  one scatter lower by 10, 20 or 30 %: {of_falls}\n"
-        )
-    };
-    let mut text = String::new();
-    if let Some(first) = first {
-        let of_p: Vec<String> = changes
-            .iter()
-            .map(|points| in_words(further_shots(rows, first, points / 100.0)))
-            .collect();
-        let of_falls =
-            falls.map(|fall| in_words(first.scatter.second_session(fall, (1.0 - fall) * scatter)));
-        let hidden = |error: &SessionError| 100.0 * POWER * error.error();
-        let never = changes.iter().copied();
-        let never = never.filter(|points| further_shots(rows, first, points / 100.0).is_none());
-        let larger: String = never
-            .map(|points| {
-                let root = POWER * first.p.of_one_shot / (points / 100.0);
-                format!(
-                    " For {points} points the first session would need about {} shots or more.",
-                    two_digits(root * root)
-                )
-            })
-            .collect();
-        text += &format!(
-            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}The second session is taken to have about the same P and scatter. Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
-            first.shots,
-            lines(&columns(&of_p), &columns(&of_falls)),
-            hidden(&first.p),
-            hidden(&first.scatter)
-        );
-    }
-    text + &format!(
-        "How many shots in each of two equal sessions show a change{}:\n{}A player also differs from day to day: that is not in these numbers.",
-        match first {
-            Some(_) => "",
-            None =>
-                " (95 % level, power 80 %; \"P changed by\" in the table is the least change that they show)",
-        },
-        lines(&columns(&of_each), &columns(&falls_each))
-    )
-}
-
-/// Shots in each of two equal sessions that show a change of P.
-fn shots_in_each(rows: &[DesignRow], change: f64) -> f64 {
-    shots_for(rows, change / (POWER * std::f64::consts::SQRT_2)) as f64
-}
-
-/// Shots of a second session that show a change of P since the first one; `None` if no number does.
-fn further_shots(rows: &[DesignRow], first: &FirstSession, change: f64) -> Option<f64> {
-    let of_one_shot =
-        |shots: f64| known_after(rows, shots as usize, |row| row.probability_error).of_one_shot;
-    // The row that is nearest in size is known once the size is.
-    let rough = first.p.second_session(change, of_one_shot(100.0))?;
-    first.p.second_session(change, of_one_shot(rough))
-}
-
-/// The shots that show changes of P.
-fn changes_json(rows: &[DesignRow], first: Option<&FirstSession>, changes: &[f64]) -> Value {
-    let listed = changes.iter().map(|points| {
-        let change = points / 100.0;
-        let second = first.and_then(|first| further_shots(rows, first, change));
-        json!({
-            "change_of_probability": number(change),
-            "shots_in_second_session": second.map(|shots| number(shots.ceil())),
-            "shots_in_each_of_two": number(shots_in_each(rows, change)),
-        })
-    });
-    listed.collect()
-}
-
-/// "5, 10 or 20".
-fn in_a_row(words: &[String]) -> String {
-    match words.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
-        None => String::new(),
-    }
-}
-
-/// Shots that make P known to a standard deviation, which falls with the square root of the shots:
-/// from the row that is nearest to it.
-fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
-    let distance =
-        |row: &&DesignRow| libm::fabs(libm::log(row.probability_error / probability_error));
-    let nearest = rows
-        .iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    nearest.map_or(0, |row| {
-        let ratio = row.probability_error / probability_error;
-        (row.shots as f64 * ratio * ratio).ceil() as usize
-    })
-}
-
 fn json(
     name: &str,
     (tracker, probability): (&TrackerOfTest, f64),
     (rows, first, changes): (&[DesignRow], Option<&FirstSession>, &[f64]),
-    needed: Option<(f64, usize)>,
+    (needed, against): (Option<(f64, usize)>, Option<&Against>),
 ) -> Value {
     let listed = rows.iter().map(|row| {
         let [speed, pitch, polar] = row.sd_errors.map(number);
@@ -535,6 +435,7 @@ fn json(
             "probability_error": number(points / 100.0),
             "shots": shots,
         })),
+        "against": against.map(Against::json),
     })
 }
 

@@ -1,0 +1,202 @@
+//! How many shots show that a shooter has changed: in two equal sessions, and against a first one.
+
+use crate::cli::fit_folder::FitFolder;
+use crate::fitting::{DesignRow, POWER, SessionError};
+use crate::output::fit_files::session_changes_text::two_digits;
+use crate::output::json_object::number;
+use serde_json::{Value, json};
+
+/// The smallest and the largest test.
+const LEAST_SHOTS: f64 = 10.0;
+pub(super) const MOST_SHOTS: usize = 5000;
+
+/// A session that is there already.
+#[derive(Clone)]
+pub(super) struct FirstSession {
+    pub(super) shots: usize,
+    /// How far it knows P, and the scatter (relative).
+    pub(super) p: SessionError,
+    pub(super) scatter: SessionError,
+}
+
+impl FirstSession {
+    /// The shots of a fit at a place: as the fit knows them.
+    pub(super) fn of_fit(fit: &FitFolder, place: usize) -> Self {
+        // Those of other places tell the scatter, not this P.
+        let shots = match fit.profiles.len() {
+            1 => fit.posterior.shots,
+            _ => fit.observed[place].1.max(1),
+        };
+        let known_to = |error: f64| SessionError {
+            of_one_shot: error * (shots as f64).sqrt(),
+            shots: shots as f64,
+        };
+        let sds = (0..3).map(|i| {
+            let sd = fit.posterior.summary(|draw| draw.sds[i]);
+            sd.sd / sd.mean
+        });
+        Self {
+            shots,
+            p: known_to(fit.usual_probabilities(place).interval().sd),
+            scatter: known_to(sds.sum::<f64>() / 3.0),
+        }
+    }
+
+    /// So many shots with the tracker of the designed tests.
+    pub(super) fn designed(rows: &[DesignRow], shots: usize) -> Self {
+        Self {
+            shots,
+            p: known_after(rows, shots, |row| row.probability_error),
+            scatter: known_after(rows, shots, DesignRow::sd_error),
+        }
+    }
+}
+
+/// The least change of P that shows between the first session (without one, another of the row's
+/// size) and one of the row's size: at the level of 95 %, with a power of 80 %.
+pub(super) fn least_change(row: &DesignRow, first: Option<&FirstSession>) -> f64 {
+    let before = first.map_or(row.probability_error, |first| first.p.error());
+    POWER * libm::hypot(before, row.probability_error)
+}
+
+/// How far a session of so many shots knows something, from the row of the nearest size.
+pub(super) fn known_after(
+    rows: &[DesignRow],
+    shots: usize,
+    error: impl Fn(&DesignRow) -> f64,
+) -> SessionError {
+    let nearest = rows.iter().min_by_key(|row| row.shots.abs_diff(shots));
+    SessionError {
+        of_one_shot: nearest.map_or(0.0, |row| error(row) * (row.shots as f64).sqrt()),
+        shots: shots as f64,
+    }
+}
+
+/// A number of shots for people; `None` is never.
+pub(super) fn in_words(shots: Option<f64>) -> String {
+    match shots {
+        None => "never".to_owned(),
+        Some(shots) if !shots.is_finite() => "-".to_owned(),
+        Some(shots) if shots < LEAST_SHOTS => format!("fewer than {LEAST_SHOTS}"),
+        Some(shots) if shots > MOST_SHOTS as f64 => format!("more than {MOST_SHOTS}"),
+        Some(shots) => format!("about {}", two_digits(shots)),
+    }
+}
+
+/// How many shots show that P or a scatter has changed, in two equal sessions and against a first
+/// one.
+pub(super) fn shots_for_changes(
+    rows: &[DesignRow],
+    first: Option<&FirstSession>,
+    changes: &[f64],
+) -> String {
+    let falls = [0.1, 0.2, 0.3];
+    let most = rows.last().map_or(0, |row| row.shots);
+    let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
+    let columns = |words: &[String]| words.join(", ");
+    let of_each: Vec<String> = changes
+        .iter()
+        .map(|points| in_words(Some(shots_in_each(rows, points / 100.0))))
+        .collect();
+    let falls_each =
+        falls.map(|fall| in_words(Some(SessionError::each_session(scatter, fall, 1.0 - fall))));
+    let listed: Vec<String> = changes.iter().map(|points| format!("{points}")).collect();
+    let listed = in_a_row(&listed);
+    let lines = |of_p: &str, of_falls: &str| {
+        format!(
+            "  P changed by {listed} points: {of_p}\n  one scatter lower by 10, 20 or 30 %: {of_falls}\n"
+        )
+    };
+    let mut text = String::new();
+    if let Some(first) = first {
+        let of_p: Vec<String> = changes
+            .iter()
+            .map(|points| in_words(further_shots(rows, first, points / 100.0)))
+            .collect();
+        let of_falls =
+            falls.map(|fall| in_words(first.scatter.second_session(fall, (1.0 - fall) * scatter)));
+        let hidden = |error: &SessionError| 100.0 * POWER * error.error();
+        let never = changes.iter().copied();
+        let never = never.filter(|points| further_shots(rows, first, points / 100.0).is_none());
+        let larger: String = never
+            .map(|points| {
+                let root = POWER * first.p.of_one_shot / (points / 100.0);
+                format!(
+                    " For {points} points the first session would need about {} shots or more.",
+                    two_digits(root * root)
+                )
+            })
+            .collect();
+        text += &format!(
+            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}The second session is taken to have about the same P and scatter. Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
+            first.shots,
+            lines(&columns(&of_p), &columns(&of_falls)),
+            hidden(&first.p),
+            hidden(&first.scatter)
+        );
+    }
+    text + &format!(
+        "How many shots in each of two equal sessions show a change{}:\n{}A player also differs from day to day: that is not in these numbers.",
+        match first {
+            Some(_) => "",
+            None =>
+                " (95 % level, power 80 %; \"P changed by\" in the table is the least change that they show)",
+        },
+        lines(&columns(&of_each), &columns(&falls_each))
+    )
+}
+
+/// Shots in each of two equal sessions that show a change of P.
+fn shots_in_each(rows: &[DesignRow], change: f64) -> f64 {
+    shots_for(rows, change / (POWER * std::f64::consts::SQRT_2)) as f64
+}
+
+/// Shots of a second session that show a change of P since the first one; `None` if no number does.
+fn further_shots(rows: &[DesignRow], first: &FirstSession, change: f64) -> Option<f64> {
+    let of_one_shot =
+        |shots: f64| known_after(rows, shots as usize, |row| row.probability_error).of_one_shot;
+    // The row that is nearest in size is known once the size is.
+    let rough = first.p.second_session(change, of_one_shot(100.0))?;
+    first.p.second_session(change, of_one_shot(rough))
+}
+
+/// The shots that show changes of P.
+pub(super) fn changes_json(
+    rows: &[DesignRow],
+    first: Option<&FirstSession>,
+    changes: &[f64],
+) -> Value {
+    let listed = changes.iter().map(|points| {
+        let change = points / 100.0;
+        let second = first.and_then(|first| further_shots(rows, first, change));
+        json!({
+            "change_of_probability": number(change),
+            "shots_in_second_session": second.map(|shots| number(shots.ceil())),
+            "shots_in_each_of_two": number(shots_in_each(rows, change)),
+        })
+    });
+    listed.collect()
+}
+
+/// "5, 10 or 20".
+fn in_a_row(words: &[String]) -> String {
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// Shots that make P known to a standard deviation, which falls with the square root of the shots:
+/// from the row that is nearest to it.
+pub(super) fn shots_for(rows: &[DesignRow], probability_error: f64) -> usize {
+    let distance =
+        |row: &&DesignRow| libm::fabs(libm::log(row.probability_error / probability_error));
+    let nearest = rows
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.map_or(0, |row| {
+        let ratio = row.probability_error / probability_error;
+        (row.shots as f64 * ratio * ratio).ceil() as usize
+    })
+}

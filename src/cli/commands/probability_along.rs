@@ -1,0 +1,145 @@
+//! `bankshot probability --vary`: P of one nominal shot along one of its variables.
+
+use super::probability::ProbabilityOptions;
+use crate::analysis::miss_breakdown::classify_misses;
+use crate::cli::failure::{Failure, code};
+use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::output_files::{self, OutputForm};
+use crate::cli::plot_files;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::print_answer;
+use crate::cli::value_lists::ascending_values;
+use crate::fitting::AngleOverDraws;
+use crate::output::best_shot_text::PROFILE_IS_EXACT;
+use crate::output::probability_along_variable::{PointAlong, ProbabilityAlong};
+use crate::plots;
+use crate::probability::{Progress, Sampler, Silent};
+use crate::shooter::{NominalVariable, Profile};
+
+/// What `--vary` names: a variable, whether it is the angle from the line to the hoop's centre, and
+/// its values, SI.
+struct Varied {
+    variable: NominalVariable,
+    is_aim: bool,
+    values: Vec<f64>,
+}
+
+impl Varied {
+    /// From `pitch=45 deg to 60 deg by 1 deg`.
+    fn parse(text: &str) -> Result<Self, Failure> {
+        let names = || {
+            let names = NominalVariable::ALL.map(NominalVariable::name);
+            format!("{}, aim", names.join(", "))
+        };
+        let (name, list) = text.split_once('=').ok_or_else(|| {
+            Failure::usage(format!(
+                "--vary: \"{text}\" has no =; write 'pitch=45 deg to 60 deg by 1 deg', or another of {}",
+                names()
+            ))
+        })?;
+        let name = name.trim().replace('-', "_");
+        let is_aim = name == "aim";
+        let wanted = if is_aim { "polar" } else { name.as_str() };
+        let variable = NominalVariable::ALL
+            .into_iter()
+            .find(|variable| variable.name() == wanted)
+            .ok_or_else(|| {
+                Failure::usage(format!(
+                    "--vary: \"{name}\" is no variable of a shot; write one of {}",
+                    names()
+                ))
+            })?;
+        Ok(Self {
+            variable,
+            is_aim,
+            values: ascending_values("vary", list.trim(), variable.dimension())?,
+        })
+    }
+}
+
+pub(super) fn run(
+    options: &ProbabilityOptions,
+    (profile, draws): (&Profile, Option<&FitFolder>),
+    vary: &str,
+    quiet: bool,
+) -> Result<u8, Failure> {
+    let Varied {
+        variable,
+        is_aim,
+        values,
+    } = Varied::parse(vary)?;
+    let start = if is_aim {
+        profile.location().angle_rad
+    } else {
+        0.0
+    };
+    let search = profile.search();
+    let target = options.target.unwrap_or(search.standard_error);
+    let seed = options.seed.unwrap_or(search.seed);
+    let bars = ProgressBars::new(quiet);
+    // Every shot is checked before one is computed.
+    let nominals = values
+        .iter()
+        .map(|value| {
+            let given = (variable, start + value);
+            options.nominal.resolve_with(profile, Some(given))
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bars.begin("values", nominals.len() as u64);
+    let mut points = Vec::new();
+    let mut of_draws = Vec::new();
+    for nominal in nominals {
+        let estimate = Sampler::new(profile).estimate(&nominal, target, seed, &Silent);
+        if let Some(fit) = draws {
+            let p = fit_folder::shot_over_draws(fit, profile, &nominal)?;
+            of_draws.push(Some(p));
+        }
+        points.push(PointAlong {
+            misses: classify_misses(profile, &nominal, &estimate, seed),
+            nominal,
+            estimate,
+            over_draws: None,
+        });
+        bars.advance(1);
+    }
+    bars.end();
+    let over = AngleOverDraws::of_angles(&of_draws);
+    for (point, over) in points.iter_mut().zip(over) {
+        point.over_draws = over;
+    }
+    let is_exact = points
+        .iter()
+        .all(|point| point.estimate.standard_error <= target);
+    let along = ProbabilityAlong {
+        profile,
+        variable,
+        is_aim,
+        points,
+    };
+    let text = || {
+        let of_profile = if draws.is_none() {
+            PROFILE_IS_EXACT
+        } else {
+            ""
+        };
+        along.text() + of_profile
+    };
+    let json = || format!("{:#}\n", along.json());
+    output_files::write(&options.output, |form| match form {
+        OutputForm::Csv => along.csv(),
+        OutputForm::Json => json(),
+        OutputForm::Text => text(),
+    })?;
+    if let Some(path) = &options.plot
+        && let Some(plot) = plots::probability_along_variable::draw(&along)
+    {
+        plot_files::write_one(path, &plot)?;
+    }
+    print_answer(&if options.json { json() } else { text() })?;
+    output_files::print_written(options.output.iter().chain(&options.plot), quiet);
+    Ok(if is_exact {
+        code::DONE
+    } else {
+        code::IMPRECISE
+    })
+}

@@ -1,0 +1,74 @@
+//! P along one variable of a nominal shot.
+
+use super::axes::Axes;
+use super::svg::{Anchor, INK, Plot, Svg, shortened};
+use crate::output::probability_along_variable::ProbabilityAlong;
+
+/// Left and upper edge of the panel, and its width and height, px.
+const PANEL: ((f64, f64), (f64, f64)) = ((70.0, 74.0), (470.0, 260.0));
+
+/// Draws the curve; `None` with fewer than two values.
+#[must_use]
+pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
+    let points = &along.points;
+    let values: Vec<f64> = points
+        .iter()
+        .map(|point| along.value(&point.nominal))
+        .collect();
+    let [first, .., last] = values[..] else {
+        return None;
+    };
+    // Points and bars do not lie on the frame.
+    let x_margin = 0.03 * (last - first);
+    let chances = points.iter().map(|point| point.estimate.probability);
+    let over_draws = points.iter().filter_map(|point| point.over_draws);
+    let ends = over_draws.flat_map(|over| [over.probability.low, over.probability.high]);
+    let (lowest, highest) = chances
+        .chain(ends)
+        .fold((1.0_f64, 0.0_f64), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+    let y_margin = (0.08 * (highest - lowest)).max(0.005);
+    let (corner, size) = PANEL;
+    let axes = Axes {
+        corner,
+        size,
+        x: (first - x_margin, last + x_margin),
+        y: ((lowest - y_margin).max(0.0), (highest + y_margin).min(1.0)),
+    };
+    let mut svg = Svg::new(corner.0 + size.0 + 30.0, corner.1 + size.1 + 56.0);
+    let name = along.name().replace('_', " ");
+    let shooter = shortened(&along.profile.shooter().name, 40);
+    let title = format!("P of one shot along its {name}: {shooter}");
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
+    let place = along.profile.location();
+    let place = place.in_words(along.profile.output().units);
+    svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
+    axes.draw_grid(&mut svg);
+    let at = |i: usize| axes.pixel((values[i], points[i].estimate.probability));
+    let line = format!("stroke=\"{INK}\" stroke-width=\"2\" fill=\"none\"");
+    svg.polyline((0..points.len()).map(at), &line);
+    let bar = format!("stroke=\"{INK}\" stroke-width=\"1\" fill=\"none\"");
+    for (i, point) in points.iter().enumerate() {
+        svg.circle(at(i), 3.0, &format!("fill=\"{INK}\""));
+        if let Some(over) = &point.over_draws {
+            let end = |p: f64| axes.pixel((values[i], p));
+            svg.polyline(
+                [end(over.probability.low), end(over.probability.high)],
+                &bar,
+            );
+        }
+    }
+    let label = format!("{name} ({})", along.unit().0);
+    axes.draw(&mut svg, "", &label, "P");
+    let bars = match points.iter().any(|point| point.over_draws.is_some()) {
+        true => " Bars: 95 % of the draws of the fit.",
+        false => "",
+    };
+    let caption = format!("P of one nominal shot along its {name}, the rest as it is.{bars}");
+    Some(Plot {
+        name: "probability_along_variable".to_owned(),
+        svg: svg.finish(&caption),
+        caption,
+    })
+}
