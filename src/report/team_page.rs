@@ -52,15 +52,30 @@ impl PageTable {
     }
 }
 
-/// A text with its line breaks, and its lines set in as they are. (The style of an answer breaks
-/// at the ends of lines too.)
+/// The lines of a text as blocks, set in as they are. A line that is not set in begins with a name.
 fn lines(text: &str) -> String {
     let line = |line: &str| {
         let words = line.trim_start();
         let spaces = line.len() - words.len();
-        format!("{}{}", "&ensp;".repeat(spaces), escaped(words))
+        match words.split_once(':') {
+            Some((name, rest)) if spaces == 0 => format!(
+                "<span class=\"player\"><b>{}</b>:{}</span>",
+                escaped(name),
+                escaped(rest)
+            ),
+            _ => format!(
+                "<span class=\"line\" style=\"padding-left:{:.1}em\">{}</span>",
+                0.6 * spaces as f64,
+                escaped(words)
+            ),
+        }
     };
-    let lines: Vec<String> = text.trim_end().lines().map(line).collect();
+    text.trim_end().lines().map(line).collect()
+}
+
+/// The lines of a text, one below the other.
+fn plain_lines(text: &str) -> String {
+    let lines: Vec<String> = text.trim_end().lines().map(escaped).collect();
     lines.join("<br>")
 }
 
@@ -85,13 +100,16 @@ impl TeamPage {
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>The team</title>\n\
              <style>\n{}figure.wide {{ width: 100%; }}\n\
+             .answer {{ white-space: normal; }}\n\
+             .player, .line {{ display: block; }}\n\
+             .player + .player, .line + .player {{ margin-top: 0.6em; }}\n\
              @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
              <p class=\"answer\">{}</p>\n{}{maps}{posters}\
              <footer><p>{}</p></footer>\n</html>\n",
             include_str!("../../assets/report/page.css"),
             lines(&self.answer),
             self.tables.iter().map(PageTable::html).collect::<String>(),
-            lines(&self.footer)
+            plain_lines(&self.footer)
         )
     }
 }

@@ -468,7 +468,7 @@ fn comparison_text(
         _ => "The first row is the profile's own physics",
     };
     format!(
-        "{answer}{}\n{}Each P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
+        "{answer}{}\n{}\nEach P has a numerical standard error of at most {error:.4}. {first_row}; \"{}\" changes one thing of {}. past: of the ring's centre. The last column is {last_column}{of_fit}",
         table.trim_fmt(),
         changes_text(comparison),
         if has_air { "with" } else { "ncaa," },

@@ -175,7 +175,7 @@ fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
             let doubt = if here.is_sure() { "" } else { "?" };
             format!("{}/{}{doubt}", p(here.direct), p(here.bank))
         };
-        let words = known.in_words(units);
+        let words = place_in_words(known, &[], units);
         std::iter::once(words)
             .chain(players.iter().map(cell))
             .collect()
@@ -260,14 +260,17 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
 /// From where a player should bank, and from where that is open.
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let name = shortened(&player.name, LONGEST_NAME);
-    let aim = |place: &PlaceProbabilities| {
-        let aim = place.board_aim_in_words(units);
-        aim.map(|aim| format!("aim at the board, {aim}"))
-    };
-    let share = |place: &PlaceProbabilities| {
-        let share = place.share_of_preferred()?;
-        let kind = place.preference()?.name();
-        Some(format!("{kind} with {} % certainty", whole_percent(share)))
+    let aim = |same: &[&PlaceProbabilities]| aim_in_words(same, units);
+    let share = |same: &[&PlaceProbabilities]| {
+        let shares = same.iter().filter_map(|place| {
+            let share = whole_percent(place.share_of_preferred()?);
+            Some(format!(
+                "{} is better with {share} % certainty",
+                place.preference()?.name()
+            ))
+        });
+        let shares: Vec<String> = shares.collect();
+        (!shares.is_empty()).then(|| shares.join("; "))
     };
     let surely = place_list(&player.bank_places(), ("  ", &aim), units);
     let perhaps = place_list(&player.unsure_places(), ("    ", &share), units);
@@ -284,10 +287,10 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
 }
 
 /// P of the bank shot at some places, a line for each, which begins with `indent`, and below it
-/// what else there is to say of the place.
+/// what else there is to say of the place, or of both sides together.
 fn place_list(
     places: &[&PlaceProbabilities],
-    (indent, more): (&str, &dyn Fn(&PlaceProbabilities) -> Option<String>),
+    (indent, more): (&str, &dyn Fn(&[&PlaceProbabilities]) -> Option<String>),
     units: UnitSystem,
 ) -> String {
     // A place stands for its mirror image too.
@@ -300,24 +303,15 @@ fn place_list(
         }
     }
     let mut text = String::new();
-    for (words, mut same) in listed.iter().take(MOST_BANK_PLACES).cloned() {
-        same.sort_by(|a, b| a.place.y_m.total_cmp(&b.place.y_m));
+    for (_, same) in listed.iter().take(MOST_BANK_PLACES) {
+        let words = place_in_words(same[0], places, units);
         text += &format!(
-            "{indent}{}: {} (direct {})\n",
-            shortened(&words, LONGEST_PLACE),
+            "{indent}{words}: {} (direct {})\n",
             least_to_most(same.iter().map(|place| place.bank)),
             least_to_most(same.iter().map(|place| place.direct)),
         );
-        for &place in &same {
-            // Of both sides together it says of which side each line is.
-            let side = match same.len() > 1 {
-                true if place.place.y_m > 0.0 => "from the right: ",
-                true => "from the left: ",
-                false => "",
-            };
-            if let Some(words) = more(place) {
-                text += &format!("{indent}  {side}{words}\n");
-            }
+        if let Some(words) = more(same) {
+            text += &format!("{indent}  {words}\n");
         }
     }
     if listed.len() > MOST_BANK_PLACES {
@@ -325,6 +319,56 @@ fn place_list(
         text += &format!("{indent}and {more} more: team.csv\n");
     }
     text
+}
+
+/// A place in a player's words, with its court angle: the words alone may be those of two.
+fn place_in_words(
+    place: &PlaceProbabilities,
+    listed: &[&PlaceProbabilities],
+    units: UnitSystem,
+) -> String {
+    let words = shortened(&place.in_players_words(listed, units), LONGEST_PLACE);
+    if place.name.is_some() {
+        return words;
+    }
+    let angle_rad = place.place.location().angle_rad;
+    format!("{words} ({:.0} deg)", angle_rad.abs() / DEGREE_RAD)
+}
+
+/// Where on the board to aim from a place, or from it and its mirror image; `None` where the two
+/// sides differ in more than the numbers.
+fn aim_in_words(same: &[&PlaceProbabilities], units: UnitSystem) -> Option<String> {
+    let [first, second] = same else {
+        let aim = same.first()?.board_aim_in_words(units)?;
+        return Some(format!("aim at the board, {aim}"));
+    };
+    let is_own_side = |place: &PlaceProbabilities| {
+        let (across_m, _) = place.board_aim_m?;
+        Some(across_m * place.place.y_m > 0.0)
+    };
+    if is_own_side(first)? != is_own_side(second)? {
+        return None;
+    }
+    let (short, metre) = units.short_length();
+    let range = |values: [f64; 2]| {
+        let mut values = values.map(|value| libm::round(value / metre));
+        values.sort_by(f64::total_cmp);
+        match values {
+            [least, most] if least < most => format!("{least} to {most} {short}"),
+            [least, _] => format!("{least} {short}"),
+        }
+    };
+    let (a, b) = (first.board_aim_m?, second.board_aim_m?);
+    Some(format!(
+        "aim at the board, {} above the ring, {} from its middle on {} side",
+        range([a.1, b.1]),
+        range([a.0.abs(), b.0.abs()]),
+        if is_own_side(first)? {
+            "your"
+        } else {
+            "the other"
+        }
+    ))
 }
 
 /// P in 100 of a shot from one place, or from both sides: `80.6 to 82.2` where they differ.
