@@ -103,6 +103,7 @@ impl TeamPage {
              .answer {{ white-space: normal; }}\n\
              .player, .line {{ display: block; }}\n\
              .player + .player, .line + .player {{ margin-top: 0.6em; }}\n\
+             @media print {{ .answer {{ columns: 2; }} td, th {{ padding: 0.3mm 1mm; }} }}\n\
              @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
              <p class=\"answer\">{}</p>\n{}{maps}{posters}\
              <footer><p>{}</p></footer>\n</html>\n",

@@ -157,3 +157,53 @@ impl Location {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The parts of the court are those that players name, the same on both sides.
+    #[test]
+    fn contract_places_in_players_words() {
+        let place = |distance_ft: f64, angle_deg: f64| Location {
+            distance_m: distance_ft * FOOT_M,
+            angle_rad: angle_deg * DEGREE_RAD,
+        };
+        for (distance_ft, angle_deg, words) in [
+            (13.75, 0.0, "straight in front, 14 ft from the hoop"),
+            (
+                11.18,
+                -27.0,
+                "between the middle and the left wing, 11 ft from the hoop",
+            ),
+            (11.3, 63.0, "the right wing, 11.5 ft from the hoop"),
+            (
+                20.6,
+                -76.0,
+                "the left side near the baseline, 20.5 ft from the hoop",
+            ),
+            (
+                5.0,
+                90.0,
+                "the right side along the baseline, 5 ft from the hoop",
+            ),
+            (
+                7.0,
+                -100.0,
+                "the left side behind the hoop, 7 ft from the hoop",
+            ),
+        ] {
+            let place = place(distance_ft, angle_deg);
+            assert_eq!(place.in_players_words(UnitSystem::Imperial), words);
+            let mirror = Location {
+                angle_rad: -place.angle_rad,
+                ..place
+            };
+            let of_both =
+                |place: &Location| place.in_players_words_on_either_side(UnitSystem::Imperial);
+            assert_eq!(of_both(&place), of_both(&mirror));
+        }
+        let metric = place(11.3, 63.0).in_players_words(UnitSystem::Metric);
+        assert_eq!(metric, "the right wing, 3.4 m from the hoop");
+    }
+}
