@@ -110,17 +110,13 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// Gain in P of the best backspin over none.
+    /// Gain in P of the shot's own backspin over none.
     #[must_use]
     pub fn backspin_gain(&self) -> Option<Difference> {
         let none = self.backspins.first()?;
-        let best = self
-            .backspins
-            .iter()
-            .max_by(|a, b| a.gain.value.total_cmp(&b.gain.value))?;
         Some(Difference {
-            value: best.gain.value - none.gain.value,
-            standard_error: libm::hypot(none.gain.standard_error, best.gain.standard_error),
+            value: -none.gain.value,
+            standard_error: none.gain.standard_error,
         })
     }
 }

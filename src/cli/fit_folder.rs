@@ -7,8 +7,8 @@ use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::best_shot::{ShotAtPitch, TableShot};
 use crate::fitting::{
-    AngleOverDraws, Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, WeightedShots,
-    fitted_profile, usual_probabilities, values_of,
+    AngleOverDraws, Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, Values,
+    WeightedShots, fitted_profile, usual_probabilities, values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::draws_table::read_draws;
@@ -329,6 +329,10 @@ fn places(json: &serde_json::Value) -> Result<Vec<Place>, String> {
         .collect()
 }
 
+/// Why a shot has no P over the draws of a fit.
+const NO_OTHER_SPIN: &str =
+    "--draws: a fit knows backspin alone; this shot has side spin or rifle spin";
+
 /// Shots of the sample that P of the draws is computed with.
 const SHOTS: usize = 65_536;
 
@@ -340,9 +344,7 @@ pub(crate) fn probability_over_draws(
     shots: usize,
 ) -> Result<DrawProbabilities, Failure> {
     if nominal.rifle_spin_rad_s != 0.0 || nominal.side_spin_rad_s != 0.0 {
-        return Err(Failure::usage(
-            "--draws: a fit knows backspin alone; this shot has side spin or rifle spin",
-        ));
+        return Err(Failure::usage(NO_OTHER_SPIN));
     }
     let values = values_of(nominal);
     // The scatter of the speed is that at this speed.
@@ -401,6 +403,39 @@ pub(crate) fn shot_over_draws(
     nominal: &Nominal,
 ) -> Result<DrawProbabilities, Failure> {
     probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)
+}
+
+/// P over the draws of a fit of the usual shot at a place with one value given: of each draw the
+/// other values are its own means.
+pub(crate) fn usual_shot_over_draws(
+    (fit, place): (&FitFolder, usize),
+    profile: &Profile,
+    (variable, value): (NominalVariable, f64),
+) -> Result<DrawProbabilities, Failure> {
+    let index = match variable {
+        NominalVariable::Speed => 0,
+        NominalVariable::Pitch => 1,
+        NominalVariable::Polar => 2,
+        NominalVariable::Backspin => 3,
+        NominalVariable::SideSpin | NominalVariable::RifleSpin => {
+            return Err(Failure::usage(NO_OTHER_SPIN));
+        }
+    };
+    let with_value = |draw: &Draw| {
+        let mut means = draw.means[place];
+        means[index] = value;
+        means
+    };
+    let draws = &fit.posterior.draws;
+    let means: Vec<Values> = draws.iter().map(with_value).collect();
+    // The scatter of the speed is that at this speed.
+    let here = draws
+        .iter()
+        .zip(&means)
+        .map(|(draw, means)| draw.aimed_at(*means));
+    let here: Vec<Draw> = here.collect();
+    let sample = WeightedShots::simulate(profile, (&here, 0), &means, SHOTS, profile.search().seed);
+    Ok(sample.probabilities(&here, |draw| draw.means[0], |draw| draw.factor_at(0)))
 }
 
 /// P of a nominal shot over the draws of a fit, in words.
@@ -486,7 +521,7 @@ fn percents(interval: &Interval) -> [f64; 3] {
 /// Which draws an interval is over, and what it leaves out.
 fn which_draws(folder: &Path, fit: &FitFolder) -> String {
     format!(
-        "over {} draws of the scatter in {}, the aim being exact (the interval of P that `fit` prints has the uncertain aim too; any other one is numerical)",
+        "over {} draws of the scatter in {}, the intended release being exact (the interval of P that `fit` prints has the uncertain means too; any other one is numerical)",
         fit.posterior.draws.len(),
         folder.display()
     )

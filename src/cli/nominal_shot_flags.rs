@@ -150,14 +150,16 @@ impl NominalOptions {
         }
     }
 
+    /// Whether a flag gives anything.
+    pub(crate) fn has_flags(&self) -> bool {
+        let by_flag = |variable| self.flag(variable).1.is_some();
+        self.aim.is_some() || NominalVariable::ALL.into_iter().any(by_flag)
+    }
+
     /// Whether a flag gives anything, or the profile the speed or the pitch angle.
     pub(crate) fn is_given(&self, profile: &Profile) -> bool {
-        let by_flag = |variable| self.flag(variable).1.is_some();
         let by_profile = |variable| profile.nominal_overrides().get(variable).is_some();
-        self.aim.is_some()
-            || NominalVariable::ALL.into_iter().any(by_flag)
-            || by_profile(NominalVariable::Speed)
-            || by_profile(NominalVariable::Pitch)
+        self.has_flags() || by_profile(NominalVariable::Speed) || by_profile(NominalVariable::Pitch)
     }
 
     /// Warnings: the error-free shot touches nothing and misses, which is seldom meant; it is

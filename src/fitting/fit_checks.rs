@@ -85,8 +85,9 @@ pub enum FitWarning {
     /// The shots are not normal: the p-values of Mardia's skewness and kurtosis, and whether the
     /// means of the sessions differ, which alone can cause it.
     NotNormal([f64; 2], bool),
-    /// The tails are heavier than normal ones, and were fitted: one over the degrees of freedom.
-    HeavyTails(f64),
+    /// Heavier tails than normal ones were fitted: one over the degrees of freedom, and whether the
+    /// shots show that they are heavier.
+    HeavyTails(f64, bool),
     /// The aim drifts within the sessions: value, p-value, and by how much from the first shot to
     /// the last (m/s, rad or rad/s).
     Drift(&'static str, f64, f64),
@@ -130,9 +131,14 @@ impl std::fmt::Display for FitWarning {
                     "look for outliers, or for shots of two kinds"
                 }
             ),
-            Self::HeavyTails(weight) => write!(
+            Self::HeavyTails(weight, is_seen) => write!(
                 out,
-                "far releases are more frequent than normal ones; a t distribution with {:.1} degrees of freedom was fitted. profile.toml holds its standard deviations, draws.parquet all of it (`--draws`)",
+                "{} a t distribution with {:.1} degrees of freedom was fitted. profile.toml holds its standard deviations, draws.parquet all of it (`--draws`)",
+                if *is_seen {
+                    "far releases are more frequent than normal ones;"
+                } else {
+                    "the shots do not show more far releases than normal ones have; as asked for,"
+                },
                 1.0 / weight
             ),
             Self::OtherMakes(made, expected, sd) => write!(
@@ -454,7 +460,8 @@ pub fn warnings(
         }
     }
     if typical.tail_weight > 0.0 {
-        warnings.push(FitWarning::HeavyTails(typical.tail_weight));
+        let is_seen = shape.kurtosis_p < WARNING_LEVEL;
+        warnings.push(FitWarning::HeavyTails(typical.tail_weight, is_seen));
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
         let sessions_differ = |trend: &SessionTrend| {
             [trend.sessions_p, trend.spreads_p]

@@ -89,17 +89,22 @@ pub fn compare_probabilities(
     compare(&before.of_draws, &after.of_draws, shots)
 }
 
-/// What the change of P between two sessions comes from: first the scatter changes, then the aim.
+/// What the change of P between two sessions comes from. What each of two causes does depends on
+/// which of them changes first, so each is the mean of both orders (Shapley's value); the two add up
+/// to the change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbabilityChange {
-    /// P with the new scatter at the old aim, less P before.
+    /// By the scatter: standard deviations and correlations.
     pub by_scatter: Interval,
-    /// P after, less P with the new scatter at the old aim.
-    pub by_aim: Interval,
+    /// By the usual release: the means.
+    pub by_means: Interval,
+    /// By the scatter where it changes first, at the old usual release, and where it changes last,
+    /// at the new one.
+    pub by_scatter_first_and_last: [Interval; 2],
 }
 
 /// Splits the change of P at a place. `profile` is that of the place, `probabilities` have P of the
-/// draws before and after; about `shots` shots are simulated.
+/// draws before and after; about `shots` shots are simulated for each order.
 #[must_use]
 pub fn probability_change(
     profile: &Profile,
@@ -111,36 +116,40 @@ pub fn probability_change(
     let count = before.draws.len().min(after.draws.len());
     // Not the draw at the same place: it has the same random numbers.
     let partner = |k: usize| (k + count / 2) % count;
-    let mixed: Vec<Draw> = (0..count)
-        .map(|k| {
-            let scatter = &after.draws[partner(k)];
-            let mut draw = Draw::new(
-                before.draws[k].means.clone(),
-                scatter.sds,
-                scatter.correlation,
-                scatter.speed_coefficients,
-            );
-            draw.tail_weight = scatter.tail_weight;
-            draw
-        })
-        .collect();
-    let means: Vec<Values> = mixed.iter().map(|draw| draw.means[place]).collect();
-    let seed = profile.search().seed;
-    let p_of_mixed = WeightedShots::simulate(profile, (&mixed, place), &means, shots, seed)
-        .probabilities(
-            &mixed,
-            |draw| draw.means[place],
-            |draw| draw.factor_at(place),
-        )
-        .of_draws;
+    // P of the usual release of one session with the scatter of the other.
+    let p_of_mixed = |mixed: Vec<Draw>| {
+        let means: Vec<Values> = mixed.iter().map(|draw| draw.means[place]).collect();
+        let seed = profile.search().seed;
+        WeightedShots::simulate(profile, (&mixed, place), &means, shots, seed)
+            .probabilities(
+                &mixed,
+                |draw| draw.means[place],
+                |draw| draw.factor_at(place),
+            )
+            .of_draws
+    };
+    let mixed = |means: &Draw, scatter: &Draw| {
+        let mut draw = Draw::new(
+            means.means.clone(),
+            scatter.sds,
+            scatter.correlation,
+            scatter.speed_coefficients,
+        );
+        draw.tail_weight = scatter.tail_weight;
+        draw
+    };
+    let pairs = || (0..count).map(|k| (&before.draws[k], &after.draws[partner(k)]));
+    let new_scatter = p_of_mixed(pairs().map(|(old, new)| mixed(old, new)).collect());
+    let new_means = p_of_mixed(pairs().map(|(old, new)| mixed(new, old)).collect());
     let [p_before, p_after] = probabilities.map(|p| &p.of_draws);
+    let interval = |value: &dyn Fn(usize) -> f64| Interval::of((0..count).map(value).collect());
+    let first = |k: usize| new_scatter[k] - p_before[k];
+    let last = |k: usize| p_after[partner(k)] - new_means[k];
+    let by_scatter = |k: usize| 0.5 * (first(k) + last(k));
     ProbabilityChange {
-        by_scatter: Interval::of((0..count).map(|k| p_of_mixed[k] - p_before[k]).collect()),
-        by_aim: Interval::of(
-            (0..count)
-                .map(|k| p_after[partner(k)] - p_of_mixed[k])
-                .collect(),
-        ),
+        by_scatter: interval(&by_scatter),
+        by_means: interval(&|k| p_after[partner(k)] - p_before[k] - by_scatter(k)),
+        by_scatter_first_and_last: [interval(&first), interval(&last)],
     }
 }
 

@@ -36,6 +36,9 @@ pub struct ProbabilityAlong<'a> {
     pub variable: NominalVariable,
     /// Whether a polar angle is counted from the line to the hoop's centre.
     pub is_aim: bool,
+    /// Whether the draws have the uncertainty of the shot's other values too, not of the scatter
+    /// alone.
+    pub is_rest_uncertain: bool,
     /// In ascending order of the variable.
     pub points: Vec<PointAlong>,
 }
@@ -70,6 +73,28 @@ impl ProbabilityAlong<'_> {
             0.0
         };
         (nominal.get(self.variable) - from) / self.unit().2
+    }
+
+    /// The shooter's own value of the variable, in its unit, if the profile has it.
+    #[must_use]
+    pub fn own_value(&self) -> Option<f64> {
+        let own = self.profile.nominal_overrides().get(self.variable)?;
+        let nominal = Nominal::default().with(self.variable, own);
+        Some(self.value(&nominal))
+    }
+
+    /// What the intervals over the draws are of; empty without draws.
+    #[must_use]
+    pub fn draws_in_words(&self) -> &'static str {
+        match self.points.iter().any(|point| point.over_draws.is_some()) {
+            true if self.is_rest_uncertain => {
+                "95 %: what the measured shots leave open, of the scatter and of the shot's other values."
+            }
+            true => {
+                "95 %: what the measured shots leave open of the scatter; the shot itself is taken as exact."
+            }
+            false => "",
+        }
     }
 
     fn column(&self) -> String {
@@ -199,9 +224,12 @@ impl ProbabilityAlong<'_> {
             .map(|point| point.estimate.standard_error);
         let error = errors.fold(0.0, f64::max);
         let meaning = if has_draws {
-            "95 %: over the draws of the fit; less, 95 %: draw by draw, than where their mean is highest."
+            format!(
+                "{} less, 95 %: than where the mean over the draws is highest, draw by draw.",
+                self.draws_in_words()
+            )
         } else {
-            "short, long, left, right: how shots are missed; other misses are left out."
+            "short, long, left, right: how shots are missed; other misses are left out.".to_owned()
         };
         let of_aim = match self.is_aim {
             true => " aim: from the line to the hoop's centre, positive to the left.",

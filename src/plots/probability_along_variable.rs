@@ -7,6 +7,9 @@ use crate::output::probability_along_variable::ProbabilityAlong;
 /// Left and upper edge of the panel, and its width and height, px.
 const PANEL: ((f64, f64), (f64, f64)) = ((70.0, 74.0), (470.0, 260.0));
 
+/// Letters in a line below the panel.
+const LINE_LETTERS: usize = 95;
+
 /// Draws the curve; `None` with fewer than two values.
 #[must_use]
 pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
@@ -36,13 +39,14 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
         x: (first - x_margin, last + x_margin),
         y: ((lowest - y_margin).max(0.0), (highest + y_margin).min(1.0)),
     };
-    let mut svg = Svg::new(corner.0 + size.0 + 30.0, corner.1 + size.1 + 56.0);
+    let mut svg = Svg::new(corner.0 + size.0 + 30.0, corner.1 + size.1 + 84.0);
     let name = along.name().replace('_', " ");
     let shooter = shortened(&along.profile.shooter().name, 40);
-    let title = format!("P of one shot along its {name}: {shooter}");
+    let title = format!("{shooter}: one shot along its {name}");
     svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
     let place = along.profile.location();
     let place = place.in_words(along.profile.output().units);
+    let place = format!("{place}; the rest of the shot as it is");
     svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
     axes.draw_grid(&mut svg);
     let at = |i: usize| axes.pixel((values[i], points[i].estimate.probability));
@@ -59,13 +63,28 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
             );
         }
     }
+    let own = along.own_value();
+    let own = own.filter(|own| (axes.x.0..=axes.x.1).contains(own));
+    if let Some(own) = own {
+        let line = format!("stroke=\"{INK}\" stroke-dasharray=\"4 3\" fill=\"none\"");
+        svg.polyline(
+            [axes.pixel((own, axes.y.0)), axes.pixel((own, axes.y.1))],
+            &line,
+        );
+    }
     let label = format!("{name} ({})", along.unit().0);
-    axes.draw(&mut svg, "", &label, "P");
-    let bars = match points.iter().any(|point| point.over_draws.is_some()) {
-        true => " Bars: 95 % of the draws of the fit.",
-        false => "",
+    axes.draw(&mut svg, "", &label, "probability of a make");
+    let of_line = own.map_or("", |_| "Dashed: the shooter's own. ");
+    let of_bars = match along.draws_in_words() {
+        "" => String::new(),
+        words => words.replacen("95 %", "Bars, 95 %", 1),
     };
-    let caption = format!("P of one nominal shot along its {name}, the rest as it is.{bars}");
+    let below = format!("{of_line}{of_bars}");
+    for (i, line) in textwrap::wrap(&below, LINE_LETTERS).iter().enumerate() {
+        let y = corner.1 + size.1 + 56.0 + 15.0 * i as f64;
+        svg.text((20.0, y), 11.0, Anchor::Start, line);
+    }
+    let caption = format!("P of one shot along its {name}, the rest as it is. {below}");
     Some(Plot {
         name: "probability_along_variable".to_owned(),
         svg: svg.finish(&caption),

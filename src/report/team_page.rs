@@ -59,7 +59,7 @@ fn lines(text: &str) -> String {
         let spaces = line.len() - words.len();
         match words.split_once(':') {
             Some((name, rest)) if spaces == 0 => format!(
-                "<span class=\"player\"><b>{}</b>:{}</span>",
+                "<span class=\"player\"><strong>{}</strong>:{}</span>",
                 escaped(name),
                 escaped(rest)
             ),

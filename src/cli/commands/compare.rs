@@ -40,7 +40,8 @@ Examples:
   bankshot compare half_court --against half_court_elite
   bankshot compare configs/bank_wing.toml --out plots")]
 pub(crate) struct CompareOptions {
-    /// A sweep's folder, its TOML (for its usual folder), or a shooter's profile.
+    /// A sweep's folder, its TOML (for its usual folder), a shooter's profile, or the folder of a
+    /// fit.
     pub(crate) what: PathBuf,
     /// Another one of the same type, with another shooter or other settings.
     #[arg(long, value_name = "OTHER")]
@@ -81,9 +82,11 @@ impl OpenSweep {
 }
 
 /// The sweep of a folder, or of a TOML file whose sweep has its default folder; `None` for a
-/// profile.
+/// profile, or the folder of a fit.
 fn open_sweep(path: &Path) -> Result<Option<OpenSweep>, Failure> {
-    let path = if path.is_dir() {
+    let path = if path.join("fit.json").is_file() {
+        return Ok(None);
+    } else if path.is_dir() {
         path.to_owned()
     } else if is_sweep(&read_text(path)?) {
         run_folder::of_sweep(&load_sweep(path)?.0)?

@@ -49,6 +49,11 @@ pub(crate) struct CompareSessionsOptions {
     /// that both have].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
+    /// The values that the study was planned for, such as 'speed_sd,pitch_sd' (speed, pitch, polar
+    /// or backspin with _mean or _sd; corr_speed_pitch ...): these alone are compared beside P, so
+    /// that chance has fewer of them to strike at [default: all].
+    #[arg(long, value_name = "VALUE,VALUE", value_delimiter = ',')]
+    pub(crate) planned: Vec<String>,
     /// Print one JSON object; of a file with several shooters, an array of them.
     #[arg(long)]
     pub(crate) json: bool,
@@ -203,7 +208,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
                 print_remark(&format!("{title}: warning: {warning}"));
             }
         }
-        let changes = changes(sessions, options);
+        let changes = planned(changes(sessions, options), &options.planned)?;
         let causes = causes(sessions);
         if options.json {
             jsons.push(json(sessions, &changes, &causes));
@@ -218,7 +223,8 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             shots: session.posterior.shots,
             makes: session.makes,
         });
-        print_prose(&session_changes_text(summaries, &changes, &causes))?;
+        let tested = changes.len() - 1;
+        print_prose(&session_changes_text(summaries, &changes, &causes, tested))?;
     }
     if options.json {
         let all = if several_shooters {
@@ -428,6 +434,27 @@ fn only_session(shots: &ShooterShots, session: &str, other: &str) -> ShooterShot
     }
 }
 
+/// P and the planned ones of all changes; all if none are named.
+fn planned(all: Vec<SessionChange>, names: &[String]) -> Result<Vec<SessionChange>, Failure> {
+    if names.is_empty() {
+        return Ok(all);
+    }
+    let known = |name: &String| {
+        all.iter()
+            .any(|change| change.name == *name && *name != "P")
+    };
+    if let Some(unknown) = names.iter().find(|name| !known(name)) {
+        let others = all.iter().filter(|change| change.name != "P");
+        let allowed: Vec<&str> = others.map(|change| change.name.as_str()).collect();
+        return Err(Failure::usage(format!(
+            "--planned: \"{unknown}\" is no value of these sessions; write some of {}",
+            allowed.join(", ")
+        )));
+    }
+    let is_kept = |change: &SessionChange| change.name == "P" || names.contains(&change.name);
+    Ok(all.into_iter().filter(is_kept).collect())
+}
+
 /// P, mean and standard deviation of each value, and the correlations.
 fn changes(sessions: &[Session; 2], options: &CompareSessionsOptions) -> Vec<SessionChange> {
     let [before, after] = sessions;
@@ -530,6 +557,10 @@ fn json(
         let [change, low, high] = [change.share, change.low, change.high].map(|p| 100.0 * p);
         json!({ "unit": "%", "mean": change, "low": low, "high": high })
     });
+    let by_scatter = |order: usize| {
+        let by = &causes.by_scatter_first_and_last[order];
+        object(interval_json(&by.scaled(100.0)))
+    };
     json!({
         "shooter": before.profile.shooter().name,
         "before": session(before),
@@ -537,6 +568,8 @@ fn json(
         "change_of_makes": change_of_makes,
         "changes": listed.collect::<Value>(),
         "change_of_P_by_scatter": object(interval_json(&causes.by_scatter.scaled(100.0))),
-        "change_of_P_by_aim": object(interval_json(&causes.by_aim.scaled(100.0))),
+        "change_of_P_by_usual_release": object(interval_json(&causes.by_means.scaled(100.0))),
+        "change_of_P_by_scatter_first": by_scatter(0),
+        "change_of_P_by_scatter_last": by_scatter(1),
     })
 }

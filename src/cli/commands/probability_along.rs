@@ -88,11 +88,25 @@ pub(super) fn run(
     bars.begin("values", nominals.len() as u64);
     let mut points = Vec::new();
     let mut of_draws = Vec::new();
+    // The usual shot of a fit is uncertain in its other values too.
+    let usual_at = draws.filter(|_| !options.nominal.has_flags());
+    let usual_at = usual_at.and_then(|fit| {
+        let mut places = fit.profiles.iter();
+        places.position(|of| {
+            of.location() == profile.location()
+                && of.nominal_overrides() == profile.nominal_overrides()
+        })
+    });
     for nominal in nominals {
         let estimate = Sampler::new(profile).estimate(&nominal, target, seed, &Silent);
         if let Some(fit) = draws {
-            let p = fit_folder::shot_over_draws(fit, profile, &nominal)?;
-            of_draws.push(Some(p));
+            of_draws.push(Some(match usual_at {
+                Some(place) => {
+                    let given = (variable, nominal.get(variable));
+                    fit_folder::usual_shot_over_draws((fit, place), profile, given)?
+                }
+                None => fit_folder::shot_over_draws(fit, profile, &nominal)?,
+            }));
         }
         points.push(PointAlong {
             misses: classify_misses(profile, &nominal, &estimate, seed),
@@ -115,6 +129,7 @@ pub(super) fn run(
         variable,
         is_aim,
         points,
+        is_rest_uncertain: usual_at.is_some(),
     };
     let text = || {
         let of_profile = if draws.is_none() {

@@ -3,10 +3,15 @@
 use super::fit_json::FitSource;
 use super::parameters::{parameters, value_units};
 use crate::fitting::{
-    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, p_value,
+    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, nominal_of, p_value,
     values_at_height,
 };
+use crate::probability::{Sampler, Silent};
+use crate::shooter::NominalVariable;
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
+
+/// The standard error of P where it is printed in whole percent.
+const ROUGHLY: f64 = 0.002;
 
 /// A probability as a percentage.
 #[must_use]
@@ -169,11 +174,35 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         100.0 * posterior.prior_weights[2]
     );
     text += &tests_text(fit);
-    text += "The intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.\n";
+    text += "The intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.";
+    text += &of_constant_error(fit, source, units);
     for warning in &fit.warnings {
         text += &format!("warning: {warning}\n");
     }
     text
+}
+
+/// That a constant error of the tracker is in no interval, and what one of the size of its noise
+/// would do to P where the speeds were measured.
+fn of_constant_error(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
+    let error_m_s = libm::sqrt(source.noise.release_covariance()[(0, 0)].max(0.0));
+    if source.kind != "releases" || error_m_s == 0.0 {
+        return " They leave out a constant error of the tracker too.\n".to_owned();
+    }
+    let (long, metre) = units.length();
+    let profile = &fit.profiles[0];
+    let usual = nominal_of(&fit.typical.means[0]);
+    let sampler = Sampler::new(profile);
+    let [slower, faster] = [-error_m_s, error_m_s].map(|by_m_s| {
+        let shot = usual.with(NominalVariable::Speed, usual.speed_m_s + by_m_s);
+        let seed = profile.search().seed;
+        let estimate = sampler.estimate(&shot, ROUGHLY, seed, &Silent);
+        100.0 * estimate.probability
+    });
+    format!(
+        " They leave out a constant error of the tracker too: if it reads all speeds {:.2} {long}/s too high (one standard deviation of its noise), the usual shot makes {slower:.0} of 100, if too low {faster:.0}. The makes expected and seen tell of a large one.\n",
+        error_m_s / metre
+    )
 }
 
 /// The tests of the shots in one sentence, whether they warn or not.

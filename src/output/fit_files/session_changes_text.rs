@@ -21,7 +21,8 @@ impl SessionChange {
     /// The name in the table; of a correlation `r speed-pitch`.
     fn label(&self) -> String {
         match self.name.strip_prefix("corr_") {
-            Some(pair) => format!("r {}", pair.replace('_', "-")),
+            // As short as the longest name of another value.
+            Some(pair) => format!("r {}", pair.replace('_', "-").replace("backspin", "spin")),
             None => self.name.clone(),
         }
     }
@@ -117,11 +118,14 @@ fn in_points(change: f64) -> f64 {
     libm::round(100.0 * change) + 0.0
 }
 
+/// In points, rounded to tenths. 0 is added: no negative zero.
+fn tenths(change: f64) -> f64 {
+    libm::round(1000.0 * change) / 10.0 + 0.0
+}
+
 /// A change of P: `+3.1 points (95 %: -1.2 to +7.4)`.
 fn points(change: &Interval) -> String {
-    // Rounded first, and 0 added: no negative zero.
-    let [mean, low, high] =
-        [change.mean, change.low, change.high].map(|p| libm::round(1000.0 * p) / 10.0 + 0.0);
+    let [mean, low, high] = [change.mean, change.low, change.high].map(tenths);
     format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
 }
 
@@ -131,6 +135,7 @@ pub fn session_changes_text(
     sessions: [SessionSummary<'_>; 2],
     changes: &[SessionChange],
     causes: &ProbabilityChange,
+    tested: usize,
 ) -> String {
     let makes = sessions.each_ref().map(|session| session.makes);
     let chances = changes.iter().find(|change| change.name == "P");
@@ -152,11 +157,13 @@ pub fn session_changes_text(
         });
         format!("{} ({} shots{makes}{chance})", session.name, session.shots)
     });
-    let mut text = verdict(changes);
+    let mut text = verdict(changes, tested);
     text += &format!(
-        "Of the change of the chance, first the scatter makes {} and then the aim (the means of speed, angle and direction) {}.\n",
+        "Of the change of the chance, the scatter makes {}, and the usual release (the means of speed, angle and direction) {}. What the scatter does depends on the usual release: {:+.1} points at the old one, {:+.1} at the new one; the first number is the mean of both.\n",
         points(&causes.by_scatter),
-        points(&causes.by_aim)
+        points(&causes.by_means),
+        tenths(causes.by_scatter_first_and_last[0].mean),
+        tenths(causes.by_scatter_first_and_last[1].mean)
     );
     if let [first @ (made, 1..), second @ (made_then, 1..)] = makes {
         let percent = |made: usize, of: usize| 100.0 * made as f64 / of as f64;
@@ -173,18 +180,18 @@ pub fn session_changes_text(
         "", "before", "after", "change", "95 %", "unit", "direction", "decide"
     );
     for change in changes {
-        text += &line(change, changes.len() - 1);
+        text += &line(change, tested);
     }
     text += "\n\
         r          a correlation\n\
         direction  the chance that it changed this way at all; 50 % says nothing\n\
-        decide     about how many shots a session would decide a change of this size; for the values below P with room for chance, as several are looked at. yes: decided now. -: less than its own uncertainty, so its size says nothing (`bankshot design` says what a change of 5 or 10 points takes)\n\
-        The intervals leave out the physics of this gym, which is the same in both sessions: with another one (--physics) the change can be another too.\n";
+        decide     about how many shots a session would decide a change of this size; for the values below P with room for chance, as several are looked at (--planned names those that count). yes: decided now. -: less than its own uncertainty, so its size says nothing (`bankshot design` says what a change of 5 or 10 points takes)\n\
+        The intervals leave out the physics of this gym, which is the same in both sessions: with another one (`bankshot fit --physics`) the change can be another too.\n";
     text
 }
 
 /// Two or three sentences: what became of P, which other values changed, and which may have.
-fn verdict(changes: &[SessionChange]) -> String {
+fn verdict(changes: &[SessionChange], tested: usize) -> String {
     let mut text = String::new();
     if let Some(p) = changes.iter().find(|change| change.name == "P") {
         let change = p.comparison.change.scaled(1.0 / p.size);
@@ -203,7 +210,7 @@ fn verdict(changes: &[SessionChange]) -> String {
             if points.round() == 0.0 {
                 return format!(
                     "These shots do not show that the chance of a shot changed ({interval}).\n"
-                ) + &values_in_words(changes);
+                ) + &values_in_words(changes, tested);
             }
             format!(
                 "These shots do not show that the chance of a shot changed. The best estimate is that it \
@@ -211,12 +218,12 @@ fn verdict(changes: &[SessionChange]) -> String {
             )
         };
     }
-    text + &values_in_words(changes)
+    text + &values_in_words(changes, tested)
 }
 
 /// Which of the other values changed.
-fn values_in_words(changes: &[SessionChange]) -> String {
-    let others: Vec<&SessionChange> = changes.iter().filter(|change| change.name != "P").collect();
+fn values_in_words(changes: &[SessionChange], tested: usize) -> String {
+    let others = changes.iter().filter(|change| change.name != "P");
     let in_words = |change: &&SessionChange| {
         let by = change.comparison.change.scaled(1.0 / change.size);
         let (direction, _) = change.direction();
@@ -228,9 +235,9 @@ fn values_in_words(changes: &[SessionChange]) -> String {
             name => format!("{} {direction} by {amount}", quantity_in_words(name)),
         }
     };
-    let decided = others.iter().copied().filter(|change| change.is_decided());
+    let decided = others.filter(|change| change.is_decided());
     let (certain, possible): (Vec<_>, Vec<_>) =
-        decided.partition(|change| change.is_certain_among(others.len()));
+        decided.partition(|change| change.is_certain_among(tested));
     let list = |changes: &[&SessionChange]| {
         let words: Vec<String> = changes.iter().map(in_words).collect();
         words.join(", ")
@@ -247,8 +254,8 @@ fn values_in_words(changes: &[SessionChange]) -> String {
             "May have changed: {}. ({} own 95 % interval leaves out zero. But of {} values that stay the same, one or more seem to change in {:.0} of 100 comparisons.)\n",
             list(&possible),
             if possible.len() == 1 { "Its" } else { "Their" },
-            others.len(),
-            100.0 * (1.0 - libm::pow(0.95, others.len() as f64))
+            tested,
+            100.0 * (1.0 - libm::pow(0.95, tested as f64))
         );
     }
     text
@@ -264,6 +271,9 @@ fn quantity_in_words(name: &str) -> &str {
         "pitch_sd" => "the scatter in the release angle",
         "polar_sd" => "the scatter to left and right",
         "backspin_sd" => "the scatter in backspin",
+        "corr_speed_backspin" => "the correlation of speed and backspin",
+        "corr_pitch_backspin" => "the correlation of angle and backspin",
+        "corr_polar_backspin" => "the correlation of direction and backspin",
         "corr_speed_pitch" => "the correlation of speed and angle",
         "corr_speed_polar" => "the correlation of speed and direction",
         "corr_pitch_polar" => "the correlation of angle and direction",

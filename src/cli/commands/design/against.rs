@@ -2,27 +2,28 @@
 
 use super::TestedShot;
 use super::changes::{FirstSession, in_words, known_after};
-use crate::fitting::{DesignRow, POWER, SessionError};
+use crate::fitting::{Covariance, DesignRow, POWER, SessionError, values_of};
 use crate::output::json_object::number;
 use crate::shooter::ReleaseVariable;
+use crate::units::{DEGREE_RAD, UnitSystem};
 use serde_json::{Value, json};
 
 /// A second session as it is expected: its shots differ from those of the first one.
 pub(super) struct Against {
     /// Whose session it is.
-    pub(super) name: String,
+    name: String,
     /// What differs.
-    pub(super) differences: Vec<SessionDifference>,
+    differences: Vec<SessionDifference>,
 }
 
 /// What differs between the sessions, and how many shots show it.
-pub(super) struct SessionDifference {
+struct SessionDifference {
     /// The name of a key.
     key: &'static str,
-    /// What it is, for people.
-    what: &'static str,
-    /// The values of both sessions.
-    values: [f64; 2],
+    /// What it is and how it differs, for people.
+    words: String,
+    /// The difference: of P, of a value in SI units, or of a scatter as a share of it.
+    change: f64,
     /// Shots in each of two equal sessions.
     in_each: f64,
     /// Shots of a second session after the first one; `None` if no number shows it, or without a
@@ -30,40 +31,81 @@ pub(super) struct SessionDifference {
     in_second: Option<f64>,
 }
 
-/// The scatter that is compared.
-const SCATTER: [(&str, &str, ReleaseVariable); 3] = [
-    ("speed_sd", "speed scatter", ReleaseVariable::Speed),
-    ("pitch_sd", "pitch scatter", ReleaseVariable::Pitch),
-    ("polar_sd", "polar scatter", ReleaseVariable::Polar),
+/// The values that are compared: their index in a release, and the names of their mean and scatter.
+const VALUES: [(ReleaseVariable, &str, &str, &str); 3] = [
+    (ReleaseVariable::Speed, "speed", "speed_mean", "speed_sd"),
+    (ReleaseVariable::Pitch, "pitch", "pitch_mean", "pitch_sd"),
+    (ReleaseVariable::Polar, "polar", "polar_mean", "polar_sd"),
 ];
 
+/// How far a session of so many shots knows something, as [`SessionError::of_one_shot`].
+type OfOneShot<'a> = &'a dyn Fn(f64) -> f64;
+
 impl Against {
-    /// From simulated tests of both sessions.
+    /// From simulated tests of both sessions, and the errors of the tracker at both shots.
     pub(super) fn new(
         name: String,
         [first, second]: [&TestedShot; 2],
         [rows, second_rows]: [&[DesignRow]; 2],
-        session: Option<&FirstSession>,
+        noises: [&Covariance; 2],
+        (session, units): (Option<&FirstSession>, UnitSystem),
     ) -> Self {
-        let sigmas = [first, second].map(|of| of.profile.shooter().dispersion.sigmas(&of.nominal));
-        // Relative errors of a scatter are errors of its logarithm.
-        let mut differences = vec![difference(
-            ("probability", "P"),
-            [first.probability, second.probability],
-            second.probability - first.probability,
-            [rows, second_rows],
-            &|row| row.probability_error,
+        let known = |rows: &[DesignRow], error: &dyn Fn(&DesignRow) -> f64, shots: f64| {
+            known_after(rows, shots as usize, error).of_one_shot
+        };
+        let p_error = |row: &DesignRow| row.probability_error;
+        let change = second.probability - first.probability;
+        let mut differences = vec![SessionDifference::new(
+            "probability",
+            format!(
+                "P, {:.1} to {:.1} of 100 ({:+.1} points)",
+                100.0 * first.probability,
+                100.0 * second.probability,
+                100.0 * change
+            ),
+            (change, change),
+            [&|shots| known(rows, &p_error, shots), &|shots| {
+                known(second_rows, &p_error, shots)
+            }],
             session.map(|session| session.p),
         )];
-        for (i, (key, what, variable)) in SCATTER.into_iter().enumerate() {
-            let index = ReleaseVariable::ALL.iter().position(|of| *of == variable);
-            let values = sigmas.map(|sigmas| index.map_or(0.0, |index| sigmas[index]));
-            differences.push(difference(
-                (key, what),
-                values,
-                libm::log(values[1] / values[0]),
-                [rows, second_rows],
-                &|row| row.sd_errors[i],
+        let both = [first, second];
+        let sigmas = both.map(|of| of.profile.shooter().dispersion.sigmas(&of.nominal));
+        let means = both.map(|of| values_of(&of.nominal));
+        let (long, metre) = units.length();
+        for (i, (variable, name, mean_key, sd_key)) in VALUES.into_iter().enumerate() {
+            let (unit, size) = match variable {
+                ReleaseVariable::Speed => (format!("{long}/s"), metre),
+                _ => ("deg".to_owned(), DEGREE_RAD),
+            };
+            let sd = sigmas.map(|sigmas| sigmas[variable.index()]);
+            // Of a mean: the scatter and the tracker's noise, in each shot.
+            let of_mean = [0, 1].map(|k| libm::sqrt(sd[k] * sd[k] + noises[k][(i, i)]));
+            let change = means[1][i] - means[0][i];
+            differences.push(SessionDifference::new(
+                mean_key,
+                format!(
+                    "{name}, {:.2} to {:.2} {unit}",
+                    means[0][i] / size,
+                    means[1][i] / size
+                ),
+                (change, change),
+                [&|_| of_mean[0], &|_| of_mean[1]],
+                session.map(|session| SessionError {
+                    of_one_shot: of_mean[0],
+                    shots: session.p.shots,
+                }),
+            ));
+            // A relative error of a scatter is an error of its logarithm.
+            let sd_error = |row: &DesignRow| row.sd_errors[i];
+            let grown = sd[1] / sd[0];
+            differences.push(SessionDifference::new(
+                sd_key,
+                format!("{name} scatter, {:+.0} %", 100.0 * (grown - 1.0) + 0.0),
+                (grown - 1.0, libm::log(grown)),
+                [&|shots| known(rows, &sd_error, shots), &|shots| {
+                    known(second_rows, &sd_error, shots)
+                }],
                 session.map(|session| session.scatter),
             ));
         }
@@ -81,19 +123,9 @@ impl Against {
             ))
         );
         for difference in &self.differences {
-            let [before, after] = difference.values;
-            let change = match difference.key {
-                "probability" => format!(
-                    "{:.1} to {:.1} of 100 ({:+.1} points)",
-                    100.0 * before,
-                    100.0 * after,
-                    100.0 * (after - before)
-                ),
-                _ => format!("{:+.0} %", 100.0 * (after / before - 1.0) + 0.0),
-            };
             text += &format!(
-                "  {}, {change}: {}{}\n",
-                difference.what,
+                "  {}: {}{}\n",
+                difference.words,
                 in_words(Some(difference.in_each)),
                 session.map_or_else(String::new, |_| format!(
                     " ({})",
@@ -101,18 +133,14 @@ impl Against {
                 ))
             );
         }
-        text + "Each is a test of its own: of several at once, one shows by chance more often. never: the first shots alone leave it too unsure.\n"
+        text + "The differences are taken as they are here; where they were measured, chance makes the great ones look greater than they are, so plan for more shots. Each number is for one value alone: several at once need more (`bankshot compare-sessions --planned`). never: the first shots alone leave it too unsure.\n"
     }
 
     pub(super) fn json(&self) -> Value {
         let listed = self.differences.iter().map(|difference| {
-            let [before, after] = difference.values;
             json!({
                 "name": difference.key,
-                "change": number(match difference.key {
-                    "probability" => after - before,
-                    _ => after / before - 1.0,
-                }),
+                "change": number(difference.change),
                 "shots_in_each_of_two": number(difference.in_each),
                 "shots_in_second_session": difference.in_second.map(|shots| number(shots.ceil())),
             })
@@ -121,32 +149,29 @@ impl Against {
     }
 }
 
-/// How many shots show a change, with the errors of both sessions.
-fn difference(
-    (key, what): (&'static str, &'static str),
-    values: [f64; 2],
-    change: f64,
-    [rows, second_rows]: [&[DesignRow]; 2],
-    error: &dyn Fn(&DesignRow) -> f64,
-    session: Option<SessionError>,
-) -> SessionDifference {
-    let change = change.abs();
-    // The row that is nearest in size is known once the size is.
-    let of_one_shot =
-        |rows: &[DesignRow], shots: f64| known_after(rows, shots as usize, error).of_one_shot;
-    let in_each_near = |shots: f64| {
-        let both = libm::hypot(of_one_shot(rows, shots), of_one_shot(second_rows, shots));
-        let root = POWER * both / change;
-        root * root
-    };
-    let in_second_near =
-        |shots: f64| session?.second_session(change, of_one_shot(second_rows, shots));
-    const ROUGHLY: f64 = 100.0;
-    SessionDifference {
-        key,
-        what,
-        values,
-        in_each: in_each_near(in_each_near(ROUGHLY)),
-        in_second: in_second_near(ROUGHLY).and_then(in_second_near),
+impl SessionDifference {
+    /// Of a change, and the same on the scale of the errors.
+    fn new(
+        key: &'static str,
+        words: String,
+        (change, on_scale): (f64, f64),
+        [first, second]: [OfOneShot<'_>; 2],
+        session: Option<SessionError>,
+    ) -> Self {
+        let on_scale = on_scale.abs();
+        let in_each_near = |shots: f64| {
+            let root = POWER * libm::hypot(first(shots), second(shots)) / on_scale;
+            root * root
+        };
+        let in_second_near = |shots: f64| session?.second_session(on_scale, second(shots));
+        // The row that is nearest in size is known once the size is.
+        const ROUGHLY: f64 = 100.0;
+        Self {
+            key,
+            words,
+            change,
+            in_each: in_each_near(in_each_near(ROUGHLY)),
+            in_second: in_second_near(ROUGHLY).and_then(in_second_near),
+        }
     }
 }

@@ -274,7 +274,8 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
                 name,
                 [&first_shot, second],
                 both_rows,
-                first.as_ref(),
+                [&own_noise, &second_noise],
+                (first.as_ref(), units),
             ))
         })
         .transpose()?;
