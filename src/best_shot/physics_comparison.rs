@@ -97,6 +97,44 @@ impl PhysicsComparison {
         errors.flatten().fold(0.0, f64::max)
     }
 
+    /// Whether the better kind of shot is the same under each change that nobody measured; empty
+    /// where there is one kind alone.
+    fn kinds_in_words(&self) -> String {
+        let bank_gain = |row: &PhysicsRow| {
+            let bank = row.bank.as_ref().ok()?.estimate.probability;
+            Some(bank - Self::direct_p(row)?)
+        };
+        let Some(gain) = self.rows.get(self.base).and_then(bank_gain) else {
+            return String::new();
+        };
+        let (better, worse) = if gain > 0.0 {
+            ("bank", "direct")
+        } else {
+            ("direct", "bank")
+        };
+        let rows = self.rows.iter().filter(|row| row.is_unmeasured);
+        let turned: Vec<&str> = rows
+            .filter(|row| bank_gain(row).is_some_and(|other| other * gain < 0.0))
+            .map(|row| {
+                row.name
+                    .split_once(' ')
+                    .map_or(row.name.as_str(), |(_, change)| change)
+            })
+            .collect();
+        if turned.is_empty() {
+            format!(
+                "The best {better} shot makes more than the best {worse} one ({:.1} of 100 more), and does so under each change of what nobody measured in this gym. ",
+                100.0 * gain.abs()
+            )
+        } else {
+            format!(
+                "The best {better} shot makes more than the best {worse} one ({:.1} of 100 more), but not with {}: that depends on what nobody measured in this gym. ",
+                100.0 * gain.abs(),
+                turned.join(", ")
+            )
+        }
+    }
+
     /// P of the best direct shot.
     #[must_use]
     pub fn direct_p(row: &PhysicsRow) -> Option<f64> {
@@ -127,7 +165,8 @@ impl PhysicsComparison {
             0 => String::new(),
             _ => format!(" under {}", base.name),
         };
-        let mut text = format!(
+        let mut text = self.kinds_in_words();
+        text += &format!(
             "P of the best direct shot{under}, with the range that what nobody measured in this gym leaves: {direct}."
         );
         if let Some(same) = range(&Self::same_shot_p) {

@@ -3,6 +3,7 @@
 use super::failure::{Failure, io_in_words, refuse_missing};
 use super::fixed_value_flags::FixedOptions;
 use super::nominal_shot_flags::PlaceOptions;
+use super::shooter_folders;
 use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::config::{
@@ -34,10 +35,17 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let metadata = std::fs::metadata(path).map_err(refuse)?;
     if !metadata.is_file() {
         let profile = path.join("profile.toml");
+        let folders = shooter_folders::of_shooters(path);
         let give = if profile.is_file() {
             profile.display().to_string()
-        } else {
+        } else if folders.is_empty() {
             "a TOML file".to_owned()
+        } else {
+            let names = folders.iter().map(|folder| folder.display().to_string());
+            format!(
+                "the folder of one shooter: {}",
+                names.collect::<Vec<_>>().join(", ")
+            )
         };
         return Err(Failure::usage(format!(
             "{shown}: is not a file; give {give}"

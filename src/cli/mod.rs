@@ -17,6 +17,7 @@ mod plot_files;
 mod progress_bars;
 mod run_folder;
 mod scatter_flags;
+mod shooter_folders;
 mod signals;
 mod terminal;
 mod value_lists;

@@ -68,4 +68,6 @@ pub use shots_under_physics::{FittedShots, Measured, ShotsUnderPhysics};
 pub use test_design::{DesignRow, SessionError, design, simulated_test};
 pub use tracked_flight_noise::tracked_flight_noise;
 pub use tracker_noise::{Tracker, TrackerNoise};
-pub use unmeasured_parameter_likelihood::{LikelihoodCurve, UnseenParameter, likelihood_curve};
+pub use unmeasured_parameter_likelihood::{
+    FittedShooter, LikelihoodCurve, UnseenParameter, likelihood_curve,
+};

@@ -90,8 +90,8 @@ pub fn compare_probabilities(
 }
 
 /// What the change of P between two sessions comes from. What each of two causes does depends on
-/// which of them changes first, so each is the mean of both orders (Shapley's value); the two add up
-/// to the change.
+/// which of them changes first, so each is the mean of both orders (Shapley's value); the two add
+/// up to the change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbabilityChange {
     /// By the scatter: standard deviations and correlations.

@@ -80,22 +80,33 @@ pub struct LikelihoodCurve {
     pub is_decided: bool,
 }
 
-/// The likelihood curve of a parameter. `profiles` are those of the places.
+/// A fitted shooter with the shots of the fit.
+#[derive(Clone, Copy)]
+pub struct FittedShooter<'a> {
+    /// The profiles of the places.
+    pub profiles: &'a [Profile],
+    /// The shots.
+    pub shots: &'a [MeasuredRelease],
+    /// The typical draw.
+    pub typical: &'a Draw,
+    /// Whether the backspin of each shot was measured.
+    pub is_spin_measured: bool,
+}
+
+/// The likelihood curve of a parameter that the shooters have in common.
 ///
 /// # Errors
 /// A value makes no profile.
 pub fn likelihood_curve(
     parameter: UnseenParameter,
-    profiles: &[Profile],
-    shots: &[MeasuredRelease],
-    typical: &Draw,
-    is_spin_measured: bool,
+    shooters: &[FittedShooter<'_>],
 ) -> Result<LikelihoodCurve, ProfileError> {
     let normals = common_normals(RELEASES, 1);
-    let labelled: Vec<&MeasuredRelease> = shots.iter().filter(|shot| shot.made.is_some()).collect();
-    let log_likelihood = |value: f64| -> Result<f64, ProfileError> {
-        let mut draw = typical.clone();
-        let mut changed = profiles.to_vec();
+    let of_shooter = |shooter: &FittedShooter<'_>, value: f64| -> Result<f64, ProfileError> {
+        let is_labelled = |shot: &&MeasuredRelease| shot.made.is_some();
+        let labelled: Vec<&MeasuredRelease> = shooter.shots.iter().filter(is_labelled).collect();
+        let mut draw = shooter.typical.clone();
+        let mut changed = shooter.profiles.to_vec();
         match parameter {
             UnseenParameter::Backspin => {
                 for mean in &mut draw.means {
@@ -111,7 +122,7 @@ pub fn likelihood_curve(
                 }
             }
         }
-        let is_spin_seen = is_spin_measured && parameter != UnseenParameter::Backspin;
+        let is_spin_seen = shooter.is_spin_measured && parameter != UnseenParameter::Backspin;
         let logarithms: Vec<f64> = labelled
             .par_iter()
             .map_init(BatchWorkspace::default, |workspace, shot| {
@@ -140,6 +151,10 @@ pub fn likelihood_curve(
             })
             .collect();
         Ok(logarithms.iter().sum::<f64>())
+    };
+    let log_likelihood = |value: f64| -> Result<f64, ProfileError> {
+        let each = shooters.iter().map(|shooter| of_shooter(shooter, value));
+        each.sum()
     };
     let tabulate = |low: f64, high: f64| {
         let step = (high - low) / (VALUES - 1) as f64;

@@ -27,13 +27,15 @@ pub struct PlayerPoster {
     pub plot: Plot,
     /// The map alone, for a page with the sentences as text.
     pub map_svg: String,
-    /// What the map says: three sentences, two numbers each; two of them for one place.
+    /// What the map says: three sentences, two numbers each; two of them for one place. After them
+    /// what the player's own shots say, if they were measured.
     pub sentences: Vec<String>,
 }
 
-/// Draws the poster of a player; `None` if nothing can be made from any place.
+/// Draws the poster of a player; `None` if nothing can be made from any place. `own` is what the
+/// player's own shots say: a last sentence.
 #[must_use]
-pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
+pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoster> {
     let found: Vec<(f64, &PlaceProbabilities)> = results
         .chances()
         .iter()
@@ -64,7 +66,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
         let same = found.iter().filter(|(other, _)| shown(*other) == shown(p));
         same.map(|(_, place)| *place).collect()
     };
-    let as_sure = found.iter().filter(|(p, _)| best.0 - p < AS_SURE).count();
+    let as_sure = like_best_count(&found, best.0);
     let like_best = alike(best.0);
     let named = best.1.in_players_words(&like_best, units);
     let is_both = best.1.has_mirror_in(&like_best);
@@ -99,6 +101,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
             of_hundred(worst.0)
         ));
     }
+    sentences.extend(own.filter(|own| !own.is_empty()).map(str::to_owned));
     let drawing = |words: &[String]| {
         let map = CourtMap {
             style: MapStyle::Poster,
@@ -145,8 +148,13 @@ pub fn draw(results: &SweepResults<'_>) -> Option<PlayerPoster> {
     })
 }
 
-/// Places whose P is less than this below the greatest are as sure.
-const AS_SURE: f64 = 0.01;
+/// Places that show the same number as the surest one.
+fn like_best_count(found: &[(f64, &PlaceProbabilities)], best: f64) -> usize {
+    found
+        .iter()
+        .filter(|(p, _)| shown(*p) == shown(best))
+        .count()
+}
 
 /// A chance as the map shows it: nobody makes all shots.
 fn shown(p: f64) -> String {
@@ -199,6 +207,22 @@ fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
     )
 }
 
+/// At how many of the places the bank shot is not better on each ring; empty if it is at all.
+fn ring_in_words(bank: &[&PlaceProbabilities]) -> String {
+    let turned = bank
+        .iter()
+        .filter(|place| place.turns_with_the_ring())
+        .count();
+    let places = match turned {
+        0 => return String::new(),
+        _ if bank.len() == 1 => "there".to_owned(),
+        all if all == bank.len() => "at all of them".to_owned(),
+        1 => "at one of them".to_owned(),
+        some => format!("at {some} of them"),
+    };
+    format!(" On an unusual ring direct is better {places}.")
+}
+
 /// Where banking helps most, and how to.
 fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
     let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
@@ -239,5 +263,5 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
             false => "From there (each place has its own aim)",
         },
         aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
-    )
+    ) + &ring_in_words(bank)
 }

@@ -11,12 +11,16 @@ pub struct PageTable {
     pub columns: Vec<String>,
     /// Its rows.
     pub rows: Vec<Vec<String>>,
+    /// Whether it is on paper too.
+    pub is_printed: bool,
 }
 
 /// The content of the page.
 pub struct TeamPage {
     /// From where each player should bank, a line each.
     pub answer: String,
+    /// What the own shots of each measured player say, a text each.
+    pub advice: Vec<String>,
     /// Tables.
     pub tables: Vec<PageTable>,
     /// The maps side by side.
@@ -45,7 +49,12 @@ impl PageTable {
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
         format!(
-            "<h2>{}</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr>{columns}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n",
+            "<section{}>\n<h2>{}</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr>{columns}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n</section>\n",
+            if self.is_printed {
+                ""
+            } else {
+                " class=\"unprinted\""
+            },
             escaped(&self.caption),
             self.rows.iter().map(row).collect::<String>()
         )
@@ -89,6 +98,22 @@ impl TeamPage {
                 "<p>A poster to print for each player: <a href=\"{file}\">{file}</a>, a file beside this page.</p>\n"
             )
         });
+        let advice: String = self
+            .advice
+            .iter()
+            .map(|text| {
+                format!(
+                    "<p class=\"advice\">{}</p>\n",
+                    lines(&text.replace('\n', " "))
+                )
+            })
+            .collect();
+        let advice = match advice.is_empty() {
+            true => advice,
+            false => format!(
+                "<h2>Each player's measured shot: now, and what to change</h2>\n<section class=\"advices\">\n{advice}</section>\n"
+            ),
+        };
         let maps = self.maps.as_ref().map_or_else(String::new, |plot| {
             format!(
                 "<figure class=\"wide\">\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
@@ -103,9 +128,10 @@ impl TeamPage {
              .answer {{ white-space: normal; }}\n\
              .player, .line {{ display: block; }}\n\
              .player + .player, .line + .player {{ margin-top: 0.6em; }}\n\
-             @media print {{ .answer {{ columns: 2; }} td, th {{ padding: 0.3mm 1mm; }} }}\n\
+             .advice {{ max-width: 60em; }}\n\
+             @media print {{ .answer, .advices {{ columns: 2; }} .advice {{ margin: 0 0 2mm; }} td, th {{ padding: 0.3mm 1mm; }} }}\n\
              @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
-             <p class=\"answer\">{}</p>\n{}{maps}{posters}\
+             <p class=\"answer\">{}</p>\n{advice}{}{maps}{posters}\
              <footer><p>{}</p></footer>\n</html>\n",
             include_str!("../../assets/report/page.css"),
             lines(&self.answer),

@@ -6,9 +6,9 @@
 
 use bankshot::dynamics::Simulator;
 use bankshot::fitting::{
-    Covariance, Draw, DrawProbabilities, FitOptions, Interval, MeasuredRelease, Place,
-    PopulationPrior, Posterior, SpinSource, Tails, Tracker, UnseenParameter, Values, WeightedShots,
-    advise, compare_probabilities, compare_sessions, design, fit, fitted_profile,
+    Covariance, Draw, DrawProbabilities, FitOptions, FittedShooter, Interval, MeasuredRelease,
+    Place, PopulationPrior, Posterior, SpinSource, Tails, Tracker, UnseenParameter, Values,
+    WeightedShots, advise, compare_probabilities, compare_sessions, design, fit, fitted_profile,
     is_speed_scatter_possible, landing_of, likelihood_curve, nominal_of, release_of_landing,
     simulated_test, tails_of, usual_probabilities,
 };
@@ -572,7 +572,13 @@ fn campaign_unseen_backspin_is_told_by_made_and_missed() {
             let typical = posterior.typical();
             let fitted = fitted_profile("fitted", &physics, &typical, &place).unwrap();
             let parameter = UnseenParameter::Backspin;
-            let curve = likelihood_curve(parameter, &[fitted], &shots, &typical, false).unwrap();
+            let shooter = FittedShooter {
+                profiles: &[fitted],
+                shots: &shots,
+                typical: &typical,
+                is_spin_measured: false,
+            };
+            let curve = likelihood_curve(parameter, &[shooter]).unwrap();
             (
                 curve.best / REV_RAD,
                 curve.interval.map(|end| end / REV_RAD),

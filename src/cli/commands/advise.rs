@@ -5,6 +5,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::shooter_folders;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{Posterior, advise};
 use crate::output::fit_files::advice_text::{advice_json, advice_text, brief_advice_text};
@@ -39,7 +40,7 @@ pub(crate) struct AdviseOptions {
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
         fit_folder::refuse_options_of_files(&options.shots, &options.measured)?;
-        let folders = match &fit_folder::of_shooters(&options.shots)[..] {
+        let folders = match &shooter_folders::of_shooters(&options.shots)[..] {
             [] => vec![options.shots.clone()],
             several => several.to_vec(),
         };

@@ -14,7 +14,6 @@ pub(super) mod pitch_curve;
 pub(super) mod plan;
 mod plan_sweep_time_and_memory;
 pub(super) mod probability;
-mod probability_along;
 pub(super) mod report;
 pub(super) mod simulate;
 pub(super) mod sweep;

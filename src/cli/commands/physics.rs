@@ -19,7 +19,7 @@ use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::object;
 use crate::plots::physics_probabilities;
 use crate::probability::Progress;
-use crate::shooter::Profile;
+use crate::shooter::{NominalOverrides, NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use comfy_table::{CellAlignment, LineStyle, Table, presets};
@@ -93,6 +93,9 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     }
     let profile = load_profile(&path, &options.physics, quiet)?;
     let mut profile = options.location.moved(profile)?;
+    if options.location.is_given() {
+        profile = without_usual_shot(&profile)?;
+    }
     let units_of_fit = fit.as_ref().map(|fit| fit.units);
     if let Some(units) = options.units.map(Into::into).or(units_of_fit) {
         profile = profile.with(|settings| settings.output.units = units)?;
@@ -139,6 +142,20 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     } else {
         print_prose(&comparison_text(&profile, &comparison, fitted.as_ref()))
     }
+}
+
+/// The profile without the usual shot of its `[nominal]` table, which is that of its own place.
+/// What its search keeps fixed stays.
+fn without_usual_shot(profile: &Profile) -> Result<Profile, Failure> {
+    let own = profile.nominal_overrides();
+    let mut kept = NominalOverrides::default();
+    for variable in NominalVariable::ALL {
+        let is_searched = profile.search().choice.includes(variable);
+        if let Some(value) = own.get(variable).filter(|_| !is_searched) {
+            kept.set(variable, value);
+        }
+    }
+    Ok(profile.with(|settings| settings.nominal = kept)?)
 }
 
 /// The name of the first row where --physics replaces the profile's own.

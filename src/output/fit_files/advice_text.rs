@@ -66,7 +66,7 @@ impl ChangeWords {
         if step.cause == Cause::PITCH {
             let speed = self.of_value(Cause::SPEED, from[0], step.release[0]);
             let speed = speed.trim_start_matches("throw ");
-            text += &format!(", {}", speed.replace("keep the", "with the same"));
+            text += &format!(", {}", speed.replace("keep the", "with about the same"));
         }
         text
     }
@@ -142,10 +142,18 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
     let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
     if let Some([speed, pitch]) = &steps.alone
         && by_m_s >= SAME_SPEED_M_S
-        && (speed.mean < 0.0 || pitch.mean < 0.0)
     {
         let [of_speed, of_pitch] = [speed, pitch].map(|gain| 100.0 * (p + gain.mean));
-        text += &if pitch.mean < 0.0 && speed.mean > 0.5 * gain.mean {
+        text += &if speed.mean >= 0.0 && pitch.mean >= 0.0 {
+            let [(first, of_first), (second, of_second)] = if speed.mean > pitch.mean {
+                [("speed", of_speed), ("angle", of_pitch)]
+            } else {
+                [("angle", of_pitch), ("speed", of_speed)]
+            };
+            format!(
+                " Begin with the {first}: alone it makes {of_first:.0} %, the new {second} alone {of_second:.0} %."
+            )
+        } else if pitch.mean < 0.0 && speed.mean > 0.5 * gain.mean {
             format!(
                 " Begin with the speed, which alone makes {of_speed:.0} %: the new angle without it makes {of_pitch:.0} %."
             )
@@ -318,6 +326,38 @@ fn disagreement(p: &Interval, made: usize, shots: usize) -> f64 {
     libm::fabs(count.share - p.mean) / error
 }
 
+/// What a poster says of a player's own shots: how many go in, what to change, and what the player
+/// then sees; empty where no change is sure, or the makes and the measured shots do not belong
+/// together.
+#[must_use]
+pub fn advice_for_poster(
+    advice: &Advice,
+    observed: Observed,
+    (from, court_angle_rad): (&str, f64),
+    units: UnitSystem,
+) -> String {
+    let sure = advice.steps.as_ref();
+    let sure = sure.filter(|steps| steps.steps.iter().any(AdviceStep::is_sure));
+    let p = advice.usual_probability;
+    let is_doubted = observed.is_some_and(|(made, shots)| {
+        shots > 0 && disagreement(&p, made, shots) >= MOST_DISAGREEMENT
+    });
+    let Some(steps) = sure.filter(|_| !is_doubted) else {
+        return String::new();
+    };
+    let words = ChangeWords {
+        units,
+        court_angle_rad,
+    };
+    format!(
+        "Your shot from {from}: now {:.0} of 100 go in, {:.0} can: {}. {}",
+        100.0 * p.mean,
+        100.0 * (p.mean + steps.gain.mean),
+        words.of_releases(&advice.usual, &steps.advised),
+        landing_in_words(advice, units).trim_end()
+    )
+}
+
 /// The answer for people: a few sentences, then the figures.
 #[must_use]
 pub fn advice_text(
@@ -426,7 +466,7 @@ pub fn advice_text(
     if let Some(steps) = &advice.steps {
         text += "\nstep by step, each on top of those before";
         if !steps.steps.iter().all(AdviceStep::is_sure) {
-            text += " (in brackets: too little or too unsure to be advised";
+            text += " (in brackets: less than half a point, not surely above 0, or to a side that is not sure, so not advised";
             let speed_then_angle = steps.steps.windows(2).any(|pair| {
                 let causes = [pair[0].cause, pair[1].cause];
                 causes == [Cause::SPEED, Cause::PITCH] && !pair[0].is_sure() && pair[1].is_sure()

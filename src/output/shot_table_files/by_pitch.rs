@@ -1,8 +1,8 @@
 //! The best shots at several pitch angles: for people, as CSV and JSON.
 
 use super::columns::columns;
-use super::notes::physics_note;
-use super::table_text::{both_sides, decimal, line, speed_limit_in_words, wrapped};
+use super::notes::{physics_note, speed_limit_in_words};
+use super::table_text::{both_sides, decimal, line, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::output::fit_files::fit_json::interval_json;

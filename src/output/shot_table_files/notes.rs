@@ -1,6 +1,5 @@
 //! What a reader of a table of best shots must know.
 
-use super::table_text::speed_limit_in_words;
 use crate::best_shot::{ShotKind, ShotTable, TableKind, TableShot};
 use crate::model::SolidId;
 use crate::shooter::{Location, Profile, ReleaseVariable};
@@ -113,6 +112,15 @@ fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     });
     let texts: Vec<String> = of_levels.collect();
     (!texts.is_empty()).then(|| format!("P is {}.", texts.join("; ")))
+}
+
+/// The greatest speed of a profile in brackets, with a space before it; empty without one.
+pub(super) fn speed_limit_in_words(profile: &Profile, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let most = profile.search().speed_max_m_s;
+    most.map_or_else(String::new, |most| {
+        format!(" (up to {:.1} {long}/s)", most / metre)
+    })
 }
 
 /// Where no clean shot goes in, and the greatest speed, if the profile has one.

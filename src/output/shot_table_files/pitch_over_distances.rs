@@ -2,8 +2,8 @@
 //! launcher whose angle is fixed.
 
 use super::by_pitch::{by_pitch_csv, by_pitch_json, kind_before_shot};
-use super::notes::physics_note;
-use super::table_text::{decimal, line, speed_limit_in_words, wrapped};
+use super::notes::{physics_note, speed_limit_in_words};
+use super::table_text::{decimal, line, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind};
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};

@@ -1,7 +1,7 @@
 //! A table of best shots for people, at most 80 columns wide.
 
 use super::columns::{TableNode, columns, nodes};
-use super::notes::{notes, physics_note, shooter_note, what_shots};
+use super::notes::{notes, physics_note, shooter_note, speed_limit_in_words, what_shots};
 use crate::best_shot::{ShotTable, TableShot};
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -144,15 +144,6 @@ pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> St
     }
     let notes = notes(table, profile, units);
     text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
-}
-
-/// The greatest speed of a profile in brackets, with a space before it; empty without one.
-pub(super) fn speed_limit_in_words(profile: &Profile, units: UnitSystem) -> String {
-    let (long, metre) = units.length();
-    let most = profile.search().speed_max_m_s;
-    most.map_or_else(String::new, |most| {
-        format!(" (up to {:.1} {long}/s)", most / metre)
-    })
 }
 
 /// A number with these decimals; a dash if there is none.

@@ -1,7 +1,7 @@
 //! How many shots show the difference of two known shooters, or of one shooter on two days.
 
-use super::TestedShot;
 use super::changes::{FirstSession, in_words, known_after};
+use super::tested_shot::TestedShot;
 use crate::fitting::{Covariance, DesignRow, POWER, SessionError, values_of};
 use crate::output::json_object::number;
 use crate::shooter::ReleaseVariable;

@@ -2,31 +2,29 @@
 
 mod against;
 mod changes;
+mod tested_shot;
 
 use self::against::Against;
 use self::changes::{
     FirstSession, MOST_SHOTS, changes_json, least_change, shots_for, shots_for_changes,
 };
-use crate::analysis::sensitivity::SensitivityTopics;
-use crate::best_shot::find_kinds;
-use crate::cli::config_files::{load_profile, read_text};
+use self::tested_shot::TestedShot;
+use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::tracker_noise;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_prose};
 use crate::cli::value_parsers::{self, PhysicsArg, UnitsArg};
 use crate::fitting::{
     Covariance, DesignRow, FitError, Landing, Place, TWO_SIDED_95, Tracker, TrackerNoise, design,
-    landing_of, nominal_of, release_of_landing, tracked_flight_noise, values_of,
+    landing_of, release_of_landing, tracked_flight_noise, values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::output::json_object::number;
-use crate::probability::{Sampler, Silent};
 use crate::shooter::{Nominal, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -116,89 +114,26 @@ fn tracker_named(name: &str, sees: Option<Source>) -> Result<TrackerOfTest, Fail
     Ok(TrackerOfTest { name, noise, sees })
 }
 
-/// The shot that a session repeats.
-struct TestedShot {
-    profile: Profile,
-    nominal: Nominal,
-    probability: f64,
-    /// The tracker of a fit and what it sees; lab without one.
-    tracker: (String, Option<Source>),
-    units: UnitSystem,
-    /// The session that was fitted.
-    fitted: Option<FirstSession>,
-}
-
-impl TestedShot {
-    /// Of the folder of a fit the usual shot at the place; of a profile the named shot, else the
-    /// best one.
-    fn read(
-        path: &Path,
-        options: &DesignOptions,
-        named: &NominalOptions,
-        quiet: bool,
-    ) -> Result<Self, Failure> {
-        if !path.is_dir() {
-            if options.place.is_some() {
-                return Err(Failure::usage(
-                    "--place: only the folder of a fit has places",
-                ));
-            }
-            let profile = load_profile(path, &options.physics, quiet)?;
-            let nominal = if named.is_given(&profile) {
-                named.resolve(&profile)?
-            } else {
-                best_nominal(&profile, quiet)?
-            };
-            return Ok(Self {
-                probability: probability(&profile, &nominal),
-                units: profile.output().units,
-                profile,
-                nominal,
-                tracker: ("lab".to_owned(), None),
-                fitted: None,
-            });
-        }
-        let fit = fit_folder::read(path)?;
-        let place = fit.place_numbered(options.place)?;
-        let nominal = nominal_of(&fit.posterior.typical().means[place]);
-        if fit.profiles.len() > 1 && !quiet {
-            print_remark(&format!(
-                "the fit has {} places: tests from place {}, {}",
-                fit.profiles.len(),
-                place + 1,
-                fit.profiles[place].location().in_words(fit.units)
-            ));
-        }
-        Ok(Self {
-            probability: probability(&fit.profiles[place], &nominal),
-            nominal,
-            fitted: Some(FirstSession::of_fit(&fit, place)),
-            units: fit.units,
-            profile: fit.profiles[place].clone(),
-            tracker: (fit.tracker, Some(fit.source)),
-        })
-    }
-}
-
-/// P of a shot, to the profile's standard error.
-fn probability(profile: &Profile, nominal: &Nominal) -> f64 {
-    let search = profile.search();
-    let sampler = Sampler::new(profile);
-    let estimate = sampler.estimate(nominal, search.standard_error, search.seed, &Silent);
-    estimate.probability
-}
-
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let named = options
         .tracker
         .as_deref()
         .map(|name| tracker_named(name, None))
         .transpose()?;
-    let first_shot = TestedShot::read(&options.profile, options, &options.nominal, quiet)?;
+    let first_shot = TestedShot::read(
+        &options.profile,
+        &options.physics,
+        options.place,
+        &options.nominal,
+        quiet,
+    )?;
     let second_shot = options
         .against
         .as_deref()
-        .map(|path| TestedShot::read(path, options, &NominalOptions::default(), quiet))
+        .map(|path| {
+            let named = NominalOptions::default();
+            TestedShot::read(path, &options.physics, options.place, &named, quiet)
+        })
         .transpose()?;
     let (own_tracker, sees) = first_shot.tracker.clone();
     let units = options.units.map_or(first_shot.units, UnitSystem::from);
@@ -374,31 +309,6 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         decimals = if units == UnitSystem::Metric { 3 } else { 2 }
     );
     print_prose(&text)
-}
-
-/// The best shot, where no shot is named.
-fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
-    let topics = SensitivityTopics::NONE;
-    let bars = ProgressBars::new(quiet);
-    let (_, shots) = find_kinds(profile, &ShotKind::ALL, topics, &bars)?;
-    let best = shots
-        .into_iter()
-        .flatten()
-        .max_by(|a, b| a.estimate.probability.total_cmp(&b.estimate.probability))
-        .ok_or_else(|| {
-            Failure::usage("no clean shot from there; name one with --speed and --pitch")
-        })?;
-    if !quiet {
-        let (long, metre) = profile.output().units.length();
-        print_remark(&format!(
-            "no shot is named: tests of the best one, {} at {:.2} {long}/s and {:.1} deg, {:.1} rev/s",
-            ShotKind::of(profile, &best.nominal).name(),
-            best.nominal.speed_m_s / metre,
-            best.nominal.pitch_rad / DEGREE_RAD,
-            best.nominal.backspin_rad_s / REV_RAD
-        ));
-    }
-    Ok(best.nominal)
 }
 
 fn json(

@@ -47,7 +47,8 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
         one_shooter::fit(&file, shots, &out, options, quiet)?;
         return Ok(code);
     }
-    if !options.free.is_empty() {
+    // A ring and the air are the same for all, a backspin is not.
+    if options.free.iter().any(|name| name == "backspin") {
         file.only_shooter()?;
     }
     let worst = several_shooters::fit(&file, &out, options, quiet)?;

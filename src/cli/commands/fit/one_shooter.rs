@@ -46,7 +46,7 @@ pub(super) fn fit(
     let free = options
         .free
         .iter()
-        .map(|name| estimate(name, file, shots, &fit))
+        .map(|name| estimate(name, file, &[(shots, &fit)]))
         .collect::<Result<Vec<_>, _>>()?;
     write(folder, file, (shots, &fit, &free), options)?;
     renew_table(file, (shots, &fit), folder, options)?;

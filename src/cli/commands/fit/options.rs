@@ -34,7 +34,8 @@ pub(crate) struct FitOptions {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Also ask the shots for what no sensor sees: backspin or hoop_restitution (from made and
-    /// missed), or drag_coefficient (from trajectories); may be repeated.
+    /// missed), or drag_coefficient (from trajectories); may be repeated. Of several shooters, the
+    /// ring and the air of all together.
     #[arg(long, value_name = "PARAMETER")]
     pub(crate) free: Vec<String>,
     /// Print fit.json instead of the text.

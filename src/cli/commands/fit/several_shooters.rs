@@ -4,6 +4,7 @@ use super::files::write;
 use super::options::FitOptions;
 use super::remarks::print_unused;
 use super::shooters_table::{Record, TABLE_FILE, records, table_header, write_table};
+use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, estimate};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
@@ -11,6 +12,7 @@ use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{FitWarning, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
+use crate::output::atomic_file;
 use crate::plots::svg::shortened;
 use crate::probability::Progress;
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -89,6 +91,13 @@ pub(super) fn fit(
         &table_header(options.measured.unit_system()),
         &records,
     )?;
+    let free = estimate_together(file, &rows, options)?;
+    if !free.is_empty() {
+        let json: serde_json::Value = free.iter().map(|found| found.json.clone()).collect();
+        let path = out.join(FREE_FILE);
+        atomic_file::write(&path, format!("{json:#}\n").as_bytes())
+            .map_err(|error| Failure::io(path.display(), &error))?;
+    }
     let assumptions = match &file.shooters[..] {
         [first, ..] => {
             let source = file.source(first);
@@ -118,6 +127,9 @@ pub(super) fn fit(
             "!: the makes and the measured shots do not belong together (see the warning): do not act on that P yet. `bankshot compare-sessions` says whether it is one session.\n",
         )?;
     }
+    for found in &free {
+        print_prose(&format!("\n{}", found.text))?;
+    }
     for warning in rows.iter().flat_map(|row| &row.warnings) {
         print_remark(warning);
     }
@@ -132,8 +144,39 @@ pub(super) fn fit(
     Ok(worst)
 }
 
+/// What `--free` found of all shooters together, beside the table.
+const FREE_FILE: &str = "free.json";
+
+/// What the shots of all shooters together say of the parameters of `--free`.
+fn estimate_together(
+    file: &MeasuredFile,
+    rows: &[ShooterRow],
+    options: &FitOptions,
+) -> Result<Vec<UnmeasuredParameter>, Failure> {
+    let fitted = file.shooters.iter().zip(rows);
+    let fitted: Vec<_> = fitted
+        .filter_map(|(shots, row)| Some((shots, row.fit.as_ref()?)))
+        .collect();
+    let names = options.free.iter();
+    names
+        .map(|name| {
+            let telling = fitted.iter().copied();
+            let telling = telling
+                .filter(|(shots, fit)| check_shots(std::slice::from_ref(name), shots, fit).is_ok());
+            let telling: Vec<_> = telling.collect();
+            if telling.is_empty() {
+                let (shots, fit) = fitted[0];
+                check_shots(std::slice::from_ref(name), shots, fit)?;
+            }
+            estimate(name, file, &telling)
+        })
+        .collect()
+}
+
 /// A shooter's row of the tables.
 struct ShooterRow {
+    /// The fit, if there is one.
+    fit: Option<ShooterFit>,
     /// The rows of shooters.csv, one for each place.
     records: Vec<Record>,
     /// A row of the printed table for each place, or why there is no fit.
@@ -190,6 +233,7 @@ fn fit_one(
             record[1] = shots.shots.len().to_string();
             record[11] = error.to_string();
             return Ok(ShooterRow {
+                fit: None,
                 records: vec![record],
                 result: Err(format!("{name}: {error}")),
                 warnings: Vec::new(),
@@ -254,5 +298,6 @@ fn fit_one(
             .iter()
             .map(|warning| format!("{name}: warning: {warning}"))
             .collect(),
+        fit: Some(fit),
     })
 }

@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::fitting::{
-    ShooterFit, SpinSource, UnseenParameter, fit_drag_coefficient, likelihood_curve,
+    FittedShooter, ShooterFit, SpinSource, UnseenParameter, fit_drag_coefficient, likelihood_curve,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::{Preset, SolidId};
@@ -62,15 +62,16 @@ pub(super) fn with_free(mut fit: Value, free: &[UnmeasuredParameter]) -> Value {
     fit
 }
 
-/// What the shots say of a parameter that was not measured, and how to use it.
+/// What the shots of one or more shooters say of a parameter that was not measured, and how to use
+/// it.
 pub(super) fn estimate(
     name: &str,
     file: &MeasuredFile,
-    shots: &ShooterShots,
-    fit: &ShooterFit,
+    shooters: &[(&ShooterShots, &ShooterFit)],
 ) -> Result<UnmeasuredParameter, Failure> {
     let Some(parameter) = UnseenParameter::named(name) else {
-        let tracks: Vec<_> = shots.tracks.iter().map(Vec::as_slice).collect();
+        let tracks = shooters.iter().flat_map(|(shots, _)| &shots.tracks);
+        let tracks: Vec<_> = tracks.map(Vec::as_slice).collect();
         let backspin = file.backspin_rad_s.unwrap_or(0.0);
         let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
         let own = file.physics.air.drag_coefficient;
@@ -98,15 +99,19 @@ pub(super) fn estimate(
             },
         });
     };
-    let labelled = fit.makes.labelled;
-    let is_measured = shots.spin == SpinSource::Measured;
-    let curve = likelihood_curve(
-        parameter,
-        &fit.profiles,
-        &shots.shots,
-        &fit.typical,
-        is_measured,
-    )?;
+    let labelled: usize = shooters.iter().map(|(_, fit)| fit.makes.labelled).sum();
+    let is_measured = |shots: &ShooterShots| shots.spin == SpinSource::Measured;
+    let fitted: Vec<FittedShooter<'_>> = shooters
+        .iter()
+        .map(|(shots, fit)| FittedShooter {
+            profiles: &fit.profiles,
+            shots: &shots.shots,
+            typical: &fit.typical,
+            is_spin_measured: is_measured(shots),
+        })
+        .collect();
+    let curve = likelihood_curve(parameter, &fitted)?;
+    let is_measured = shooters.iter().any(|(shots, _)| is_measured(shots));
     let (unit, size) = match parameter {
         UnseenParameter::Backspin => (" rev/s", REV_RAD),
         UnseenParameter::HoopRestitution => ("", 1.0),
@@ -114,10 +119,12 @@ pub(super) fn estimate(
     let best = curve.best / size;
     let (fitted_with, use_it) = match parameter {
         UnseenParameter::Backspin => (
-            format!(
-                "the fit's mean is {:.2} rev/s",
-                fit.typical.means[0][3] / REV_RAD
-            ),
+            shooters.first().map_or_else(String::new, |(_, fit)| {
+                format!(
+                    "the fit's mean is {:.2} rev/s",
+                    fit.typical.means[0][3] / REV_RAD
+                )
+            }),
             format!(
                 "This fit did not use it. To use it, fit again with --backspin '{best:.2} rev/s'; \
                  that takes the value as exact.\n"
@@ -136,7 +143,11 @@ pub(super) fn estimate(
     let ends = [curve.points.first(), curve.points.last()];
     let is_at_end = ends.iter().flatten().any(|(end, _)| *end == curve.best);
     let mut text = format!(
-        "{name}  {best:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}; {fitted_with}\n",
+        "{name}  {best:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}{}; {fitted_with}\n",
+        match shooters.len() {
+            1 => String::new(),
+            all => format!(" of {all} shooters together"),
+        },
         if curve.is_decided {
             ""
         } else if is_at_end {

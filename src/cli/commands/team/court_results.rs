@@ -2,6 +2,8 @@
 //! and a page.
 
 use crate::analysis::sensitivity::Difference;
+use crate::fitting::UnseenParameter;
+use crate::output::fit_files::session_changes_text::two_digits;
 use crate::plots::svg::{Plot, shortened};
 use crate::report::team_page::{PageTable, TeamPage};
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
@@ -34,6 +36,8 @@ const MOST_BANK_PLACES: usize = 5;
 pub(super) struct PlayerSweep {
     pub(super) name: String,
     pub(super) places: Vec<PlaceProbabilities>,
+    /// What a fitted player's own shots say.
+    pub(super) advice: Option<String>,
 }
 
 impl PlayerSweep {
@@ -99,6 +103,7 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             "sure %",
             &format!("bank aim right of the board's middle {short}"),
             &format!("bank aim above the ring {short}"),
+            "least bank gain over rings",
         ] {
             text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
         }
@@ -144,6 +149,8 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
                         above_m / short_metre
                     )
                 });
+            let least = chances.least_gain_over_rings;
+            text += &format!(",{}", number(least.map(|(gain, _)| gain)));
         }
         text.push('\n');
     }
@@ -254,18 +261,40 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
     } else {
         "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n"
     };
-    (of_level, of_profiles)
+    (of_level + &of_rings(players), of_profiles)
+}
+
+/// What the ring of the gym has to do with bank or direct; empty where it decides nothing.
+fn of_rings(players: &[PlayerSweep]) -> String {
+    let mut places = players.iter().flat_map(|player| player.bank_places());
+    if !places.any(PlaceProbabilities::turns_with_the_ring) {
+        return String::new();
+    }
+    let (low, high) = UnseenParameter::HoopRestitution.usual_range();
+    format!(
+        "Nobody measured the ring of this gym; sources give restitutions from {low:.2} to {high:.2}. `bankshot fit SHOTS --free hoop_restitution` asks the makes about it, `bankshot physics PROFILE --distance .. --angle ..` tells of one place.\n"
+    )
 }
 
 /// From where a player should bank, and from where that is open.
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let name = shortened(&player.name, LONGEST_NAME);
-    let aim = |same: &[&PlaceProbabilities]| aim_in_words(same, units);
+    let aim = |same: &[&PlaceProbabilities]| {
+        let words = [aim_in_words(same, units), ring_in_words(same)];
+        let words: Vec<String> = words.into_iter().flatten().collect();
+        (!words.is_empty()).then(|| words.join("; "))
+    };
     let share = |same: &[&PlaceProbabilities]| {
         let shares = same.iter().filter_map(|place| {
             let share = whole_percent(place.share_of_preferred()?);
+            let more = match place.shots_to_be_sure() {
+                Some(more) if more < MOST_SHOTS => {
+                    format!(", about {} more shots would tell", two_digits(more))
+                }
+                _ => String::new(),
+            };
             Some(format!(
-                "{} is better with {share} % certainty",
+                "{} is better with {share} % certainty{more}",
                 place.preference()?.name()
             ))
         });
@@ -280,8 +309,7 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
         (false, _) => format!("{name}: bank it from\n{surely}"),
     };
     if !perhaps.is_empty() {
-        text +=
-            &format!("  not sure yet which is better; more measured shots would tell:\n{perhaps}");
+        text += &format!("  not sure yet which is better:\n{perhaps}");
     }
     text
 }
@@ -333,6 +361,21 @@ fn place_in_words(
     }
     let angle_rad = place.place.location().angle_rad;
     format!("{words} ({:.0} deg)", angle_rad.abs() / DEGREE_RAD)
+}
+
+/// More shots than these are no plan.
+const MOST_SHOTS: f64 = 5000.0;
+
+/// That the direct shot is better on some ring; `None` if it is on none, from either side.
+fn ring_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
+    let of_rings = same.iter().filter_map(|place| place.least_gain_over_rings);
+    let (gain, restitution) = of_rings.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+    (gain < 0.0).then(|| {
+        format!(
+            "on a ring of restitution {restitution:.2} direct is better by {}",
+            in_hundred(-gain)
+        )
+    })
 }
 
 /// Where on the board to aim from a place, or from it and its mirror image; `None` where the two
@@ -432,15 +475,21 @@ pub(super) fn team_page(
                 .to_owned(),
         columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
         rows: player_rows(players, &best),
+        is_printed: true,
     }];
     if best.len() <= MOST_PAGE_ROWS {
         tables.push(PageTable {
             caption: "Makes in 100 at each place: direct/bank".to_owned(),
             columns: place_header(players, LONGEST_NAME),
             rows: place_rows(players, units),
+            is_printed: false,
         });
     }
     TeamPage {
+        advice: by_mean(players)
+            .into_iter()
+            .filter_map(|(number, _)| players[number].advice.clone())
+            .collect(),
         answer: bank_texts(players, units).concat(),
         tables,
         maps,

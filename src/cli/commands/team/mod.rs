@@ -15,16 +15,20 @@ use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
+use crate::cli::shooter_folders;
 use crate::cli::terminal::{print_answer, print_prose, print_remark, time_in_words};
 use crate::cli::value_parsers::PhysicsArg;
+use crate::fitting::{UnseenParameter, advise};
+use crate::model::SolidId;
 use crate::output::atomic_file;
+use crate::output::fit_files::advice_text::{advice_for_poster, brief_advice_text};
 use crate::plots::player_poster::PlayerPoster;
 use crate::plots::svg::shortened;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
-use crate::probability::Progress;
+use crate::probability::{Progress, Sampler, Silent};
 use crate::report::poster_page::{poster_page, posters_page};
-use crate::shooter::{Profile, ReleaseVariable, implausible_values};
+use crate::shooter::{OutputSettings, Profile, ReleaseVariable, implausible_values};
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Shard;
 use crate::sweep::probability_by_place::{PlaceProbabilities, Preference, SURE};
@@ -94,7 +98,7 @@ pub(crate) fn run(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
 /// shooters in place of the folder of their fits. With a number of a place those of that place.
 fn files_of_players(paths: &[PathBuf], place: Option<u32>) -> Vec<PathBuf> {
     let fits = paths.iter().flat_map(|path| {
-        let shooters = fit_folder::of_shooters(path);
+        let shooters = shooter_folders::of_shooters(path);
         if shooters.is_empty() {
             vec![path.clone()]
         } else {
@@ -343,11 +347,25 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         let (swept, _) = compute(folder, &config, &texts, run_options(Shard::WHOLE), quiet)?;
         let (rows, _) = swept.union()?;
         let mut places = PlaceProbabilities::of_sweep(&config, &rows);
+        let bars = ProgressBars::new(quiet);
+        find_ring_dependence(&mut places, &config, &bars)?;
+        let mut advice = None;
         if let Some(fit) = &fit {
-            find_sureness(&mut places, &config, fit, &ProgressBars::new(quiet))?;
+            find_sureness(&mut places, &config, fit, &bars)?;
+            advice = Some(PlayerAdvice::of_fit(fit, &config.settings.output, &bars)?);
         }
-        posters.extend(write_pictures(folder, &name, (&config, &rows), &places)?);
-        players.push(PlayerSweep { name, places });
+        let own = advice.as_ref().map(|advice| advice.poster.as_str());
+        posters.extend(write_pictures(
+            folder,
+            (&name, own),
+            (&config, &rows),
+            &places,
+        )?);
+        players.push(PlayerSweep {
+            name,
+            places,
+            advice: advice.map(|advice| advice.page),
+        });
         finished.push((config, rows));
     }
     let results: Vec<SweepResults<'_>> = finished
@@ -382,6 +400,18 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         true => warnings + SIDES_DIFFER,
         false => warnings,
     };
+    let others = other_players(&options.out, &folders);
+    if !others.is_empty() && !quiet {
+        print_remark(&format!(
+            "{} also holds sweeps of other players ({}): its page, table and posters are now those of {} alone; name all to have all",
+            options.out.display(),
+            others.join(", "),
+            match &players[..] {
+                [one] => one.name.clone(),
+                more => format!("these {} players", more.len()),
+            }
+        ));
+    }
     let page = team_page(&players, maps, posters_name, &remarks, units);
     let page_file = options.out.join("team.html");
     atomic_file::write(&page_file, page.html().as_bytes())
@@ -424,6 +454,7 @@ fn find_sureness(
     let open: Vec<&mut PlaceProbabilities> = places.iter_mut().filter(is_open).collect();
     progress.begin("bank or direct, over the draws", open.len() as u64);
     for place in open {
+        place.fitted_shots = Some(fit.posterior.shots);
         if let [Some(direct), Some(bank)] = &place.nominals {
             let profile = config.settings.at(place.place.location())?;
             let share = fit_folder::bank_is_better(fit, &profile, [direct, bank])?;
@@ -433,6 +464,79 @@ fn find_sureness(
     }
     progress.end();
     Ok(())
+}
+
+/// Standard error of P under another ring: the differences share their samples.
+const RING_ERROR: f64 = 0.002;
+
+/// Finds by how much the bank shot, where it is preferred, is better on the rings that sources
+/// give: nobody measured that of the gym. The shots stay as they are.
+fn find_ring_dependence(
+    places: &mut [PlaceProbabilities],
+    config: &SweepConfig,
+    progress: &dyn Progress,
+) -> Result<(), Failure> {
+    let is_bank = |place: &&mut PlaceProbabilities| place.preference() == Some(Preference::Bank);
+    let places: Vec<&mut PlaceProbabilities> = places.iter_mut().filter(is_bank).collect();
+    progress.begin("bank or direct on other rings", places.len() as u64);
+    let (low, high) = UnseenParameter::HoopRestitution.usual_range();
+    for place in places {
+        if let [Some(direct), Some(bank)] = place.nominals {
+            let profile = config.settings.at(place.place.location())?;
+            let mut least: Option<(f64, f64)> = None;
+            for restitution in [low, high] {
+                let other = profile.with(|settings| {
+                    let set = settings
+                        .physics
+                        .set_restitution_on(SolidId::Ring, restitution);
+                    debug_assert!(set.is_ok(), "sources give restitutions");
+                })?;
+                let sampler = Sampler::new(&other);
+                let [direct, bank] = [&direct, &bank].map(|shot| {
+                    let seed = other.search().seed;
+                    sampler
+                        .estimate(shot, RING_ERROR, seed, &Silent)
+                        .probability
+                });
+                let gain = bank - direct;
+                if least.is_none_or(|(least, _)| gain < least) {
+                    least = Some((gain, restitution));
+                }
+            }
+            place.least_gain_over_rings = least;
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    Ok(())
+}
+
+/// What a fitted player's own shots say: for the page of the team, and for the poster.
+struct PlayerAdvice {
+    page: String,
+    poster: String,
+}
+
+impl PlayerAdvice {
+    /// At the first place of the fit.
+    fn of_fit(
+        fit: &FitFolder,
+        output: &OutputSettings,
+        progress: &dyn Progress,
+    ) -> Result<Self, Failure> {
+        let (profile, units) = (&fit.profiles[0], output.units);
+        let advice = advise(profile, &fit.posterior, 0, progress)?;
+        let (name, location) = (&profile.shooter().name, profile.location());
+        let (observed, angle) = (Some(fit.observed[0]), location.angle_rad);
+        let from = location.in_words(units);
+        Ok(Self {
+            page: format!(
+                "{} (from {from})",
+                brief_advice_text(name, &advice, observed, angle, units).trim_end()
+            ),
+            poster: advice_for_poster(&advice, observed, (&from, angle), units),
+        })
+    }
 }
 
 /// What all players take, from the first one's sweep.
@@ -446,17 +550,30 @@ fn forecast_in_words(players: usize, first: &SweepConfig) -> Option<String> {
     Some(format!("{players}: about {time} in all"))
 }
 
+/// The folders of sweeps in a team's folder that are not those of its players.
+fn other_players(out: &Path, folders: &[PathBuf]) -> Vec<String> {
+    let entries = std::fs::read_dir(out).into_iter().flatten().flatten();
+    let others = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.join("configuration.json").is_file() && !folders.contains(path));
+    let mut names: Vec<String> = others
+        .filter_map(|path| Some(path.file_name()?.to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    names
+}
+
 /// Writes a player's map and poster; returns the poster.
 fn write_pictures(
     folder: &Path,
-    name: &str,
+    (name, own): (&str, Option<&str>),
     (config, rows): (&SweepConfig, &BTreeMap<u64, ResultRow>),
     places: &[PlaceProbabilities],
 ) -> Result<Option<PlayerPoster>, Failure> {
     let results = SweepResults::new(config, rows).with_chances(places.to_vec());
     let mut plots = Vec::new();
     plots.extend(sweep_bank_direct_map::draw(&results));
-    let poster = player_poster::draw(&results);
+    let poster = player_poster::draw(&results, own);
     if let Some(poster) = &poster {
         let file = folder.join("poster.html");
         atomic_file::write(&file, poster_page(name, poster).as_bytes())

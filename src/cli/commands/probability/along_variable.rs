@@ -1,6 +1,6 @@
 //! `bankshot probability --vary`: P of one nominal shot along one of its variables.
 
-use super::probability::ProbabilityOptions;
+use super::options::ProbabilityOptions;
 use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder::{self, FitFolder};
