@@ -1,7 +1,7 @@
 //! The best shot at each of several pitch angles: how much the angle matters, if everything else
 //! follows it.
 
-use super::found_shots::NoShot;
+use super::found_shots::{NoShot, NotCleanShot};
 use super::shot_table::{ShotTableError, TableKind, TableShot, best_with_fixed};
 use crate::probability::Progress;
 use crate::shooter::{NominalVariable, Profile, ShotKind};
@@ -13,9 +13,8 @@ pub struct ShotAtPitch {
     pub pitch_rad: f64,
     /// `None` where no shot goes in without an error.
     pub shot: Option<TableShot>,
-    /// Where there is none, the kind and P of the most probable shot: it misses when it has no
-    /// errors.
-    pub not_clean: Option<(ShotKind, f64)>,
+    /// Where there is none, the most probable shot: it misses when it has no errors.
+    pub not_clean: Option<NotCleanShot>,
 }
 
 impl ShotAtPitch {
@@ -23,7 +22,7 @@ impl ShotAtPitch {
     #[must_use]
     pub fn probability(&self) -> f64 {
         let clean = self.shot.as_ref().map(|shot| shot.probability);
-        let any = clean.or(self.not_clean.map(|(_, p)| p));
+        let any = clean.or(self.not_clean.map(|shot| shot.probability));
         any.unwrap_or(0.0)
     }
 }
@@ -44,10 +43,7 @@ pub fn best_by_pitch(
     let of_kind = |pitch_rad: f64, kind: ShotKind| {
         let found = best_with_fixed(profile, kind, &[(NominalVariable::Pitch, pitch_rad)])?;
         let not_clean = match &found {
-            Err(NoShot::NotClean {
-                kind,
-                probability_per_million,
-            }) => Some((*kind, f64::from(*probability_per_million) / 1e6)),
+            Err(NoShot::NotClean(shot)) => Some(*shot),
             _ => None,
         };
         Ok::<_, ShotTableError>(ShotAtPitch {

@@ -6,6 +6,7 @@ use crate::dynamics::Outcome;
 use crate::probability::Estimate;
 use crate::search_space::{PlanError, TablePlan};
 use crate::shooter::{Nominal, ShotKind};
+use crate::units::{DEGREE_RAD, FOOT_M};
 use serde::Serialize;
 
 /// A limit of the search.
@@ -67,6 +68,33 @@ pub struct BestShot {
     pub mass_outside: f64,
     /// Limits of the search that the shot lies at.
     pub at_limits: Vec<Limit>,
+    /// A more probable shot of the kind that misses without errors, if it is so by more than a shot
+    /// in 100.
+    pub more_probable: Option<NotCleanShot>,
+}
+
+/// A shot that misses when it has no errors, and goes in with some.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotCleanShot {
+    /// Its kind.
+    pub kind: ShotKind,
+    /// The shot.
+    pub nominal: Nominal,
+    /// Its P.
+    pub probability: f64,
+}
+
+impl NotCleanShot {
+    /// Its release, such as `8.60 m/s (28.22 ft/s), 58.0 deg up`.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        format!(
+            "{:.2} m/s ({:.2} ft/s), {:.1} deg up",
+            self.nominal.speed_m_s,
+            self.nominal.speed_m_s / FOOT_M,
+            self.nominal.pitch_rad / DEGREE_RAD
+        )
+    }
 }
 
 impl BestShot {
@@ -105,23 +133,14 @@ impl BestShots {
 }
 
 /// Why there is no best shot of a kind.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoShot {
     /// No shot within the limits can go in.
     #[error("no {} shot within the limits can go in from this place", .0.name())]
     Impossible(ShotKind),
     /// No shot near the most probable one goes in without errors.
-    #[error("no clean {} shot: the most probable ones from this place, P {}, miss when they have no errors", .kind.name(), probability_text(*.probability_per_million))]
-    NotClean {
-        /// The kind.
-        kind: ShotKind,
-        /// P of the most probable shot, in millionths.
-        probability_per_million: u32,
-    },
-}
-
-fn probability_text(per_million: u32) -> String {
-    format!("{:.4}", f64::from(per_million) / 1e6)
+    #[error("no clean {} shot: the most probable ones from this place, P {:.4} ({}), miss when they have no errors", .0.kind.name(), .0.probability, .0.in_words())]
+    NotClean(NotCleanShot),
 }
 
 /// Why the search could not start.

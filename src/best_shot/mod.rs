@@ -10,7 +10,7 @@ mod table_maxima;
 
 pub use crate::shooter::ShotKind;
 pub use best_by_pitch::{ShotAtPitch, best_by_pitch};
-pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
+pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
 pub use physics_comparison::{
     PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, SameShotProbability, compare_physics,
     physics_variants, together,

@@ -12,7 +12,7 @@
 //! windows. P of the winner is computed again with independent scrambles, so it is not the largest
 //! of many noisy values.
 
-use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot};
+use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
 use super::pattern_search::{PatternSearch, Start, first_step};
 use super::table_maxima::{Candidate, maxima_by_pitch, maxima_by_speed, separated};
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
@@ -234,10 +234,12 @@ impl<'a> BestShotSearch<'a> {
         } else {
             self.parabolas_with_more_points(kind, optimum)?
         };
+        let mut probable = None;
         if !self.is_made(&window.nominal) {
             // The most probable shot goes in only with errors: take the best one that needs none.
             let table = self.table(&window.plan);
             if let Some((p, clean)) = self.best_clean(kind, &table) {
+                probable = Some(window.nominal);
                 window.table_probability = tables_hold.then_some(p);
                 window.nominal = clean;
                 window.curves = probability_curves::from_table(&table, &clean);
@@ -249,11 +251,19 @@ impl<'a> BestShotSearch<'a> {
             .simulator()
             .outcome(self.profile.release(&nominal).state());
         if !outcome.verdict.made {
-            return Ok(Err(NoShot::NotClean {
+            return Ok(Err(NoShot::NotClean(NotCleanShot {
                 kind,
-                probability_per_million: (estimate.probability * 1e6).round() as u32,
-            }));
+                nominal,
+                probability: estimate.probability,
+            })));
         }
+        let more_probable = probable
+            .map(|nominal| NotCleanShot {
+                kind,
+                nominal,
+                probability: self.estimate(&nominal, self.progress).probability,
+            })
+            .filter(|other| other.probability > estimate.probability + LEAST_LOSS);
         Ok(Ok(BestShot {
             nominal,
             estimate,
@@ -265,6 +275,7 @@ impl<'a> BestShotSearch<'a> {
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
             at_limits: self.limits_at(&nominal),
+            more_probable,
         }))
     }
 

@@ -68,6 +68,18 @@ pub fn shot_record(profile: &Profile, shot: &BestShot, units: UnitSystem) -> Rec
         named("flight_time_s", number(outcome.verdict.time_s)),
         named("mass_outside_bracket", number(shot.mass_outside)),
         named("at_limits", limit_names(shot).into()),
+        named(
+            "more_probable_not_clean",
+            shot.more_probable.map_or(Value::Null, |other| {
+                object(vec![
+                    named("speed_m_s", number(other.nominal.speed_m_s)),
+                    named("pitch_rad", number(other.nominal.pitch_rad)),
+                    named("polar_rad", number(other.nominal.polar_rad)),
+                    named("backspin_rad_s", number(other.nominal.backspin_rad_s)),
+                    named("probability", number(other.probability)),
+                ])
+            }),
+        ),
     ]
 }
 

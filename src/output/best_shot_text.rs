@@ -264,6 +264,16 @@ const MOST_ERRORS: usize = 3;
 const ALWAYS_TOLD: usize = 2;
 const LEAST_GAIN_TOLD: f64 = 0.005;
 
+/// That the physics is that of the paper; empty where there is air.
+#[must_use]
+pub fn vacuum_note(profile: &Profile) -> &'static str {
+    if profile.physics().air.density_kg_m3 > 0.0 {
+        ""
+    } else {
+        "The ball flies without air, as in the paper. For a ball in play: --physics ncaa, or preset = \"ncaa\" in [physics].\n"
+    }
+}
+
 /// What P leaves out.
 pub const PROFILE_IS_EXACT: &str =
     "P assumes an exact profile; `bankshot fit` says how sure a measured one is.\n";
@@ -282,6 +292,13 @@ fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<S
     }
     for limit in &shot.at_limits {
         notes.push(format!("{kind}: {}.", limit_text(*limit)));
+    }
+    if let Some(other) = &shot.more_probable {
+        notes.push(format!(
+            "{kind}: a release that misses without errors makes more: {:.1} in 100 with {}.",
+            100.0 * other.probability,
+            other.in_words()
+        ));
     }
     let of_other_kind = shot.share_of_other_kind(kind_of_shot);
     if of_other_kind > 0.5 {

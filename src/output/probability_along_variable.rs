@@ -229,7 +229,7 @@ impl ProbabilityAlong<'_> {
                 self.draws_in_words()
             )
         } else {
-            "short, long, left, right: how shots are missed; other misses are left out.".to_owned()
+            "short, long, left, right: how shots are missed; other: all else, such as airballs (CSV and JSON have each).".to_owned()
         };
         let of_aim = match self.is_aim {
             true => " aim: from the line to the hoop's centre, positive to the left.",
@@ -317,11 +317,22 @@ impl ProbabilityAlong<'_> {
 
 /// The misses that the text has, with their shares.
 type MissColumn = (&'static str, fn(&MissBreakdown) -> f64);
-const MISSES: [MissColumn; 4] = [
+const MISSES: [MissColumn; 5] = [
     ("short", |misses| misses.short),
     ("long", |misses| misses.long),
     ("left", |misses| misses.left),
     ("right", |misses| misses.right),
+    ("other", |misses| {
+        let MissBreakdown {
+            in_and_out,
+            over,
+            lodged,
+            airball,
+            unresolved,
+            ..
+        } = misses;
+        in_and_out + over + lodged + airball + unresolved
+    }),
 ];
 
 /// A number with three decimals at most.

@@ -207,6 +207,19 @@ fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
     )
 }
 
+/// Where the rectangle on the board is. Rule books give 24 by 18 in (59 by 45 cm) outside, and the
+/// upper edge of its base line, 2 in (5 cm) wide, level with the
+/// ring.
+fn square_in_words(units: UnitSystem) -> String {
+    let [height, half_width] = match units {
+        UnitSystem::Imperial => ["16 in", "12 in"],
+        UnitSystem::Metric => ["40 cm", "30 cm"],
+    };
+    format!(
+        " (The square on the board reaches {height} above the ring and {half_width} to each side.)"
+    )
+}
+
 /// At how many of the places the bank shot is not better on each ring; empty if it is at all.
 fn ring_in_words(bank: &[&PlaceProbabilities]) -> String {
     let turned = bank
@@ -263,5 +276,6 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
             false => "From there (each place has its own aim)",
         },
         aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
-    ) + &ring_in_words(bank)
+    ) + &square_in_words(units)
+        + &ring_in_words(bank)
 }

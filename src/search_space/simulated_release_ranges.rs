@@ -5,6 +5,7 @@ use super::nominal_grid::NominalGrid;
 use crate::math::evenly_spaced::{CellAxis, Linspace};
 use crate::math::normal_distribution;
 use crate::shooter::{Nominal, NominalVariable, Profile, TableGrid};
+use crate::units::FOOT_M;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
@@ -81,9 +82,32 @@ pub enum PlanError {
     },
     /// No release within the limits reaches the hoop.
     #[error(
-        "search: no release within the limits reaches the hoop from there; raise speed_max, or allow other pitch angles (pitch_min, pitch_max, a fixed pitch)"
+        "search: no release within the limits reaches the hoop from there; raise speed_max{}, or allow other pitch angles (pitch_min, pitch_max, a fixed pitch)", in_words(*.least_speed_m_s)
     )]
-    OutOfReach,
+    OutOfReach {
+        /// The least speed that reaches it at the allowed pitch angles, if one does, m/s.
+        least_speed_m_s: Option<f64>,
+    },
+}
+
+/// The least speed that would reach the hoop, for a message without units of its own.
+fn in_words(least_speed_m_s: Option<f64>) -> String {
+    least_speed_m_s.map_or_else(String::new, |speed| {
+        format!(
+            " (a ball touches the hoop from {speed:.1} m/s, {:.1} ft/s, on)",
+            speed / FOOT_M
+        )
+    })
+}
+
+/// Why no release within the limits of a profile reaches the hoop.
+fn out_of_reach(profile: &Profile) -> PlanError {
+    let unlimited = profile.with(|settings| settings.search.speed_max_m_s = None);
+    let least_speed_m_s = unlimited.ok().and_then(|unlimited| {
+        let speeds = nominal_speeds(&unlimited, &Bracket::new(&unlimited)?)?;
+        speeds.values().next()
+    });
+    PlanError::OutOfReach { least_speed_m_s }
 }
 
 fn around(centre: f64, margin: f64) -> Range {
@@ -122,7 +146,7 @@ impl TablePlan {
         profile: &Profile,
         side_spin_rad_s: f64,
     ) -> Result<Self, PlanError> {
-        let bracket = Bracket::new(profile).ok_or(PlanError::OutOfReach)?;
+        let bracket = Bracket::new(profile).ok_or_else(|| out_of_reach(profile))?;
         let grid = profile.grid().of_search();
         let search = profile.search();
         let fixed = profile.fixed_nominal();
@@ -341,7 +365,7 @@ fn cell_axis((low, high): Range, limits: Range, count: usize, min_half_width: f6
 
 /// The nominal speeds of the search, and the speeds of its lines.
 fn search_speeds(profile: &Profile, bracket: &Bracket) -> Result<(Linspace, Range), PlanError> {
-    let in_reach = nominal_speeds(profile, bracket).ok_or(PlanError::OutOfReach)?;
+    let in_reach = nominal_speeds(profile, bracket).ok_or_else(|| out_of_reach(profile))?;
     if profile.search().choice.includes(NominalVariable::Speed) {
         return Ok((in_reach, (0.0, bracket.release_speed_max_m_s)));
     }

@@ -379,7 +379,7 @@ pub fn compute_jobs(
     let shots = match best_shot::find_kinds(&profile, &wanted, topics, &Silent) {
         Ok((_, shots)) => shots,
         // Nothing can go in from there, which is a result.
-        Err(BestShotError::Plan(PlanError::OutOfReach)) => wanted
+        Err(BestShotError::Plan(PlanError::OutOfReach { .. })) => wanted
             .iter()
             .map(|&kind| Err(NoShot::Impossible(kind)))
             .collect(),

@@ -677,7 +677,8 @@ fn contract_the_better_kind_at_each_angle_and_shots_that_are_not_clean() {
     assert!(text.contains(&format!("{p:.3}*")), "{text}");
     assert!(text.contains("*: no clean shot"), "{text}");
     let one = curve(&["--kind", "bank", "--distance", "7 ft"]).exits(0);
-    let words = format!("60.0 no clean shot: the most probable one, P {p:.3}, misses");
+    let speed = bank[0]["speed_ft_s"].as_f64().unwrap();
+    let words = format!("60.0 no clean shot; most probable: {speed:.2} ft/s, P {p:.3}, a miss");
     assert!(one.stdout().contains(&words), "{}", one.stdout());
     let best = curve(&["--kind", "best"]).exits(0);
     let lines = best.stdout().lines();

@@ -30,6 +30,9 @@ pub struct ShotTableRequest {
     /// Where a check finds more, nodes are added halfway, at most [`MOST_HALVINGS`] times (with one
     /// angle three times more where that did not help) and up to [`MOST_NODES`] nodes; 1 adds none.
     pub max_loss: f64,
+    /// Where P is less than this at all nodes around and in the middle, nothing is checked between
+    /// the nodes of one kind, and none are added; 0 leaves nothing out.
+    pub least_probability: f64,
     /// Nothing is checked between the nodes, and none are added but for the distances at which the
     /// better kind changes.
     pub is_draft: bool,
@@ -140,7 +143,7 @@ impl ShotTable {
                 // Of all: where they are is what the middles of a coarse table tell.
                 table.find_middles(&mut search, &table.cells(), &between)?;
             }
-            let cells = table.relevant_cells(&search, request.kind);
+            let cells = table.relevant_cells(&search, request);
             table.find_middles(&mut search, &cells, &between)?;
             table.find_checks(&mut search, &cells, &checking)?;
             let [distances_m, angles_rad] = table.finer(&cells, &search, request.max_loss);
@@ -155,7 +158,7 @@ impl ShotTable {
         if request.max_loss < 1.0 && table.angles_rad.len() == 1 {
             for split in 0..MOST_SPLITS {
                 let [_, between, checking] = stages_of_round(MOST_HALVINGS + 2 + split);
-                let is_relevant = |cell: &Cell| is_relevant(&search, cell, request.kind);
+                let is_relevant = |cell: &Cell| is_relevant(&search, cell, request);
                 let costly: Vec<bool> = table
                     .cells()
                     .iter()
@@ -165,7 +168,7 @@ impl ShotTable {
                     break;
                 }
                 table.split_at_jumps(&search, &costly, request.max_loss)?;
-                let cells = table.relevant_cells(&search, request.kind);
+                let cells = table.relevant_cells(&search, request);
                 table.find_middles(&mut search, &cells, &between)?;
                 table.find_checks(&mut search, &cells, &checking)?;
             }
@@ -235,9 +238,9 @@ impl ShotTable {
     }
 
     /// The cells that matter for the table.
-    fn relevant_cells(&self, search: &TableSearch<'_>, kind: TableKind) -> Vec<Cell> {
+    fn relevant_cells(&self, search: &TableSearch<'_>, request: &ShotTableRequest) -> Vec<Cell> {
         let mut cells = self.cells();
-        cells.retain(|cell| is_relevant(search, cell, kind));
+        cells.retain(|cell| is_relevant(search, cell, request));
         cells
     }
 
@@ -326,16 +329,22 @@ fn is_costly(search: &TableSearch<'_>, cell: &Cell, max_loss: f64) -> bool {
     checks.any(|check| check.worse() > MARGIN * max_loss)
 }
 
-/// Whether a cell matters: in a table of the better kind not where the other kind is better by more
+/// Whether a cell matters: not where P is less than the least one of the request; in a table of the
+/// better kind not where the other kind is better by more
 /// than [`WORSE_KIND`] at all corners and in the middle. (Its best shot need not be a clean one.
 /// Where it is not, `merged` checks the cell.)
-fn is_relevant(search: &TableSearch<'_>, cell: &Cell, kind: TableKind) -> bool {
+fn is_relevant(search: &TableSearch<'_>, cell: &Cell, request: &ShotTableRequest) -> bool {
     let is_near = |shot: &TableShot| {
         let other = shot.other_kind.unwrap_or(0.0);
         shot.probability > other - WORSE_KIND
     };
-    let mut places = cell.corners().into_iter().chain([cell.middle()]);
-    kind != TableKind::Better || places.any(|place| search.shot_at(&place).is_some_and(is_near))
+    let least = request.least_probability;
+    let is_high = |shot: &TableShot| shot.probability.max(shot.other_kind.unwrap_or(0.0)) >= least;
+    let any = |wanted: &dyn Fn(&TableShot) -> bool| {
+        let mut places = cell.corners().into_iter().chain([cell.middle()]);
+        places.any(|place| search.shot_at(&place).is_some_and(wanted))
+    };
+    (least <= 0.0 || any(&is_high)) && (request.kind != TableKind::Better || any(&is_near))
 }
 
 /// What progress calls the stages of a round.

@@ -46,7 +46,7 @@ pub(super) fn best(
 ) -> Result<Result<TableShot, NoShot>, BestShotError> {
     let (shot, other) = match find_beside_other_kind(profile, kind, &Silent) {
         Ok(found) => found,
-        Err(BestShotError::Plan(PlanError::OutOfReach)) => {
+        Err(BestShotError::Plan(PlanError::OutOfReach { .. })) => {
             return Ok(Err(NoShot::Impossible(kind)));
         }
         Err(error) => return Err(error),

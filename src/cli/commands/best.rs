@@ -13,7 +13,8 @@ use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::best_shot_json::best_shots_json;
 use crate::output::best_shot_text::{
-    PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, what_matters,
+    PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, vacuum_note,
+    what_matters,
 };
 use crate::search_space::TablePlan;
 use clap::Args;
@@ -94,6 +95,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         if options.details {
             text += &sensitivity_text(&profile, &best, units);
         }
+        text += vacuum_note(&profile);
         if options.draws.is_none() {
             text += PROFILE_IS_EXACT;
         }

@@ -147,7 +147,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         format!("{json:#}\n")
     };
     output_files::write(&options.output, |form| match form {
-        OutputForm::Csv => by_pitch_csv(&rows, &over_draws, kind, units),
+        OutputForm::Csv => by_pitch_csv(&rows, &over_draws, kind, &profile, units),
         OutputForm::Json => json(),
         OutputForm::Text => text(),
     })?;

@@ -127,7 +127,7 @@ fn table_bytes(config: &SweepConfig, jobs: &Jobs, chosen: &[usize]) -> Result<f6
         .iter()
         .filter_map(|&spot| config.settings.at(jobs.spots[spot].location()).ok())
         .find_map(|profile| match TablePlan::for_search(&profile) {
-            Err(PlanError::OutOfReach) => None,
+            Err(PlanError::OutOfReach { .. }) => None,
             plan => Some(plan),
         })
         .transpose()?;

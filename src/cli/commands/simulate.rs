@@ -80,6 +80,11 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
         )));
     }
     let simulator = simulator(options)?;
+    if options.physics.physics.is_none() && !quiet {
+        print_remark(
+            "physics: paper (no air, a ring of wire); for a ball in play give --physics ncaa, or a profile that has it, such as --physics robot.toml",
+        );
+    }
     if options.releases != Path::new("-") {
         refuse_missing(&options.releases)?;
     }

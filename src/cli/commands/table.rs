@@ -33,7 +33,7 @@ interpolated. This is checked at the quarters of each step: where it costs more 
 interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
 Begin with --draft, which leaves out the checks: a second or two for each place. \
 The table is made in rounds: each looks at the places that the one before added. \
-Where the best shot changes much from place to place, many nodes are added. A table of fifteen distances with a fixed pitch takes one to four minutes on two cores, with a free pitch more; \
+Where the best shot changes much from place to place, many nodes are added; --least-probability 0.6 leaves out where P is lower. A table of fifteen distances with a fixed pitch takes one to four minutes on two cores, with a free pitch more; \
 --kind best makes a table of each kind, which takes twice as long or more; with --max-loss 1 no nodes are added, which takes half of the time or less.
 With --output a stopped table is not lost: what it found is kept beside the file, and the same command goes on with it.
 
@@ -66,6 +66,10 @@ pub(crate) struct TableOptions {
     /// no nodes (with `--kind best` those where a kind begins, ends or becomes the better one).
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
+    /// Add no nodes, and check nothing, where P is less than this: at the end of a launcher's reach P
+    /// falls so steeply that many would be added.
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = share, conflicts_with = "draft")]
+    pub(crate) least_probability: f64,
     /// A first look in a fraction of the time: nothing is checked between the places, and none are
     /// added, but for the distances at which the better kind changes.
     #[arg(long, conflicts_with = "max_loss")]
@@ -169,6 +173,7 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
         angles_rad,
         fixed,
         max_loss: options.max_loss,
+        least_probability: options.least_probability,
         is_draft: options.draft,
     };
     if request.kind == TableKind::Better && request.angles_rad.len() > 1 {

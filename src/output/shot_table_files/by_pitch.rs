@@ -3,7 +3,7 @@
 use super::columns::columns;
 use super::notes::{physics_note, speed_limit_in_words};
 use super::table_text::{both_sides, decimal, line, wrapped};
-use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
+use crate::best_shot::{NotCleanShot, ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::{number, object, provenance};
@@ -85,7 +85,11 @@ pub fn by_pitch_text(
         } else {
             "No shot at these pitch angles goes in.".to_owned()
         };
-        return text + &wrapped(&words);
+        text += &wrapped(&words);
+        for row in rows {
+            text += &row_without_shot(row, profile, units);
+        }
+        return text;
     };
     text += &wrapped(&in_words(rows, (best_row, best), kind, units));
     text += &other_kind_in_words(rows, best, kind);
@@ -110,18 +114,12 @@ pub fn by_pitch_text(
     text += &line(names, &widths);
     let unit_names = std::iter::once("deg").chain(titles.iter().map(|(_, unit, _)| *unit));
     text += &line(unit_names, &widths);
-    let limit = speed_limit_in_words(profile, units);
     for row in rows {
-        let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
         let Some(shot) = &row.shot else {
-            text += &match row.not_clean {
-                Some((_, p)) => format!(
-                    "{pitch:>5} no clean shot: the most probable one, P {p:.3}, misses without errors\n"
-                ),
-                None => format!("{pitch:>5} no shot within the limits{limit} goes in\n"),
-            };
+            text += &row_without_shot(row, profile, units);
             continue;
         };
+        let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
         let [speed_sides, pitch_sides] = shot.tolerances;
         let mut cells = vec![
             pitch,
@@ -149,6 +147,23 @@ pub fn by_pitch_text(
     text + &wrapped(&format!(
         "P has a numerical standard error of at most {error:.4}; P of {other} at that angle is from a short search.",
     ))
+}
+
+/// The line of a pitch angle without a clean shot.
+fn row_without_shot(row: &ShotAtPitch, profile: &Profile, units: UnitSystem) -> String {
+    let (long, metre) = units.length();
+    let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
+    match row.not_clean {
+        Some(shot) => format!(
+            "{pitch:>5} no clean shot; most probable: {:.2} {long}/s, P {:.3}, a miss without errors\n",
+            shot.nominal.speed_m_s / metre,
+            shot.probability
+        ),
+        None => format!(
+            "{pitch:>5} no shot within the limits{} goes in\n",
+            speed_limit_in_words(profile, units)
+        ),
+    }
 }
 
 /// That the other kind makes more than the best of these, if it does.
@@ -226,13 +241,14 @@ fn in_words(
     text
 }
 
-/// The shots as CSV; empty values where no clean shot goes in, but for P of the most probable one.
+/// The shots as CSV; where no clean shot goes in, the release and P of the most probable one.
 /// P over the draws of a fit may follow, one for each row.
 #[must_use]
 pub fn by_pitch_csv(
     rows: &[ShotAtPitch],
     over_draws: &[Option<AngleOverDraws>],
     kind: TableKind,
+    profile: &Profile,
     units: UnitSystem,
 ) -> String {
     let columns = columns(kind, units);
@@ -256,10 +272,9 @@ pub fn by_pitch_csv(
             .map(
                 |(name, _, value, size)| match row.shot.as_ref().map(value) {
                     Some(value) if value.is_finite() => rounded(value / size).to_string(),
-                    None if name == "probability" => row
-                        .not_clean
-                        .map_or_else(String::new, |(_, p)| rounded(p).to_string()),
-                    _ => String::new(),
+                    None => not_clean_value(row, name, profile)
+                        .map_or_else(String::new, |value| rounded(value / size).to_string()),
+                    Some(_) => String::new(),
                 },
             )
             .collect();
@@ -303,8 +318,8 @@ pub fn by_pitch_json(
         ];
         record.extend(columns.iter().map(|(name, _, value, size)| {
             let value = row.shot.as_ref().map(value).map(|value| value / size);
-            let not_clean = row.not_clean.map(|(_, p)| p);
-            let value = value.or(not_clean.filter(|_| name == "probability"));
+            let value =
+                value.or_else(|| not_clean_value(row, name, profile).map(|value| value / size));
             let value = value.map_or(Value::Null, number);
             (name.clone(), value)
         }));
@@ -330,10 +345,26 @@ pub fn by_pitch_json(
     object(record)
 }
 
+/// A value (SI) of the most probable shot where no clean one goes in: what is intended, and P.
+fn not_clean_value(row: &ShotAtPitch, column: &str, profile: &Profile) -> Option<f64> {
+    let NotCleanShot {
+        nominal,
+        probability,
+        ..
+    } = row.not_clean?;
+    match column.split('_').next()? {
+        "probability" => Some(probability),
+        "speed" if !column.contains("tolerance") => Some(nominal.speed_m_s),
+        "aim" => Some(nominal.polar_rad - profile.location().angle_rad),
+        "backspin" => Some(nominal.backspin_rad_s),
+        _ => None,
+    }
+}
+
 /// The kind of the shot, or of the most probable one that misses without errors.
 fn kind_of(row: &ShotAtPitch) -> Option<ShotKind> {
     let clean = row.shot.as_ref().map(|shot| shot.kind);
-    clean.or(row.not_clean.map(|(kind, _)| kind))
+    clean.or(row.not_clean.map(|shot| shot.kind))
 }
 
 /// The outcome of the shot without errors; `not-clean` where the most probable one misses.

@@ -22,6 +22,7 @@ pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<Str
         nearly_other_kind_note(table, units),
         unlikely_note(table, units),
         other_kind_note(table, units),
+        Some("P rests on what nobody measured in your gym (the losses at ring and board, friction, drag): `bankshot physics PROFILE` says how much.".to_owned()),
     ];
     notes.into_iter().flatten().collect()
 }
@@ -427,7 +428,7 @@ fn bounce_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     };
     (!bouncing.is_empty()).then(|| {
         format!(
-            "Not clean: in {} of {} even the best shot without an error {touches} before it goes in: {}.",
+            "In {} of {} even the best shot without an error {touches} before it goes in: {}.",
             bouncing.count(),
             count_text(table.shots.len()),
             bouncing.text(table, units)

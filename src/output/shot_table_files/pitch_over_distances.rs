@@ -132,13 +132,16 @@ pub fn pitch_over_distances_text(
     let high = (best + 1..rows.len()).take_while(is_level).last();
     let high = high.unwrap_or(best);
     let mut words = format!(
-        "One pitch angle for {} {} distances: {} deg makes the most {}shots on average, {:.1} of 100",
+        "One pitch angle for {} {}: {} deg makes the most {}shots on average, {:.1} of 100",
         if out_of_reach.is_empty() {
             "all"
         } else {
             "the"
         },
-        from.len(),
+        match from.len() {
+            1 => "1 distance".to_owned(),
+            more => format!("{more} distances"),
+        },
         degrees(best),
         kind_before_shot(kind),
         100.0 * rows[best].0
@@ -236,7 +239,7 @@ pub fn pitch_over_distances_csv(
 ) -> String {
     let mut text = String::new();
     for shots in from {
-        let csv = by_pitch_csv(&shots.shots, &[], kind, units);
+        let csv = by_pitch_csv(&shots.shots, &[], kind, &shots.profile, units);
         let mut lines = csv.lines();
         let header = lines.next().unwrap_or_default();
         if text.is_empty() {

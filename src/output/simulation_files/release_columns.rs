@@ -232,9 +232,13 @@ fn check_other_columns(header: &ByteRecord, carried: &[String], errors: &mut Vec
         let is_carried = carried.iter().any(|carried| *carried == name);
         let is_outcome = OUTCOME_COLUMNS.contains(&&*name);
         if !is_carried && !is_outcome && is_unknown_quantity(&name) {
+            let meant = if name.starts_with("aim_") {
+                "polar_deg is the court angle plus the aim; straight in front of the hoop they are the same".to_owned()
+            } else {
+                format!("is it {}?", nearest_column(&name))
+            };
             errors.push(format!(
-                "column {name} looks like a quantity, but no such column is known (is it {}?); rename it, or keep it as it is with --carry {name}",
-                nearest_column(&name)
+                "column {name} looks like a quantity, but no such column is known ({meant}); rename it, or keep it as it is with --carry {name}"
             ));
         }
     }
