@@ -419,3 +419,31 @@ fn window(profile: &Profile, nominal: &Nominal, variable: NominalVariable) -> Op
     };
     Some((centre + end(-1.0), centre + end(1.0)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a shot whose backspin is fixed below the best one, the gain is that of its own backspin.
+    #[test]
+    fn contract_the_gain_from_backspin_is_that_of_the_shot() {
+        let gain_of = |value: f64, gain: f64| Variation {
+            value,
+            gain: Difference {
+                value: gain,
+                standard_error: 0.001,
+            },
+        };
+        let window = |variable| ShotWindow {
+            variable,
+            ends: None,
+        };
+        let sensitivity = Sensitivity {
+            windows: ShotWindow::VARIABLES.map(window),
+            errors: Vec::new(),
+            backspins: vec![gain_of(0.0, -0.08), gain_of(9.0, 0.0), gain_of(18.0, 0.01)],
+            heights: Vec::new(),
+        };
+        assert_eq!(sensitivity.backspin_gain().unwrap().value, 0.08);
+    }
+}

@@ -651,6 +651,90 @@ fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
         .says("holds a fit of each shooter; name one");
 }
 
+/// One ring for two shooters: the likelihood of both together is the product of theirs.
+#[test]
+fn contract_a_ring_is_told_by_the_makes_of_all_shooters() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/gym_sensor.csv").unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let mut several = format!("{header},shooter\n");
+    for (k, row) in rows.lines().enumerate() {
+        several += &format!("{row},{}\n", ["Ann", "Bob"][k % 2]);
+    }
+    let path = write_file(&folder, "two.csv", several);
+    let free = |out: &str, flags: &[&str]| {
+        let flags = [&["--free", "hoop_restitution"], flags].concat();
+        fit(path.to_str().unwrap(), &folder.path().join(out), &flags)
+    };
+    let both = free("both", &[]).exits(0);
+    both.prints("shots of 2 shooters together");
+    let read = |path: &str| -> serde_json::Value {
+        serde_json::from_slice(&fs::read(folder.path().join(path)).unwrap()).unwrap()
+    };
+    let together = read("both/free.json")[0].clone();
+    let interval = |of: &serde_json::Value| {
+        let [low, high] = ["low", "high"].map(|end| of[end].as_f64().unwrap());
+        (low, high)
+    };
+    let each = ["Ann", "Bob"].map(|name| {
+        free(name, &["--shooter", name]).exits(0);
+        interval(&read(&format!("{name}/fit.json"))["free"][0])
+    });
+    // Together they know it better than the one who knows it less.
+    let (low, high) = interval(&together);
+    let widest = each
+        .iter()
+        .map(|(low, high)| high - low)
+        .fold(0.0, f64::max);
+    assert!(high - low < widest && high > low, "{together} {each:?}");
+    // A backspin is each shooter's own.
+    fit(
+        path.to_str().unwrap(),
+        &folder.path().join("spin"),
+        &["--free", "backspin"],
+    )
+    .exits(2)
+    .says("choose one with --shooter NAME");
+}
+
+/// P along the pitch of a fitted shot is as uncertain as P of the fit, where the shot is the usual
+/// one; a speed that is given is exact.
+#[test]
+fn contract_vary_has_the_uncertainty_of_the_usual_shot() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("fit");
+    fit("docs/data/gym_sensor.csv", &out, &[]).exits(0);
+    let json: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("fit.json")).unwrap()).unwrap();
+    let parameters = json["parameters"].as_array().unwrap();
+    let mean = |name: &str| {
+        let found = parameters.iter().find(|of| of["name"] == name).unwrap();
+        found["mean"].as_f64().unwrap()
+    };
+    let width = |flags: &[&str]| {
+        let mut command = bankshot();
+        command
+            .arg("probability")
+            .arg(&out)
+            .arg("--draws")
+            .arg(&out);
+        let pitch = format!("pitch={} deg", mean("pitch_mean"));
+        command.args(["--vary", &pitch, "--json", "--quiet"]);
+        let json = Answer::of(command.args(flags)).exits(0).json();
+        let p = json["points"][0]["over_draws"]["probability"].clone();
+        p["high"].as_f64().unwrap() - p["low"].as_f64().unwrap()
+    };
+    let p = &json["probability"];
+    let of_fit = p["high"].as_f64().unwrap() - p["low"].as_f64().unwrap();
+    let own = width(&[]);
+    let speed = format!("{} ft/s", mean("speed_mean"));
+    let exact = width(&["--speed", &speed]);
+    assert!(
+        own > exact && own > 0.8 * of_fit && own < 1.2 * of_fit,
+        "{own} {exact} {of_fit}"
+    );
+}
+
 /// The folder of a fit holds what its file tells.
 #[test]
 fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
@@ -687,6 +771,33 @@ fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
     let parts =
         mean(&of_files["change_of_P_by_scatter"]) + mean(&of_files["change_of_P_by_usual_release"]);
     assert!((parts - mean(&p["change"])).abs() < 0.5, "{parts} {p}");
+    // Each cause has the mean of both orders of change, and the orders differ.
+    let [first, last] =
+        ["first", "last"].map(|order| mean(&of_files[format!("change_of_P_by_scatter_{order}")]));
+    let of_scatter = mean(&of_files["change_of_P_by_scatter"]);
+    assert!((0.5 * (first + last) - of_scatter).abs() < 1e-9 && first != last);
+    // The other way round the same causes have the other sign, but for numerical errors.
+    let reversed = compare(&paths[1], &paths[0], &[]).exits(0).json();
+    let reversed = mean(&reversed["change_of_P_by_scatter"]);
+    assert!(
+        (of_scatter + reversed).abs() < 0.5,
+        "{of_scatter} {reversed}"
+    );
+    // Of planned values alone chance has fewer to strike at.
+    let planned = compare(&folders[0], &folders[1], &["--planned", "speed_sd"]);
+    let planned = planned.exits(0).json();
+    let [p, speed] = &planned["changes"].as_array().unwrap()[..] else {
+        panic!("{planned}")
+    };
+    assert_eq!(*p, of_folders["changes"][0]);
+    let all = of_folders["changes"].as_array().unwrap();
+    let among_all = all.iter().find(|change| change["name"] == "speed_sd");
+    assert_eq!(speed["change"], among_all.unwrap()["change"]);
+    let shots = |of: &serde_json::Value| of["shots_to_decide"].as_f64().unwrap_or(0.0);
+    assert!(shots(speed) <= shots(among_all.unwrap()));
+    compare(&folders[0], &folders[1], &["--planned", "speed"])
+        .exits(2)
+        .says("--planned: \"speed\" is no value of these sessions; write some of speed_mean");
     // What only a file has a use for is refused beside the folder of a fit.
     let mut advise = bankshot();
     advise.arg("advise").arg(&folders[0]);

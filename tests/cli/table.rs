@@ -45,6 +45,21 @@ fn table(folder: &TempDir, more: &[&str]) -> Answer {
     Answer::of(&mut command)
 }
 
+/// Where P is lower than asked for, nothing is checked and no nodes are added.
+#[test]
+fn contract_no_nodes_are_added_where_p_is_low() {
+    let folder = TempDir::new().unwrap();
+    let range = ["--distances", "8 ft, 14 ft", "--format", "json"];
+    let nodes = |more: &[&str]| {
+        let json = table(&folder, &[&range[..], more].concat()).exits(0).json();
+        json["shots"].as_array().unwrap().len()
+    };
+    let all = nodes(&["--max-loss", "0.005"]);
+    assert!(all > 2, "{all}");
+    let low = ["--max-loss", "0.005", "--least-probability", "0.999"];
+    assert_eq!(nodes(&low), 2);
+}
+
 /// Half of the error of the speed: more shots go in.
 #[test]
 fn contract_a_table_of_a_steadier_launcher() {
