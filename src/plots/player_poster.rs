@@ -92,7 +92,7 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
             direct_in_words(results.chances())
         } else {
             bank_in_words(&bank, units)
-        } + &doubt_in_words(results.chances()),
+        },
     ];
     if !is_one_place {
         sentences.push(format!(
@@ -102,6 +102,10 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
         ));
     }
     sentences.extend(own.filter(|own| !own.is_empty()).map(str::to_owned));
+    let notes = ring_in_words(&bank) + &doubt_in_words(results.chances());
+    if !notes.is_empty() {
+        sentences.push(notes.trim_start().to_owned());
+    }
     let drawing = |words: &[String]| {
         let map = CourtMap {
             style: MapStyle::Poster,
@@ -203,7 +207,7 @@ fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
         open => format!("{open} places"),
     };
     format!(
-        " At {places}, marked ?, your measured shots do not tell yet which is better; the number is that of the direct shot."
+        " At {places}, marked ?, your measured shots do not tell yet whether to bank; the number is that of the direct shot."
     )
 }
 
@@ -233,7 +237,12 @@ fn ring_in_words(bank: &[&PlaceProbabilities]) -> String {
         1 => "at one of them".to_owned(),
         some => format!("at {some} of them"),
     };
-    format!(" On an unusual ring direct is better {places}.")
+    let bank = if bank.len() == 1 {
+        "the place to bank from"
+    } else {
+        "the places to bank from"
+    };
+    format!(" Of {bank}: on an unusual ring direct is better {places}.")
 }
 
 /// Where banking helps most, and how to.
@@ -269,13 +278,12 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         }
     });
     format!(
-        "Bank the ball where the map has an outline and bold numbers: it makes at least 1 of 100 more. It helps most here: {place}. {} of 100 go in{direct}. {} aim at {}.",
+        "Bank the ball from the outlined places. It helps most here: {place}. {} of 100 go in{direct}. {} aim at {}.",
         most.bank.map_or_else(String::new, |p| of_hundred(p.value)),
         match bank.len() == alike.len() {
             true => "From there",
-            false => "From there (each place has its own aim)",
+            false => "From there (the others have their own aim)",
         },
         aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
     ) + &square_in_words(units)
-        + &ring_in_words(bank)
 }

@@ -200,7 +200,7 @@ fn regress_a_loss_beside_the_middle_is_found() {
     let notes = json["notes"].to_string();
     assert!(notes.contains("A bank shot is better at"), "{notes}");
     assert!(
-        notes.contains("Not clean: in 2 of 2 rows even the best shot"),
+        notes.contains("In 2 of 2 rows even the best shot"),
         "{notes}"
     );
 }

@@ -66,8 +66,8 @@ pub(crate) struct TableOptions {
     /// no nodes (with `--kind best` those where a kind begins, ends or becomes the better one).
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
-    /// Add no nodes, and check nothing, where P is less than this: at the end of a launcher's reach P
-    /// falls so steeply that many would be added.
+    /// Add no nodes, and check nothing, where P is less than this: at the end of a launcher's reach
+    /// P falls so steeply that many would be added.
     #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = share, conflicts_with = "draft")]
     pub(crate) least_probability: f64,
     /// A first look in a fraction of the time: nothing is checked between the places, and none are

@@ -350,7 +350,7 @@ pub fn advice_for_poster(
         court_angle_rad,
     };
     format!(
-        "Your shot from {from}: now {:.0} of 100 go in, {:.0} can: {}. {}",
+        "Your shot, {from}: now {:.0} of 100 go in, {:.0} can: {}. {}",
         100.0 * p.mean,
         100.0 * (p.mean + steps.gain.mean),
         words.of_releases(&advice.usual, &steps.advised),
