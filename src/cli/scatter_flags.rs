@@ -28,6 +28,17 @@ const ERRORS: [(&str, &[&str]); 4] = [
 const MOST_PERCENT: f64 = 900.0;
 
 impl ScatterOptions {
+    /// That errors are not those of the profile, a line; empty where they are.
+    pub(crate) fn in_words(&self) -> String {
+        match &self.scatter[..] {
+            [] => String::new(),
+            changed => format!(
+                "The scatter is not that of the profile: --scatter {}.\n",
+                changed.join(" --scatter ")
+            ),
+        }
+    }
+
     /// A profile with changed errors, and its text with them.
     pub(crate) fn changed(
         &self,

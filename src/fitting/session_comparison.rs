@@ -101,6 +101,9 @@ pub struct ProbabilityChange {
     /// By the scatter where it changes first, at the old usual release, and where it changes last,
     /// at the new one.
     pub by_scatter_first_and_last: [Interval; 2],
+    /// By the mean of the speed, of the pitch and of the polar angle, each alone and all else as
+    /// before.
+    pub by_mean_alone: [Interval; 3],
 }
 
 /// Splits the change of P at a place. `profile` is that of the place, `probabilities` have P of the
@@ -141,6 +144,15 @@ pub fn probability_change(
     let pairs = || (0..count).map(|k| (&before.draws[k], &after.draws[partner(k)]));
     let new_scatter = p_of_mixed(pairs().map(|(old, new)| mixed(old, new)).collect());
     let new_means = p_of_mixed(pairs().map(|(old, new)| mixed(new, old)).collect());
+    let one_mean = [0, 1, 2].map(|i| {
+        let with_mean = |(old, new): (&Draw, &Draw)| {
+            let mut draw = old.clone();
+            draw.means[place][i] = new.means[place][i];
+            // The scatter is that of before, at whatever speed.
+            draw
+        };
+        p_of_mixed(pairs().map(with_mean).collect())
+    });
     let [p_before, p_after] = probabilities.map(|p| &p.of_draws);
     let interval = |value: &dyn Fn(usize) -> f64| Interval::of((0..count).map(value).collect());
     let first = |k: usize| new_scatter[k] - p_before[k];
@@ -150,6 +162,7 @@ pub fn probability_change(
         by_scatter: interval(&by_scatter),
         by_means: interval(&|k| p_after[partner(k)] - p_before[k] - by_scatter(k)),
         by_scatter_first_and_last: [interval(&first), interval(&last)],
+        by_mean_alone: [0, 1, 2].map(|i| interval(&|k| one_mean[i][k] - p_before[k])),
     }
 }
 

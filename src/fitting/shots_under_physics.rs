@@ -1,7 +1,7 @@
 //! Fitted shots, and what their advice gains, where the physics of the gym is another one than that
 //! of the fit.
 
-use super::advice::{Advice, DRAWS, thinned};
+use super::advice::Advice;
 use super::advice_steps::{Change, Shooting};
 use super::interval::Interval;
 use super::landing::{jacobian, landing_of, release_of_landing};
@@ -71,7 +71,7 @@ impl<'a> FittedShots<'a> {
             .profile
             .with(|settings| settings.physics = physics.clone());
         let other = other.ok()?;
-        let draws = thinned(self.posterior, DRAWS);
+        let draws = &self.posterior.draws;
         let probabilities = |change: Change| {
             let moved = draws.iter().map(|draw| {
                 let mut moved = draw.clone();

@@ -138,6 +138,12 @@ impl ProbabilityAlong<'_> {
 
     /// What stays as it is.
     fn fixed_in_words(&self) -> String {
+        format!("The rest stays: {}.", self.fixed_values())
+    }
+
+    /// The values of the rest of the shot.
+    #[must_use]
+    pub fn fixed_values(&self) -> String {
         let Some(first) = self.points.first() else {
             return String::new();
         };
@@ -155,7 +161,7 @@ impl ProbabilityAlong<'_> {
             (is_always_told || value != 0.0)
                 .then(|| format!("{name} {} {unit}", short(value / size)))
         });
-        format!("The rest stays: {}.", parts.collect::<Vec<_>>().join(", "))
+        parts.collect::<Vec<_>>().join(", ")
     }
 
     /// For people, at most 80 columns wide.

@@ -7,7 +7,9 @@ use super::court_map::{CourtMap, MapStyle};
 use super::svg::{Anchor, Plot, Svg};
 use super::sweep_results::SweepResults;
 use crate::analysis::sensitivity::Difference;
-use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
+use crate::sweep::probability_by_place::{
+    PlaceProbabilities, Preference, board_aim_of_sides, with_mirror_images,
+};
 use crate::units::UnitSystem;
 
 /// y of the map, px.
@@ -245,45 +247,47 @@ fn ring_in_words(bank: &[&PlaceProbabilities]) -> String {
     format!(" Of {bank}: on an unusual ring direct is better {places}.")
 }
 
-/// Where banking helps most, and how to.
+/// Where banking helps most, and where to aim from each place.
 fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
+    /// Places whose aims are told, with their mirror images: those where it helps most.
+    const MOST_AIMS: usize = 4;
     let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
-    let most = bank
-        .iter()
-        .reduce(|a, b| if gain(b) > gain(a) { b } else { a });
-    let Some(most) = most else {
+    let most_of = |same: &[&PlaceProbabilities]| {
+        same.iter()
+            .fold(0.0_f64, |most, place| most.max(gain(place)))
+    };
+    let mut groups = with_mirror_images(bank);
+    groups.sort_by(|a, b| most_of(b).total_cmp(&most_of(a)));
+    let Some(most) = groups.first() else {
         return String::new();
     };
-    let in_hundred = |p: Option<Difference>| p.map(|p| shown(p.value));
-    let direct = in_hundred(most.direct).map_or(String::new(), |p| format!(", {p} direct"));
-    let alike = bank
+    let least_to_most = |of: &dyn Fn(&PlaceProbabilities) -> Option<Difference>| {
+        let mut found: Vec<String> = most
+            .iter()
+            .filter_map(|place| Some(of_hundred(of(place)?.value)))
+            .collect();
+        found.sort();
+        found.dedup();
+        (!found.is_empty()).then(|| found.join(" to "))
+    };
+    let direct =
+        least_to_most(&|place| place.direct).map_or(String::new(), |p| format!(", {p} direct"));
+    let aims: Vec<String> = groups
         .iter()
-        .filter(|place| in_hundred(place.bank) == in_hundred(most.bank));
-    let alike: Vec<&PlaceProbabilities> = alike.copied().collect();
-    let place = most.in_players_words(&alike, units);
-    let aim = most.board_aim_in_words(units).map(|aim| {
-        // Of a place and its mirror image, the aim is on the same side of the board as the shooter,
-        // or on the other.
-        let is_of_both = most.has_mirror_in(&alike);
-        let is_own_side = most
-            .board_aim_m
-            .is_some_and(|(across_m, _)| across_m * most.place.y_m > 0.0);
-        let side = if is_own_side { "your" } else { "the other" };
-        let of_both = format!("from the board's middle on {side} side");
-        if is_of_both {
-            aim.replace("left of the board's middle", &of_both)
-                .replace("right of the board's middle", &of_both)
-        } else {
-            aim
-        }
-    });
+        .take(MOST_AIMS)
+        .map(|same| {
+            let aim = board_aim_of_sides(same, units).unwrap_or("the board".to_owned());
+            match groups.len() {
+                1 => aim,
+                _ => format!("from {}: {aim}", same[0].in_players_words(bank, units)),
+            }
+        })
+        .collect();
     format!(
-        "Bank the ball from the outlined places. It helps most here: {place}. {} of 100 go in{direct}. {} aim at {}.",
-        most.bank.map_or_else(String::new, |p| of_hundred(p.value)),
-        match bank.len() == alike.len() {
-            true => "From there",
-            false => "From there (the others have their own aim)",
-        },
-        aim.map_or("the board".to_owned(), |aim| format!("the board, {aim}"))
-    ) + &square_in_words(units)
+        "Bank the ball from the outlined places. It helps most here: {}. {} of 100 go in{direct}. Aim at the board, {}.{}",
+        most[0].in_players_words(bank, units),
+        least_to_most(&|place| place.bank).unwrap_or_default(),
+        aims.join("; "),
+        square_in_words(units)
+    )
 }

@@ -46,7 +46,7 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
     svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
     let place = along.profile.location();
     let place = place.in_words(along.profile.output().units);
-    let place = format!("{place}; the rest of the shot as it is");
+    let place = format!("{place}; {}", along.fixed_values());
     svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
     axes.draw_grid(&mut svg);
     let at = |i: usize| axes.pixel((values[i], points[i].estimate.probability));

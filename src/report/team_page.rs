@@ -19,6 +19,8 @@ pub struct PageTable {
 pub struct TeamPage {
     /// From where each player should bank, a line each.
     pub answer: String,
+    /// The title of what follows.
+    pub advice_title: String,
     /// What the own shots of each measured player say, a text each.
     pub advice: Vec<String>,
     /// Tables.
@@ -111,7 +113,8 @@ impl TeamPage {
         let advice = match advice.is_empty() {
             true => advice,
             false => format!(
-                "<h2>Each player's measured shot: now, and what to change</h2>\n<section class=\"advices\">\n{advice}</section>\n"
+                "<h2>{}</h2>\n<section class=\"advices\">\n{advice}</section>\n",
+                escaped(&self.advice_title)
             ),
         };
         let maps = self.maps.as_ref().map_or_else(String::new, |plot| {

@@ -258,6 +258,61 @@ impl PlaceProbabilities {
     }
 }
 
+/// The places of a list, each together with its mirror image, in the order of the first of each.
+#[must_use]
+pub fn with_mirror_images<'a>(
+    places: &[&'a PlaceProbabilities],
+) -> Vec<Vec<&'a PlaceProbabilities>> {
+    let mut groups: Vec<Vec<&PlaceProbabilities>> = Vec::new();
+    for &place in places {
+        let image = groups
+            .iter_mut()
+            .find(|group| group.len() == 1 && place.has_mirror_in(group));
+        match image {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
+        }
+    }
+    groups
+}
+
+/// Where on the board to aim from a place, or from it and its mirror image: `22 to 24 in above the
+/// ring, 13 in from its middle on your side`. `None` where the two sides differ in more than the
+/// numbers.
+#[must_use]
+pub fn board_aim_of_sides(same: &[&PlaceProbabilities], units: UnitSystem) -> Option<String> {
+    let [first, second] = same else {
+        return same.first()?.board_aim_in_words(units);
+    };
+    let is_own_side = |place: &PlaceProbabilities| {
+        let (across_m, _) = place.board_aim_m?;
+        Some(across_m * place.place.y_m > 0.0)
+    };
+    if is_own_side(first)? != is_own_side(second)? {
+        return None;
+    }
+    let (short, metre) = units.short_length();
+    let range = |values: [f64; 2]| {
+        let mut values = values.map(|value| libm::round(value / metre));
+        values.sort_by(f64::total_cmp);
+        match values {
+            [least, most] if least < most => format!("{least} to {most} {short}"),
+            [least, _] => format!("{least} {short}"),
+        }
+    };
+    let (a, b) = (first.board_aim_m?, second.board_aim_m?);
+    Some(format!(
+        "{} above the ring, {} from its middle on {} side",
+        range([a.1, b.1]),
+        range([a.0.abs(), b.0.abs()]),
+        if is_own_side(first)? {
+            "your"
+        } else {
+            "the other"
+        }
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

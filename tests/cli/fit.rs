@@ -651,6 +651,52 @@ fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
         .says("holds a fit of each shooter; name one");
 }
 
+/// The same shots, half a foot per second slower: all of the change is that of the speed's mean.
+#[test]
+fn contract_the_change_of_p_is_that_of_the_mean_that_changed() {
+    let folder = TempDir::new().unwrap();
+    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let column = header
+        .split(',')
+        .position(|name| name == "speed_ft_s")
+        .unwrap();
+    let slower = rows.lines().map(|row| {
+        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+        cells[column] = (cells[column].parse::<f64>().unwrap() - 0.5).to_string();
+        cells.join(",") + "\n"
+    });
+    let slower = write_file(
+        &folder,
+        "slower.csv",
+        format!("{header}\n{}", slower.collect::<String>()),
+    );
+    let mut command = bankshot();
+    command
+        .args(["compare-sessions", "docs/data/lab.csv"])
+        .arg(&slower);
+    let json = Answer::of(command.args(["--json", "--quiet"]))
+        .exits(0)
+        .json();
+    let mean = |name: &str| {
+        json[format!("change_of_P_by_{name}")]["mean"]
+            .as_f64()
+            .unwrap()
+    };
+    let all = json["changes"][0]["change"]["mean"].as_f64().unwrap();
+    assert!(all < -10.0, "{all}");
+    // But for the numerical errors of the samples, 0.2 points each.
+    assert!((mean("usual_release") - all).abs() < 1.0);
+    assert!(
+        (mean("speed_alone") - all).abs() < 1.0,
+        "{}",
+        mean("speed_alone")
+    );
+    for other in ["pitch_alone", "polar_alone", "scatter"] {
+        assert!(mean(other).abs() < 1.0, "{other} {}", mean(other));
+    }
+}
+
 /// One ring for two shooters: the likelihood of both together is the product of theirs.
 #[test]
 fn contract_a_ring_is_told_by_the_makes_of_all_shooters() {

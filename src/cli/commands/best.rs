@@ -95,6 +95,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         if options.details {
             text += &sensitivity_text(&profile, &best, units);
         }
+        text += &options.scatter.in_words();
         text += vacuum_note(&profile);
         if options.draws.is_none() {
             text += PROFILE_IS_EXACT;

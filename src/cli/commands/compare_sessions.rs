@@ -196,6 +196,11 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             }
         ))?;
     }
+    if !options.planned.is_empty() && !quiet {
+        print_remark(
+            "--planned: values count as planned only if they were named before the shots were seen",
+        );
+    }
     for (number, sessions) in compared.iter().enumerate() {
         check_conditions(sessions)?;
         for session in sessions {
@@ -561,6 +566,7 @@ fn json(
         let by = &causes.by_scatter_first_and_last[order];
         object(interval_json(&by.scaled(100.0)))
     };
+    let by_mean = |i: usize| object(interval_json(&causes.by_mean_alone[i].scaled(100.0)));
     json!({
         "shooter": before.profile.shooter().name,
         "before": session(before),
@@ -569,6 +575,9 @@ fn json(
         "changes": listed.collect::<Value>(),
         "change_of_P_by_scatter": object(interval_json(&causes.by_scatter.scaled(100.0))),
         "change_of_P_by_usual_release": object(interval_json(&causes.by_means.scaled(100.0))),
+        "change_of_P_by_speed_alone": by_mean(0),
+        "change_of_P_by_pitch_alone": by_mean(1),
+        "change_of_P_by_polar_alone": by_mean(2),
         "change_of_P_by_scatter_first": by_scatter(0),
         "change_of_P_by_scatter_last": by_scatter(1),
     })

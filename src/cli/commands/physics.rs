@@ -213,8 +213,12 @@ impl FittedRows {
     ) -> Option<(f64, f64)> {
         let base = of(self.rows[comparison.base].as_ref()?)?;
         let rows = comparison.rows.iter().zip(&self.rows);
+        let is_possible = |own: &Option<ShotsUnderPhysics>| {
+            own.as_ref()
+                .is_some_and(|own| !self.do_makes_contradict(own))
+        };
         let changes: Vec<(&str, f64)> = rows
-            .filter(|(row, _)| row.is_unmeasured)
+            .filter(|(row, own)| row.is_unmeasured && is_possible(own))
             .filter_map(|(row, own)| Some((row.name.as_str(), of(own.as_ref()?)?.mean - base.mean)))
             .collect();
         let [down, up] = together(&changes);
@@ -250,7 +254,7 @@ impl FittedRows {
                 in_points(high)
             );
         }
-        text += " (95 % interval of the fit, and the changes taken together as above: the root of the sum of squares).\n";
+        text += " (95 % interval of the fit, and the changes taken together: the root of the sum of squares).\n";
         let (made, shots) = self.observed;
         if shots == 0 {
             return text;
@@ -268,7 +272,7 @@ impl FittedRows {
         text += &match &contradicted[..] {
             [] => " That speaks against none of the rows.\n".to_owned(),
             rows => format!(
-                " That speaks against these, where the intervals do not meet: {}. (The range before does not heed that.)\n",
+                " That speaks against these, where the intervals do not meet: {}. The range before leaves them out. (A fit with --physics tells more: its z says whether the makes of each ball agree.)\n",
                 rows.join(", ")
             ),
         };
@@ -345,7 +349,7 @@ impl FittedRows {
             .collect();
         if !lost.is_empty() {
             text += &format!(
-                "(With other balls, hoops or air its gain is not sure: {}. They matter only where one of them is yours.)\n",
+                "(With other balls, hoops or air it does not gain for sure, or loses: {}. They matter only where one of them is yours.)\n",
                 lost.join(", ")
             );
         }

@@ -21,13 +21,13 @@ use crate::output::shot_table_files::pitch_over_distances::{
 };
 use crate::plots;
 use crate::probability::{Progress, Silent};
-use crate::shooter::{Location, NominalVariable, Profile};
+use crate::shooter::{Location, NominalVariable, Profile, SearchSettings};
 use crate::units::{DEGREE_RAD, Dimension};
 use clap::Args;
 use std::path::PathBuf;
 
-/// The pitch angles, if none are given.
-const DEFAULT_PITCHES: &str = "40 deg to 65 deg by 2.5 deg";
+/// The first and the last pitch angle and the step, if none are given, deg.
+const DEFAULT_PITCHES_DEG: (f64, f64, f64) = (40.0, 65.0, 2.5);
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -49,8 +49,8 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) place: PlaceOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// The pitch angles, ascending, within the profile's pitch_min and pitch_max [default: 40 deg
-    /// to 65 deg by 2.5 deg, as far as these allow].
+    /// The pitch angles, ascending, within the profile's pitch_min and pitch_max [default: from
+    /// pitch_min (40 deg) to pitch_max (65 deg) by 2.5 deg].
     #[arg(long, value_name = "LIST|RANGE")]
     pub(crate) pitches: Option<String>,
     /// Several distances from the hoop's centre, ascending: P at each of them, and which one pitch
@@ -223,14 +223,29 @@ fn run_from_distances(
     })
 }
 
+/// The pitch angles, if none are given: as far as the limits of the profile reach.
+fn default_pitches_rad(search: &SearchSettings) -> Vec<f64> {
+    let (first, last, step) = DEFAULT_PITCHES_DEG;
+    let first = search
+        .pitch_min_rad
+        .map_or(first, |limit| limit / DEGREE_RAD);
+    let last = search
+        .pitch_max_rad
+        .map_or(last, |limit| limit / DEGREE_RAD);
+    // The last one belongs to the list, also where the steps do not add up exactly.
+    let steps = ((last - first) / step + 1e-9).floor().max(0.0);
+    (0..=steps as usize)
+        .map(|k| (first + step * k as f64) * DEGREE_RAD)
+        .collect()
+}
+
 /// The pitch angles, rad, between 1 and 89 deg.
 fn pitches_rad(given: Option<&str>, profile: &Profile) -> Result<Vec<f64>, Failure> {
-    let pitches_rad = ascending_values(
-        "pitches",
-        given.unwrap_or(DEFAULT_PITCHES),
-        Dimension::Angle,
-    )?;
     let search = &profile.settings().search;
+    let pitches_rad = match given {
+        Some(given) => ascending_values("pitches", given, Dimension::Angle)?,
+        None => default_pitches_rad(search),
+    };
     let refuse = |pitch_rad: f64, words: &str| {
         let pitch_deg = (pitch_rad / DEGREE_RAD * 1e6).round() / 1e6;
         Failure::usage(format!("--pitches: {pitch_deg} deg {words}"))
@@ -239,9 +254,9 @@ fn pitches_rad(given: Option<&str>, profile: &Profile) -> Result<Vec<f64>, Failu
         let is_allowed = |pitch_rad: &f64| search.pitch_beyond_limits(*pitch_rad).is_none();
         let allowed: Vec<f64> = pitches_rad.into_iter().filter(is_allowed).collect();
         if allowed.is_empty() {
-            return Err(Failure::usage(format!(
-                "--pitches: pitch_min and pitch_max of the profile allow none of {DEFAULT_PITCHES}; give the angles"
-            )));
+            return Err(Failure::usage(
+                "--pitches: pitch_min and pitch_max of the profile allow none of the usual angles; give the angles",
+            ));
         }
         return Ok(allowed);
     }

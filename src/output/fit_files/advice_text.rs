@@ -139,31 +139,33 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
         100.0 * gain.low,
         100.0 * gain.high
     );
-    let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
-    if let Some([speed, pitch]) = &steps.alone
-        && by_m_s >= SAME_SPEED_M_S
-    {
-        let [of_speed, of_pitch] = [speed, pitch].map(|gain| 100.0 * (p + gain.mean));
-        text += &if speed.mean >= 0.0 && pitch.mean >= 0.0 {
-            let [(first, of_first), (second, of_second)] = if speed.mean > pitch.mean {
-                [("speed", of_speed), ("angle", of_pitch)]
-            } else {
-                [("angle", of_pitch), ("speed", of_speed)]
-            };
-            format!(
-                " Begin with the {first}: alone it makes {of_first:.0} %, the new {second} alone {of_second:.0} %."
-            )
-        } else if pitch.mean < 0.0 && speed.mean > 0.5 * gain.mean {
-            format!(
-                " Begin with the speed, which alone makes {of_speed:.0} %: the new angle without it makes {of_pitch:.0} %."
-            )
-        } else {
-            format!(
-                " Change speed and angle together: the new speed alone makes {of_speed:.0} %, the new angle alone {of_pitch:.0} %."
-            )
-        };
-    }
+    text += &first_change_in_words(advice, steps);
     text + "\n"
+}
+
+/// Which of speed and angle to change first, in a sentence with a space before it; empty where they
+/// do not change together.
+fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> String {
+    /// A difference of P from which on one is named first: what P itself is known to.
+    const MATTERS: f64 = 0.05;
+    let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
+    let Some([speed, pitch]) = steps.alone.filter(|_| by_m_s >= SAME_SPEED_M_S) else {
+        return String::new();
+    };
+    let p = advice.usual_probability.mean;
+    let [of_speed, of_pitch] = [speed, pitch].map(|gain| 100.0 * (p + gain.mean));
+    let both =
+        format!("the new speed alone makes {of_speed:.0} %, the new angle alone {of_pitch:.0} %");
+    if speed.mean < 0.0 && pitch.mean < 0.0
+        || speed.mean.min(pitch.mean) < 0.0 && speed.mean.max(pitch.mean) <= 0.5 * steps.gain.mean
+    {
+        return format!(" Change speed and angle together: {both}.");
+    }
+    match speed.mean - pitch.mean {
+        more if more > MATTERS => format!(" Begin with the speed: {both}."),
+        more if more < -MATTERS => format!(" Begin with the angle: {both}."),
+        _ => format!(" Begin with either: {both}."),
+    }
 }
 
 /// How many more shots would make a step sure, in a sentence; empty where none is open, or they
@@ -350,10 +352,11 @@ pub fn advice_for_poster(
         court_angle_rad,
     };
     format!(
-        "Your shot, {from}: now {:.0} of 100 go in, {:.0} can: {}. {}",
+        "Your shot, {from}: now {:.0} of 100 go in, {:.0} can: {}.{} {}",
         100.0 * p.mean,
         100.0 * (p.mean + steps.gain.mean),
         words.of_releases(&advice.usual, &steps.advised),
+        first_change_in_words(advice, steps),
         landing_in_words(advice, units).trim_end()
     )
 }

@@ -159,11 +159,14 @@ pub fn session_changes_text(
     });
     let mut text = verdict(changes, tested);
     text += &format!(
-        "Of the change of the chance, the scatter makes {}, and the usual release (the means of speed, angle and direction) {}. What the scatter does depends on the usual release: {:+.1} points at the old one, {:+.1} at the new one; the first number is the mean of both.\n",
+        "Of the change of the chance, the scatter makes {}, and the usual release (the means of speed, angle and direction) {}. What the scatter does depends on the usual release: {} at the old one, {} at the new one; the first number is the mean of both. Of the usual release the new speed alone, all else as before, makes {:+.1} points, the new angle alone {:+.1}, the new direction alone {:+.1}.\n",
         points(&causes.by_scatter),
         points(&causes.by_means),
-        tenths(causes.by_scatter_first_and_last[0].mean),
-        tenths(causes.by_scatter_first_and_last[1].mean)
+        points(&causes.by_scatter_first_and_last[0]),
+        points(&causes.by_scatter_first_and_last[1]),
+        tenths(causes.by_mean_alone[0].mean),
+        tenths(causes.by_mean_alone[1].mean),
+        tenths(causes.by_mean_alone[2].mean)
     );
     if let [first @ (made, 1..), second @ (made_then, 1..)] = makes {
         let percent = |made: usize, of: usize| 100.0 * made as f64 / of as f64;

@@ -216,6 +216,10 @@ fn in_words(
         100.0 * best.probability,
         degrees(best_rad)
     );
+    let is_at_end = best_row + 1 == rows.len() || best_row == 0;
+    if is_at_end && rows.len() > 1 {
+        text += " That is the end of the list: angles beyond may be better (--pitches).";
+    }
     if low < high {
         text += &format!(
             " From {} to {} deg the best speed of each makes at most one of 100 less.",

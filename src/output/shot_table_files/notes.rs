@@ -414,7 +414,19 @@ fn limit_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option
             )
         })
     });
-    let texts: Vec<String> = texts.collect();
+    let mut texts: Vec<String> = texts.collect();
+    if let Some(limit_m_s) = search.speed_max_m_s {
+        let places = Places::of(table, |shot| shot.nominal.speed_m_s > limit_m_s - 1e-9);
+        let (long, metre) = units.length();
+        if !places.is_empty() {
+            texts.push(format!(
+                "In {} the speed is the limit speed_max ({} {long}/s): {}. Errors lead beyond it, so for a motor that cannot turn faster P is too high there.",
+                places.count_text(),
+                short(limit_m_s / metre),
+                places.text(table, units)
+            ));
+        }
+    }
     (!texts.is_empty()).then(|| texts.join(" "))
 }
 

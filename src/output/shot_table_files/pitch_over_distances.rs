@@ -48,6 +48,16 @@ impl DistanceShots {
     }
 }
 
+/// Angles of the list on both sides of one, deg, where they are more than a degree from it: between
+/// them the mean can have a peak.
+fn neighbours_apart(from: &[&DistanceShots], row: usize) -> Option<(String, String)> {
+    const NEAR_RAD: f64 = 1.01 * DEGREE_RAD;
+    let angles = &from.first()?.shots;
+    let [low, high] = [row.saturating_sub(1), (row + 1).min(angles.len() - 1)];
+    let apart = |other: usize| (angles[other].pitch_rad - angles[row].pitch_rad).abs();
+    (apart(low).max(apart(high)) > NEAR_RAD).then(|| (degrees(from, low), degrees(from, high)))
+}
+
 /// A loss of the mean P that the sentence about the angles counts as none.
 const LEVEL: f64 = 0.01;
 /// Distances side by side in 80 columns.
@@ -146,14 +156,21 @@ pub fn pitch_over_distances_text(
         kind_before_shot(kind),
         100.0 * rows[best].0
     );
+    let wide = neighbours_apart(from, best);
+    let of_list = wide.map_or(String::new(), |(low, high)| {
+        format!(
+            " Angles between those of the list can be better: --pitches '{low} deg to {high} deg by 0.5 deg'."
+        )
+    });
     words += &match low < high {
         true => format!(
-            "; from {} to {} deg it is at most one less.",
+            "; at the angles of this list from {} to {} deg it is at most one less.",
             degrees(low),
             degrees(high)
         ),
         false => ".".to_owned(),
     };
+    words += &of_list;
     if rows.len() > 1 && from.len() > 1 {
         words += &cost_in_words(from, best, units);
     }

@@ -6,7 +6,9 @@ use crate::fitting::UnseenParameter;
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::plots::svg::{Plot, shortened};
 use crate::report::team_page::{PageTable, TeamPage};
-use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
+use crate::sweep::probability_by_place::{
+    PlaceProbabilities, Preference, board_aim_of_sides, with_mirror_images,
+};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use comfy_table::{Table, presets};
 
@@ -36,8 +38,8 @@ const MOST_BANK_PLACES: usize = 5;
 pub(super) struct PlayerSweep {
     pub(super) name: String,
     pub(super) places: Vec<PlaceProbabilities>,
-    /// What a fitted player's own shots say.
-    pub(super) advice: Option<String>,
+    /// What a fitted player's own shots say, and where they were from.
+    pub(super) advice: Option<(String, String)>,
 }
 
 impl PlayerSweep {
@@ -239,7 +241,11 @@ const PLAYER_COLUMNS: [&str; 4] = [
 ];
 
 /// What is to be said of places where players are level, and of what is taken as exact.
-fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static str) {
+fn remarks(
+    players: &[PlayerSweep],
+    best: &[Vec<usize>],
+    ring: (f64, f64),
+) -> (String, &'static str) {
     let level = best.iter().filter(|of| of.len() > 1).count();
     let of_level = if level > 0 {
         format!(
@@ -261,18 +267,22 @@ fn remarks(players: &[PlayerSweep], best: &[Vec<usize>]) -> (String, &'static st
     } else {
         "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n"
     };
-    (of_level + &of_rings(players), of_profiles)
+    (of_level + &of_rings(players, ring), of_profiles)
 }
 
 /// What the ring of the gym has to do with bank or direct; empty where it decides nothing.
-fn of_rings(players: &[PlayerSweep]) -> String {
+fn of_rings(players: &[PlayerSweep], (low, high): (f64, f64)) -> String {
     let mut places = players.iter().flat_map(|player| player.bank_places());
     if !places.any(PlaceProbabilities::turns_with_the_ring) {
         return String::new();
     }
-    let (low, high) = UnseenParameter::HoopRestitution.usual_range();
+    if (low, high) != UnseenParameter::HoopRestitution.usual_range() {
+        return format!(
+            "By the makes the restitution of the ring is {low:.2} to {high:.2}; on some of these rings direct is better at the places that say so.\n"
+        );
+    }
     format!(
-        "Nobody measured the ring of this gym; sources give restitutions from {low:.2} to {high:.2}. `bankshot fit SHOTS --free hoop_restitution` asks the makes about it, `bankshot physics PROFILE --distance .. --angle ..` tells of one place.\n"
+        "Nobody measured the ring of this gym; sources give restitutions from {low:.2} (a dead ring) to {high:.2} (a lively one). `bankshot fit SHOTS --free hoop_restitution` asks the makes about it; after that this command heeds what they say.\n"
     )
 }
 
@@ -280,7 +290,9 @@ fn of_rings(players: &[PlayerSweep]) -> String {
 fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let name = shortened(&player.name, LONGEST_NAME);
     let aim = |same: &[&PlaceProbabilities]| {
-        let words = [aim_in_words(same, units), ring_in_words(same)];
+        let aim = board_aim_of_sides(same, units);
+        let aim = aim.map(|aim| format!("aim at the board, {aim}"));
+        let words = [aim, ring_in_words(same)];
         let words: Vec<String> = words.into_iter().flatten().collect();
         (!words.is_empty()).then(|| words.join("; "))
     };
@@ -321,17 +333,9 @@ fn place_list(
     (indent, more): (&str, &dyn Fn(&[&PlaceProbabilities]) -> Option<String>),
     units: UnitSystem,
 ) -> String {
-    // A place stands for its mirror image too.
-    let mut listed: Vec<(String, Vec<&PlaceProbabilities>)> = Vec::new();
-    for &place in places {
-        let words = place.in_words_with_mirror(places, units);
-        match listed.iter_mut().find(|(known, _)| *known == words) {
-            Some((_, same)) => same.push(place),
-            None => listed.push((words, vec![place])),
-        }
-    }
+    let listed = with_mirror_images(places);
     let mut text = String::new();
-    for (_, same) in listed.iter().take(MOST_BANK_PLACES) {
+    for same in listed.iter().take(MOST_BANK_PLACES) {
         let words = place_in_words(same[0], places, units);
         text += &format!(
             "{indent}{words}: {} (direct {})\n",
@@ -378,42 +382,6 @@ fn ring_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
     })
 }
 
-/// Where on the board to aim from a place, or from it and its mirror image; `None` where the two
-/// sides differ in more than the numbers.
-fn aim_in_words(same: &[&PlaceProbabilities], units: UnitSystem) -> Option<String> {
-    let [first, second] = same else {
-        let aim = same.first()?.board_aim_in_words(units)?;
-        return Some(format!("aim at the board, {aim}"));
-    };
-    let is_own_side = |place: &PlaceProbabilities| {
-        let (across_m, _) = place.board_aim_m?;
-        Some(across_m * place.place.y_m > 0.0)
-    };
-    if is_own_side(first)? != is_own_side(second)? {
-        return None;
-    }
-    let (short, metre) = units.short_length();
-    let range = |values: [f64; 2]| {
-        let mut values = values.map(|value| libm::round(value / metre));
-        values.sort_by(f64::total_cmp);
-        match values {
-            [least, most] if least < most => format!("{least} to {most} {short}"),
-            [least, _] => format!("{least} {short}"),
-        }
-    };
-    let (a, b) = (first.board_aim_m?, second.board_aim_m?);
-    Some(format!(
-        "aim at the board, {} above the ring, {} from its middle on {} side",
-        range([a.1, b.1]),
-        range([a.0.abs(), b.0.abs()]),
-        if is_own_side(first)? {
-            "your"
-        } else {
-            "the other"
-        }
-    ))
-}
-
 /// P in 100 of a shot from one place, or from both sides: `80.6 to 82.2` where they differ.
 fn least_to_most(of_sides: impl Iterator<Item = Option<Difference>>) -> String {
     let mut points: Vec<f64> = of_sides.flatten().map(|p| p.value).collect();
@@ -436,13 +404,13 @@ fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<String> {
 }
 
 /// The answer for people.
-pub(super) fn team_text(players: &[PlayerSweep], units: UnitSystem) -> String {
+pub(super) fn team_text(players: &[PlayerSweep], ring: (f64, f64), units: UnitSystem) -> String {
     let best = best_players(players);
     let mut table = table_of(PLAYER_COLUMNS.map(str::to_owned).to_vec());
     for row in player_rows(players, &best) {
         table.add_row(row);
     }
-    let (of_level, of_profiles) = remarks(players, &best);
+    let (of_level, of_profiles) = remarks(players, &best, ring);
     let mut text = format!(
         "makes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n{of_level}",
         table.trim_fmt()
@@ -464,11 +432,11 @@ pub(super) fn team_page(
     players: &[PlayerSweep],
     maps: Option<Plot>,
     posters: Option<String>,
-    warnings: &str,
+    (warnings, ring): (&str, (f64, f64)),
     units: UnitSystem,
 ) -> TeamPage {
     let best = best_players(players);
-    let (of_level, of_profiles) = remarks(players, &best);
+    let (of_level, of_profiles) = remarks(players, &best, ring);
     let mut tables = vec![PageTable {
         caption:
             "Makes in 100 of each one's best shot (not of the usual one), the best player first"
@@ -485,11 +453,31 @@ pub(super) fn team_page(
             is_printed: false,
         });
     }
+    let advised = by_mean(players).into_iter();
+    let advised: Vec<&(String, String)> = advised
+        .filter_map(|(number, _)| players[number].advice.as_ref())
+        .collect();
+    let from_one_place = advised.windows(2).all(|pair| pair[0].1 == pair[1].1);
+    let advice_title = match advised.first() {
+        Some((_, from)) if from_one_place => {
+            format!("Each player's measured shot, {from}: now, and what to change")
+        }
+        _ => "Each player's measured shot: now, and what to change".to_owned(),
+    };
+    let advice = advised.iter().map(|(text, from)| {
+        // That the other kind is no better from there is no news on a page about banking.
+        let lines = text.trim_end().lines();
+        let lines = lines.filter(|line| !line.starts_with("Bank or direct: "));
+        let text = lines.collect::<Vec<_>>().join("\n");
+        match from_one_place {
+            true => text,
+            false => format!("{text} (From {from}.)"),
+        }
+    });
+    let advice = advice.collect();
     TeamPage {
-        advice: by_mean(players)
-            .into_iter()
-            .filter_map(|(number, _)| players[number].advice.clone())
-            .collect(),
+        advice_title,
+        advice,
         answer: bank_texts(players, units).concat(),
         tables,
         maps,

@@ -327,6 +327,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         });
     }
     let units = sweeps[0].2.settings.output.units;
+    let ring = ring_range(&options.players);
     let (mut players, mut finished, mut posters) = (Vec::new(), Vec::new(), Vec::new());
     let count = sweeps.len();
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
@@ -348,7 +349,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         let (rows, _) = swept.union()?;
         let mut places = PlaceProbabilities::of_sweep(&config, &rows);
         let bars = ProgressBars::new(quiet);
-        find_ring_dependence(&mut places, &config, &bars)?;
+        find_ring_dependence(&mut places, &config, ring, &bars)?;
         let mut advice = None;
         if let Some(fit) = &fit {
             find_sureness(&mut places, &config, fit, &bars)?;
@@ -364,7 +365,7 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
         players.push(PlayerSweep {
             name,
             places,
-            advice: advice.map(|advice| advice.page),
+            advice: advice.map(|advice| (advice.page, advice.from)),
         });
         finished.push((config, rows));
     }
@@ -412,11 +413,11 @@ fn over_the_court(options: &TeamOptions, sweep: &Path, quiet: bool) -> Result<u8
             }
         ));
     }
-    let page = team_page(&players, maps, posters_name, &remarks, units);
+    let page = team_page(&players, maps, posters_name, (&remarks, ring), units);
     let page_file = options.out.join("team.html");
     atomic_file::write(&page_file, page.html().as_bytes())
         .map_err(|error| Failure::io(page_file.display(), &error))?;
-    print_prose(&team_text(&players, units))?;
+    print_prose(&team_text(&players, ring, units))?;
     if sides_differ {
         print_prose(SIDES_DIFFER)?;
     }
@@ -474,12 +475,12 @@ const RING_ERROR: f64 = 0.002;
 fn find_ring_dependence(
     places: &mut [PlaceProbabilities],
     config: &SweepConfig,
+    (low, high): (f64, f64),
     progress: &dyn Progress,
 ) -> Result<(), Failure> {
     let is_bank = |place: &&mut PlaceProbabilities| place.preference() == Some(Preference::Bank);
     let places: Vec<&mut PlaceProbabilities> = places.iter_mut().filter(is_bank).collect();
     progress.begin("bank or direct on other rings", places.len() as u64);
-    let (low, high) = UnseenParameter::HoopRestitution.usual_range();
     for place in places {
         if let [Some(direct), Some(bank)] = place.nominals {
             let profile = config.settings.at(place.place.location())?;
@@ -515,6 +516,8 @@ fn find_ring_dependence(
 struct PlayerAdvice {
     page: String,
     poster: String,
+    /// Where the shots were from.
+    from: String,
 }
 
 impl PlayerAdvice {
@@ -530,13 +533,43 @@ impl PlayerAdvice {
         let (observed, angle) = (Some(fit.observed[0]), location.angle_rad);
         let from = location.in_words(units);
         Ok(Self {
-            page: format!(
-                "{} (from {from})",
-                brief_advice_text(name, &advice, observed, angle, units).trim_end()
-            ),
+            page: brief_advice_text(name, &advice, observed, angle, units),
             poster: advice_for_poster(&advice, observed, (&from, angle), units),
+            from,
         })
     }
+}
+
+/// The restitutions that the ring may have: those that the makes tell, where the folder of the fits
+/// or a fit has what `--free hoop_restitution` found, else those that sources give.
+fn ring_range(players: &[PathBuf]) -> (f64, f64) {
+    let parameter = UnseenParameter::HoopRestitution;
+    let (low, high) = parameter.usual_range();
+    let told = players.iter().flat_map(|path| {
+        let folder = if path.is_dir() {
+            path.as_path()
+        } else {
+            path.parent().unwrap_or(Path::new(""))
+        };
+        let of_all = [folder.join("free.json"), folder.join("../free.json")];
+        let read = |file: &PathBuf| -> Option<serde_json::Value> {
+            serde_json::from_str(&std::fs::read_to_string(file).ok()?).ok()
+        };
+        let mut found: Vec<serde_json::Value> = of_all.iter().filter_map(read).collect();
+        found.extend(read(&folder.join("fit.json")).map(|fit| fit["free"].clone()));
+        found
+    });
+    let range = |list: serde_json::Value| {
+        let found = list
+            .as_array()?
+            .iter()
+            .find(|of| of["name"] == parameter.name())?;
+        let is_decided = found["is_decided"].as_bool()?;
+        let ends = (found["low"].as_f64()?, found["high"].as_f64()?);
+        is_decided.then_some((ends.0.max(low), ends.1.min(high)))
+    };
+    let found = told.filter_map(range).find(|(low, high)| low < high);
+    found.unwrap_or((low, high))
 }
 
 /// What all players take, from the first one's sweep.
