@@ -620,11 +620,17 @@ fn contract_the_pitch_limits_of_a_profile_hold() {
         let command = command.arg(words[0]).arg(&profile).args(&words[1..]);
         Answer::of(command.arg("--quiet"))
     };
-    // Of the default angles, every 2.5 deg, one lies within.
+    // Of the default angles, every 2.5 deg, one lies within; and both limits.
     let shots = run(&["pitch-curve", "--json"]).exits(0).json();
-    let pitch_deg = |k: usize| shots["shots"][k]["pitch_deg"].as_f64();
-    assert_eq!(pitch_deg(1), None);
-    assert!((pitch_deg(0).unwrap() - 60.0).abs() < 1e-9);
+    let shots = shots["shots"].as_array().unwrap();
+    let angles: Vec<f64> = shots
+        .iter()
+        .map(|shot| shot["pitch_deg"].as_f64().unwrap())
+        .collect();
+    assert_eq!(angles.len(), 3, "{angles:?}");
+    for (angle, known) in angles.iter().zip([58.0, 60.0, 61.0]) {
+        assert!((angle - known).abs() < 1e-9, "{angles:?}");
+    }
     let lowest = ["pitch-curve", "--pitches", "57 deg, 58 deg"];
     run(&lowest)
         .exits(2)

@@ -50,7 +50,7 @@ pub(crate) struct PitchCurveOptions {
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
     /// The pitch angles, ascending, within the profile's pitch_min and pitch_max [default: from
-    /// pitch_min (40 deg) to pitch_max (65 deg) by 2.5 deg].
+    /// pitch_min (40 deg) to pitch_max (65 deg) in steps of 2.5 deg].
     #[arg(long, value_name = "LIST|RANGE")]
     pub(crate) pitches: Option<String>,
     /// Several distances from the hoop's centre, ascending: P at each of them, and which one pitch
@@ -223,20 +223,29 @@ fn run_from_distances(
     })
 }
 
-/// The pitch angles, if none are given: as far as the limits of the profile reach.
+/// The pitch angles, if none are given: multiples of the step as far as the limits of the profile
+/// reach, and these limits.
 fn default_pitches_rad(search: &SearchSettings) -> Vec<f64> {
     let (first, last, step) = DEFAULT_PITCHES_DEG;
-    let first = search
-        .pitch_min_rad
-        .map_or(first, |limit| limit / DEGREE_RAD);
-    let last = search
-        .pitch_max_rad
-        .map_or(last, |limit| limit / DEGREE_RAD);
-    // The last one belongs to the list, also where the steps do not add up exactly.
-    let steps = ((last - first) / step + 1e-9).floor().max(0.0);
-    (0..=steps as usize)
-        .map(|k| (first + step * k as f64) * DEGREE_RAD)
-        .collect()
+    let limits = [search.pitch_min_rad, search.pitch_max_rad];
+    let [low, high] = limits.map(|limit| limit.map(|limit| limit / DEGREE_RAD));
+    let (low, high) = (low.unwrap_or(first), high.unwrap_or(last));
+    // Nearer than this to a limit an angle is that limit.
+    const NEAR_DEG: f64 = 0.01;
+    let multiples = ((low / step).ceil() as i64..=(high / step).floor() as i64)
+        .map(|k| step * k as f64)
+        .filter(|angle| {
+            let is_beside = |limit: Option<f64>| {
+                limit.is_some_and(|limit| (angle - limit / DEGREE_RAD).abs() < NEAR_DEG)
+            };
+            !limits.into_iter().any(is_beside)
+        })
+        .map(|angle| angle * DEGREE_RAD);
+    let mut angles: Vec<f64> = limits[0].into_iter().collect();
+    angles.extend(multiples);
+    angles.extend(limits[1]);
+    angles.dedup();
+    angles
 }
 
 /// The pitch angles, rad, between 1 and 89 deg.
