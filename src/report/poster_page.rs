@@ -34,7 +34,7 @@ fn page<'a>(title: &str, posters: impl IntoIterator<Item = &'a PlayerPoster>) ->
          svg {{ width: 100%; height: auto; max-height: 20cm }}\n\
          p {{ margin: 0.4em 0 }}\n\
          section + section {{ break-before: page; margin-top: 2em }}\n\
-         @media print {{ body {{ font-size: 19px }} svg {{ max-height: 15cm }} section + section {{ margin-top: 0 }} }}\n\
+         @media print {{ body {{ font-size: 17px }} svg {{ max-height: 14cm }} section + section {{ margin-top: 0 }} }}\n\
          </style>\n{}</html>\n",
         escaped(title),
         posters.into_iter().map(sheet).collect::<String>()

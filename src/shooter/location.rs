@@ -108,7 +108,7 @@ impl Location {
             UnitSystem::Metric => 0.1,
         };
         // f64 prints no more digits than it needs: 11, 11.5 and 3.4.
-        let steps = (self.distance_m / metre / step).round();
+        let steps = (self.distance_m / metre / step + 1e-9).round();
         let distance = (steps * step * 10.0).round() / 10.0;
         let part = match (self.angle_rad / DEGREE_RAD).abs() {
             angle if angle < 10.0 => "straight in front".to_owned(),
