@@ -107,6 +107,11 @@ impl PhysicsComparison {
         let Some(gain) = self.rows.get(self.base).and_then(bank_gain) else {
             return String::new();
         };
+        // The rule of `team` and of sweeps: less than a shot in 100 decides nothing.
+        if gain.abs() < 0.01 {
+            return "The best bank shot and the best direct one are level, within one of 100. "
+                .to_owned();
+        }
         let (better, worse) = if gain > 0.0 {
             ("bank", "direct")
         } else {

@@ -262,13 +262,14 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         return String::new();
     };
     let least_to_most = |of: &dyn Fn(&PlaceProbabilities) -> Option<Difference>| {
-        let mut found: Vec<String> = most
+        let mut found: Vec<f64> = most
             .iter()
-            .filter_map(|place| Some(of_hundred(of(place)?.value)))
+            .filter_map(|place| Some(of(place)?.value))
             .collect();
-        found.sort();
-        found.dedup();
-        (!found.is_empty()).then(|| found.join(" to "))
+        found.sort_by(f64::total_cmp);
+        let mut words: Vec<String> = found.into_iter().map(of_hundred).collect();
+        words.dedup();
+        (!words.is_empty()).then(|| words.join(" to "))
     };
     let direct =
         least_to_most(&|place| place.direct).map_or(String::new(), |p| format!(", {p} direct"));
@@ -276,7 +277,10 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         .iter()
         .take(MOST_AIMS)
         .map(|same| {
-            let aim = board_aim_of_sides(same, units).unwrap_or("the board".to_owned());
+            // Where the two sides differ in kind, that of the first.
+            let aim = board_aim_of_sides(same, units)
+                .or_else(|| same[0].board_aim_in_words(units))
+                .unwrap_or_default();
             match groups.len() {
                 1 => aim,
                 _ => format!("from {}: {aim}", same[0].in_players_words(bank, units)),

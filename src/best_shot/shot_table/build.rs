@@ -339,7 +339,10 @@ fn is_relevant(search: &TableSearch<'_>, cell: &Cell, request: &ShotTableRequest
         shot.probability > other - WORSE_KIND
     };
     let least = request.least_probability;
-    let is_high = |shot: &TableShot| shot.probability.max(shot.other_kind.unwrap_or(0.0)) >= least;
+    let is_high = |shot: &TableShot| match request.kind {
+        TableKind::One(_) => shot.probability >= least,
+        TableKind::Better => shot.probability.max(shot.other_kind.unwrap_or(0.0)) >= least,
+    };
     let any = |wanted: &dyn Fn(&TableShot) -> bool| {
         let mut places = cell.corners().into_iter().chain([cell.middle()]);
         places.any(|place| search.shot_at(&place).is_some_and(wanted))

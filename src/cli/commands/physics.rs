@@ -272,7 +272,7 @@ impl FittedRows {
         text += &match &contradicted[..] {
             [] => " That speaks against none of the rows.\n".to_owned(),
             rows => format!(
-                " That speaks against these, where the intervals do not meet: {}. The range before leaves them out. (A fit with --physics tells more: its z says whether the makes of each ball agree.)\n",
+                " That speaks against these, where the intervals do not meet: {}. The range before leaves out those of them that nobody measured in this gym. (A fit with --physics tells more: its z says whether the makes of each ball agree.)\n",
                 rows.join(", ")
             ),
         };

@@ -162,6 +162,8 @@ fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> String {
         return format!(" Change speed and angle together: {both}.");
     }
     match speed.mean - pitch.mean {
+        _ if pitch.mean < 0.0 => format!(" Begin with the speed: {both}."),
+        _ if speed.mean < 0.0 => format!(" Begin with the angle: {both}."),
         more if more > MATTERS => format!(" Begin with the speed: {both}."),
         more if more < -MATTERS => format!(" Begin with the angle: {both}."),
         _ => format!(" Begin with either: {both}."),

@@ -218,7 +218,7 @@ fn in_words(
     );
     let is_at_end = best_row + 1 == rows.len() || best_row == 0;
     if is_at_end && rows.len() > 1 {
-        text += " That is the end of the list: angles beyond may be better (--pitches).";
+        text += " That is the end of the list: angles beyond, where the profile allows them, may be better (--pitches).";
     }
     if low < high {
         text += &format!(

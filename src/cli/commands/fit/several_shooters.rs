@@ -92,11 +92,16 @@ pub(super) fn fit(
         &records,
     )?;
     let free = estimate_together(file, &rows, options)?;
+    let free_file = out.join(FREE_FILE);
+    if free.is_empty() && free_file.exists() {
+        // What other shots, or another physics, told.
+        std::fs::remove_file(&free_file)
+            .map_err(|error| Failure::io(free_file.display(), &error))?;
+    }
     if !free.is_empty() {
         let json: serde_json::Value = free.iter().map(|found| found.json.clone()).collect();
-        let path = out.join(FREE_FILE);
-        atomic_file::write(&path, format!("{json:#}\n").as_bytes())
-            .map_err(|error| Failure::io(path.display(), &error))?;
+        atomic_file::write(&free_file, format!("{json:#}\n").as_bytes())
+            .map_err(|error| Failure::io(free_file.display(), &error))?;
     }
     let assumptions = match &file.shooters[..] {
         [first, ..] => {

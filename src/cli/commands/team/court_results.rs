@@ -363,8 +363,14 @@ fn place_in_words(
     if place.name.is_some() {
         return words;
     }
-    let angle_rad = place.place.location().angle_rad;
-    format!("{words} ({:.0} deg)", angle_rad.abs() / DEGREE_RAD)
+    let angle_deg = place.place.location().angle_rad / DEGREE_RAD;
+    let side = match angle_deg {
+        _ if place.has_mirror_in(listed) => "",
+        angle if angle >= 0.5 => " right",
+        angle if angle <= -0.5 => " left",
+        _ => "",
+    };
+    format!("{words} ({:.0} deg{side})", angle_deg.abs())
 }
 
 /// More shots than these are no plan.

@@ -566,7 +566,7 @@ fn ring_range(players: &[PathBuf]) -> (f64, f64) {
             .find(|of| of["name"] == parameter.name())?;
         let is_decided = found["is_decided"].as_bool()?;
         let ends = (found["low"].as_f64()?, found["high"].as_f64()?);
-        is_decided.then_some((ends.0.max(low), ends.1.min(high)))
+        is_decided.then_some(ends)
     };
     let found = told.filter_map(range).find(|(low, high)| low < high);
     found.unwrap_or((low, high))
