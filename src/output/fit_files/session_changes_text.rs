@@ -246,7 +246,8 @@ fn values_in_words(changes: &[SessionChange], tested: usize) -> String {
         words.join(", ")
     };
     if certain.is_empty() && possible.is_empty() {
-        return "No value of the release changed by more than its uncertainty.\n".to_owned();
+        return "None of the compared values of the release changed by more than its uncertainty.\n"
+            .to_owned();
     }
     let mut text = String::new();
     if !certain.is_empty() {

@@ -106,7 +106,7 @@ impl Against {
                 [&|shots| known(rows, &sd_error, shots), &|shots| {
                     known(second_rows, &sd_error, shots)
                 }],
-                session.map(|session| session.scatter),
+                session.map(|session| session.scatters[i]),
             ));
         }
         Self { name, differences }

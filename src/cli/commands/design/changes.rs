@@ -17,6 +17,8 @@ pub(super) struct FirstSession {
     /// How far it knows P, and the scatter (relative).
     pub(super) p: SessionError,
     pub(super) scatter: SessionError,
+    /// The same of the speed, the pitch and the polar angle, each of its own.
+    pub(super) scatters: [SessionError; 3],
 }
 
 impl FirstSession {
@@ -31,14 +33,15 @@ impl FirstSession {
             of_one_shot: error * (shots as f64).sqrt(),
             shots: shots as f64,
         };
-        let sds = (0..3).map(|i| {
+        let sds = [0, 1, 2].map(|i| {
             let sd = fit.posterior.summary(|draw| draw.sds[i]);
             sd.sd / sd.mean
         });
         Self {
             shots,
             p: known_to(fit.usual_probabilities(place).interval().sd),
-            scatter: known_to(sds.sum::<f64>() / 3.0),
+            scatter: known_to(sds.iter().sum::<f64>() / 3.0),
+            scatters: sds.map(known_to),
         }
     }
 
@@ -48,6 +51,7 @@ impl FirstSession {
             shots,
             p: known_after(rows, shots, |row| row.probability_error),
             scatter: known_after(rows, shots, DesignRow::sd_error),
+            scatters: [0, 1, 2].map(|i| known_after(rows, shots, |row| row.sd_errors[i])),
         }
     }
 }

@@ -4,10 +4,11 @@ use super::options::ProbabilityOptions;
 use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::output_files::{self, OutputForm};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_answer;
+use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_lists::ascending_values;
 use crate::fitting::AngleOverDraws;
 use crate::output::best_shot_text::PROFILE_IS_EXACT;
@@ -85,6 +86,21 @@ pub(super) fn run(
             options.nominal.resolve_with(profile, Some(given))
         })
         .collect::<Result<Vec<_>, Failure>>()?;
+    if options.plot.is_some() && nominals.len() < 2 {
+        return Err(Failure::usage("--plot: --vary needs two values or more"));
+    }
+    if !quiet {
+        // One of each kind: the values share them.
+        let mut warnings: Vec<String> = nominals
+            .iter()
+            .flat_map(|nominal| NominalOptions::warnings(profile, nominal))
+            .collect();
+        warnings.sort();
+        warnings.dedup();
+        for warning in &warnings {
+            print_remark(warning);
+        }
+    }
     bars.begin("values", nominals.len() as u64);
     let mut points = Vec::new();
     let mut of_draws = Vec::new();
