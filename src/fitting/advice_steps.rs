@@ -107,7 +107,18 @@ pub struct AdviceSteps {
     /// P of the advised release less that of the usual one.
     pub gain: Interval,
     /// What the advised speed alone and the advised angle alone gain, if both change.
-    pub alone: Option<[Interval; 2]>,
+    pub alone: Option<AloneGains>,
+}
+
+/// What the advised speed and the advised angle gain, each without the other.
+#[derive(Clone, Copy, Debug)]
+pub struct AloneGains {
+    /// The gain in P of the speed.
+    pub speed: Interval,
+    /// The gain in P of the angle.
+    pub pitch: Interval,
+    /// The share of the draws in which the speed alone gains more.
+    pub speed_is_better: f64,
 }
 
 /// What a release changes of the usual one of each draw: a value where there is one.
@@ -195,8 +206,12 @@ impl<'a> Shooting<'a> {
 
     /// P for each draw with a change less that of another.
     fn gain(&mut self, change: Change, before: Change) -> Interval {
+        self.difference(change, before).interval()
+    }
+
+    fn difference(&mut self, change: Change, before: Change) -> DrawProbabilities {
         let p = self.with(change).probabilities.clone();
-        p.minus(&self.with(before).probabilities).interval()
+        p.minus(&self.with(before).probabilities)
     }
 
     /// The best speed of a release for the typical scatter, near the speed of the release, and its
@@ -320,7 +335,13 @@ impl<'a> Shooting<'a> {
             is_changed: advised.0.map(|value| value.is_some()),
             gain: self.gain(advised, none),
             alone: speed_and_pitch.map(|(speed, pitch)| {
-                [none.with(0, speed), none.with(1, pitch)].map(|alone| self.gain(alone, none))
+                let [speed, pitch] = [none.with(0, speed), none.with(1, pitch)];
+                let less = self.difference(speed, pitch);
+                AloneGains {
+                    speed: self.gain(speed, none),
+                    pitch: self.gain(pitch, none),
+                    speed_is_better: less.share_positive(),
+                }
             }),
             steps,
         };

@@ -36,7 +36,7 @@ mod tracker_noise;
 mod unmeasured_parameter_likelihood;
 
 pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabilities};
-pub use advice_steps::{AdviceStep, AdviceSteps, Cause, SAME_SPEED_M_S};
+pub use advice_steps::{AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S};
 pub use angle_over_draws::AngleOverDraws;
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};

@@ -18,6 +18,7 @@ pub mod probability_along_variable;
 pub mod probability_curves;
 pub mod rasterise;
 pub mod release_map;
+pub mod session_changes;
 pub mod shot_views;
 pub mod shot_with_probability;
 pub mod svg;

@@ -8,7 +8,7 @@ use super::svg::{Anchor, Plot, Svg};
 use super::sweep_results::SweepResults;
 use crate::analysis::sensitivity::Difference;
 use crate::sweep::probability_by_place::{
-    PlaceProbabilities, Preference, board_aim_of_sides, with_mirror_images,
+    PlaceProbabilities, Preference, board_aim_of_sides, left_and_right_differ, with_mirror_images,
 };
 use crate::units::UnitSystem;
 
@@ -104,7 +104,11 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
         ));
     }
     sentences.extend(own.filter(|own| !own.is_empty()).map(str::to_owned));
-    let notes = ring_in_words(&bank) + &doubt_in_words(results.chances());
+    let mut notes = ring_in_words(&bank) + &doubt_in_words(results.chances());
+    if own.is_some() && left_and_right_differ(results.chances()) {
+        notes +=
+            " That left and right differ can be chance: it rests on the shots that were measured.";
+    }
     if !notes.is_empty() {
         sentences.push(notes.trim_start().to_owned());
     }

@@ -9,15 +9,15 @@ pub struct PageTable {
     pub caption: String,
     /// The names of its columns.
     pub columns: Vec<String>,
-    /// Its rows.
+    /// Its rows. A cell may have several lines.
     pub rows: Vec<Vec<String>>,
-    /// Whether it is on paper too.
-    pub is_printed: bool,
 }
 
 /// The content of the page.
 pub struct TeamPage {
-    /// From where each player should bank, a line each.
+    /// A row for each player: the first thing to read, and on paper all but the maps.
+    pub summary: PageTable,
+    /// From where each player should bank, with aims, as lines that are set in.
     pub answer: String,
     /// The title of what follows.
     pub advice_title: String,
@@ -34,7 +34,8 @@ pub struct TeamPage {
 }
 
 impl PageTable {
-    fn html(&self) -> String {
+    /// The table alone.
+    fn table(&self) -> String {
         let columns: String = self
             .columns
             .iter()
@@ -45,21 +46,33 @@ impl PageTable {
                 format!(
                     "<td class=\"text\" data-label=\"{}\">{}</td>",
                     escaped(column),
-                    escaped(cell)
+                    cell_html(cell)
                 )
             });
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
         format!(
-            "<section{}>\n<h2>{}</h2>\n<div class=\"scroll\">\n<table>\n<thead><tr>{columns}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n</section>\n",
-            if self.is_printed {
-                ""
-            } else {
-                " class=\"unprinted\""
-            },
-            escaped(&self.caption),
+            "<div class=\"scroll\">\n<table>\n<thead><tr>{columns}</tr></thead>\n<tbody>\n{}</tbody>\n</table>\n</div>\n",
             self.rows.iter().map(row).collect::<String>()
         )
+    }
+
+    /// The table with its caption as a heading.
+    fn section(&self) -> String {
+        format!("<h2>{}</h2>\n{}", escaped(&self.caption), self.table())
+    }
+}
+
+/// The lines of a cell in one block, each set off from the one before; nothing for an empty cell,
+/// which a narrow page then leaves out.
+fn cell_html(cell: &str) -> String {
+    let entry = |line: &str| format!("<span class=\"entry\">{}</span>", escaped(line));
+    match cell {
+        "" => String::new(),
+        cell => format!(
+            "<span>{}</span>",
+            cell.lines().map(entry).collect::<String>()
+        ),
     }
 }
 
@@ -97,7 +110,7 @@ impl TeamPage {
         let posters = self.posters.as_ref().map_or_else(String::new, |file| {
             let file = escaped(file);
             format!(
-                "<p>A poster to print for each player: <a href=\"{file}\">{file}</a>, a file beside this page.</p>\n"
+                "<p class=\"unprinted\">A sheet to print for each player, with the spots on the board to aim at: <a href=\"{file}\">{file}</a>, a file beside this page. Printed, this page is the table and the maps.</p>\n"
             )
         });
         let advice: String = self
@@ -112,10 +125,7 @@ impl TeamPage {
             .collect();
         let advice = match advice.is_empty() {
             true => advice,
-            false => format!(
-                "<h2>{}</h2>\n<section class=\"advices\">\n{advice}</section>\n",
-                escaped(&self.advice_title)
-            ),
+            false => format!("<h2>{}</h2>\n{advice}", escaped(&self.advice_title)),
         };
         let maps = self.maps.as_ref().map_or_else(String::new, |plot| {
             format!(
@@ -127,19 +137,29 @@ impl TeamPage {
         format!(
             "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width\">\n<title>The team</title>\n\
-             <style>\n{}figure.wide {{ width: 100%; }}\n\
-             .answer {{ white-space: normal; }}\n\
-             .player, .line {{ display: block; }}\n\
+             <style>\n{css}figure.wide {{ width: 100%; }}\n\
+             .answer {{ white-space: normal; font-size: 1rem; }}\n\
+             .player, .line, .entry {{ display: block; }}\n\
+             .entry + .entry {{ margin-top: 0.25em; }}\n\
              .player + .player, .line + .player {{ margin-top: 0.6em; }}\n\
              .advice {{ max-width: 60em; }}\n\
-             @media print {{ .answer, .advices {{ columns: 2; }} .advice {{ margin: 0 0 2mm; }} td, th {{ padding: 0.3mm 1mm; }} }}\n\
+             .summary .scroll {{ max-height: none; }} .summary td {{ white-space: normal; vertical-align: top; }}\n\
+             .summary td:first-child {{ font-weight: bold; }} .summary th {{ white-space: normal; }}\n\
+             @media print {{ td, th {{ padding: 0.5mm 1mm; }} figure.wide figcaption {{ display: none; }} figure.wide svg {{ max-height: 88mm; }} footer {{ font-size: 9px; }} }}\n\
              @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
-             <p class=\"answer\">{}</p>\n{advice}{}{maps}{posters}\
-             <footer><p>{}</p></footer>\n</html>\n",
-            include_str!("../../assets/report/page.css"),
-            lines(&self.answer),
-            self.tables.iter().map(PageTable::html).collect::<String>(),
-            plain_lines(&self.footer)
+             <section class=\"summary\">\n{summary}<p class=\"help-text\">{caption}</p>\n</section>\n{maps}{posters}\
+             <section class=\"unprinted\">\n<h2>Where to bank, and where to aim</h2>\n<p class=\"answer\">{answer}</p>\n{advice}{tables}</section>\n\
+             <footer><p>{footer}</p></footer>\n</html>\n",
+            css = include_str!("../../assets/report/page.css"),
+            summary = self.summary.table(),
+            caption = escaped(&self.summary.caption),
+            answer = lines(&self.answer),
+            tables = self
+                .tables
+                .iter()
+                .map(PageTable::section)
+                .collect::<String>(),
+            footer = plain_lines(&self.footer)
         )
     }
 }

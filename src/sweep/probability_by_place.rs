@@ -276,6 +276,21 @@ pub fn with_mirror_images<'a>(
     groups
 }
 
+/// Whether P differs between a place and its mirror image, by a shot in 100 and by twice the error.
+#[must_use]
+pub fn left_and_right_differ(places: &[PlaceProbabilities]) -> bool {
+    let listed: Vec<&PlaceProbabilities> = places.iter().collect();
+    with_mirror_images(&listed)
+        .iter()
+        .any(|same| match same[..] {
+            [one, other] => match (one.best(), other.best()) {
+                (Some(a), Some(b)) => is_advised(difference(a, b)),
+                (a, b) => a.is_some() != b.is_some(),
+            },
+            _ => false,
+        })
+}
+
 /// Where on the board to aim from a place, or from it and its mirror image: `22 to 24 in above the
 /// ring, 13 in from its middle on your side`. `None` where the two sides differ in more than the
 /// numbers.

@@ -1,6 +1,6 @@
-//! `fit`, `advise`, `compare-sessions`, `design`: from measured shots to a profile and advice.
+//! `fit` and what follows from it: from measured shots to a profile and advice.
 
-use super::support::{Answer, bankshot, make_search_small, write_file};
+use super::support::{Answer, bankshot, fit, make_search_small, write_file};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -8,15 +8,6 @@ use tempfile::TempDir;
 /// Of the made-up player of `examples/make_measured_shots.rs`: standard deviations of speed (ft/s),
 /// pitch and aim (deg).
 const TRUE_SCATTER: [(&str, f64); 3] = [("speed_sd", 0.25), ("pitch_sd", 1.3), ("polar_sd", 1.2)];
-
-fn fit(file: &str, folder: &Path, flags: &[&str]) -> Answer {
-    let mut command = bankshot();
-    command
-        .args(["fit", file, "--quiet", "--out"])
-        .arg(folder)
-        .args(flags);
-    Answer::of(&mut command)
-}
 
 /// Each kind of file of the docs gives intervals that cover the truth (95 % each: the files are
 /// fixed).
@@ -385,35 +376,6 @@ fn contract_semicolons_with_decimal_commas_are_read() {
     assert_eq!(fitted("tabs", &text.replace(',', "\t"), &[]), commas);
 }
 
-/// Flights of one session, from two heights of the release: nothing changed.
-#[test]
-fn contract_sessions_are_compared_at_one_release_height() {
-    let folder = TempDir::new().unwrap();
-    let outs = ["6.8 ft", "7.2 ft"].map(|height| {
-        let out = folder.path().join(height);
-        let file = "docs/data/optical_tracking.csv";
-        fit(file, &out, &["--release-height", height]).exits(0);
-        out
-    });
-    let mut command = bankshot();
-    command.arg("compare-sessions").args(&outs).arg("--json");
-    let answer = Answer::of(&mut command).exits(0);
-    assert!(
-        answer
-            .stderr
-            .contains("the release heights are 6.80 and 7.20 ft")
-    );
-    let json = answer.json();
-    let change = |name: &str| {
-        let mut changes = json["changes"].as_array().unwrap().iter();
-        let found = changes.find(|change| change["name"] == name).unwrap();
-        found["change"]["mean"].as_f64().unwrap()
-    };
-    // 0.4 ft along the path are 0.5 ft/s and 1.4 deg.
-    assert!(change("speed_mean").abs() < 0.05, "{json}");
-    assert!(change("pitch_mean").abs() < 0.2, "{json}");
-}
-
 /// Releases of one place whose heights differ by inches are those of one place; a jump of two feet
 /// makes two.
 #[test]
@@ -651,52 +613,6 @@ fn contract_a_file_of_several_shooters_and_sessions_is_one_command_each() {
         .says("holds a fit of each shooter; name one");
 }
 
-/// The same shots, half a foot per second slower: all of the change is that of the speed's mean.
-#[test]
-fn contract_the_change_of_p_is_that_of_the_mean_that_changed() {
-    let folder = TempDir::new().unwrap();
-    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
-    let (header, rows) = text.split_once('\n').unwrap();
-    let column = header
-        .split(',')
-        .position(|name| name == "speed_ft_s")
-        .unwrap();
-    let slower = rows.lines().map(|row| {
-        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
-        cells[column] = (cells[column].parse::<f64>().unwrap() - 0.5).to_string();
-        cells.join(",") + "\n"
-    });
-    let slower = write_file(
-        &folder,
-        "slower.csv",
-        format!("{header}\n{}", slower.collect::<String>()),
-    );
-    let mut command = bankshot();
-    command
-        .args(["compare-sessions", "docs/data/lab.csv"])
-        .arg(&slower);
-    let json = Answer::of(command.args(["--json", "--quiet"]))
-        .exits(0)
-        .json();
-    let mean = |name: &str| {
-        json[format!("change_of_P_by_{name}")]["mean"]
-            .as_f64()
-            .unwrap()
-    };
-    let all = json["changes"][0]["change"]["mean"].as_f64().unwrap();
-    assert!(all < -10.0, "{all}");
-    // But for the numerical errors of the samples, 0.2 points each.
-    assert!((mean("usual_release") - all).abs() < 1.0);
-    assert!(
-        (mean("speed_alone") - all).abs() < 1.0,
-        "{}",
-        mean("speed_alone")
-    );
-    for other in ["pitch_alone", "polar_alone", "scatter"] {
-        assert!(mean(other).abs() < 1.0, "{other} {}", mean(other));
-    }
-}
-
 /// One ring for two shooters: the likelihood of both together is the product of theirs.
 #[test]
 fn contract_a_ring_is_told_by_the_makes_of_all_shooters() {
@@ -782,96 +698,6 @@ fn contract_vary_has_the_uncertainty_of_the_usual_shot() {
     );
 }
 
-/// The folder of a fit holds what its file tells.
-#[test]
-fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
-    let folder = TempDir::new().unwrap();
-    let text = fs::read_to_string("docs/data/lab.csv").unwrap();
-    let (header, rows) = text.split_once('\n').unwrap();
-    let rows: Vec<&str> = rows.lines().collect();
-    let paths = ["a", "b"].map(|name| folder.path().join(format!("{name}.csv")));
-    for (path, part) in paths.iter().zip([&rows[..30], &rows[30..]]) {
-        fs::write(path, format!("{header}\n{}\n", part.join("\n"))).unwrap();
-    }
-    let compare = |first: &Path, second: &Path, flags: &[&str]| {
-        let mut command = bankshot();
-        command.arg("compare-sessions").args([first, second]);
-        Answer::of(command.args(["--json", "--quiet"]).args(flags))
-    };
-    let of_files = compare(&paths[0], &paths[1], &[]).exits(0);
-    // The files do not say whose shots they are.
-    assert!(!of_files.stderr.contains("two shooters"), "{of_files:?}");
-    let of_files = of_files.json();
-    let folders = ["a", "b"].map(|name| folder.path().join(name));
-    for (path, out) in paths.iter().zip(&folders) {
-        fit(path.to_str().unwrap(), out, &[]).exits(0);
-    }
-    let of_folders = compare(&folders[0], &folders[1], &[]).exits(0).json();
-    assert_eq!(of_files["changes"], of_folders["changes"]);
-    let mixed = compare(&folders[0], &paths[1], &[]).exits(0).json();
-    assert_eq!(of_files["changes"], mixed["changes"]);
-    let p = &of_files["changes"][0];
-    let grew = p["probability_of_growth"].as_f64().unwrap();
-    assert!(p["name"] == "P" && (0.0..=1.0).contains(&grew), "{p}");
-    // Scatter and aim make the change together, but for the numerical error of three samples.
-    let mean = |value: &serde_json::Value| value["mean"].as_f64().unwrap();
-    let parts =
-        mean(&of_files["change_of_P_by_scatter"]) + mean(&of_files["change_of_P_by_usual_release"]);
-    assert!((parts - mean(&p["change"])).abs() < 0.5, "{parts} {p}");
-    // Each cause has the mean of both orders of change, and the orders differ.
-    let [first, last] =
-        ["first", "last"].map(|order| mean(&of_files[format!("change_of_P_by_scatter_{order}")]));
-    let of_scatter = mean(&of_files["change_of_P_by_scatter"]);
-    assert!((0.5 * (first + last) - of_scatter).abs() < 1e-9 && first != last);
-    // The other way round the same causes have the other sign, but for numerical errors.
-    let reversed = compare(&paths[1], &paths[0], &[]).exits(0).json();
-    let reversed = mean(&reversed["change_of_P_by_scatter"]);
-    assert!(
-        (of_scatter + reversed).abs() < 0.5,
-        "{of_scatter} {reversed}"
-    );
-    // Of planned values alone chance has fewer to strike at.
-    let planned = compare(&folders[0], &folders[1], &["--planned", "speed_sd"]);
-    let planned = planned.exits(0).json();
-    let [p, speed] = &planned["changes"].as_array().unwrap()[..] else {
-        panic!("{planned}")
-    };
-    assert_eq!(*p, of_folders["changes"][0]);
-    let all = of_folders["changes"].as_array().unwrap();
-    let among_all = all.iter().find(|change| change["name"] == "speed_sd");
-    assert_eq!(speed["change"], among_all.unwrap()["change"]);
-    let shots = |of: &serde_json::Value| of["shots_to_decide"].as_f64().unwrap_or(0.0);
-    assert!(shots(speed) <= shots(among_all.unwrap()));
-    compare(&folders[0], &folders[1], &["--planned", "speed"])
-        .exits(2)
-        .says("--planned: \"speed\" is no value of these sessions; write some of speed_mean");
-    // What only a file has a use for is refused beside the folder of a fit.
-    let mut advise = bankshot();
-    advise.arg("advise").arg(&folders[0]);
-    Answer::of(advise.args(["--distance", "20 ft"]))
-        .exits(2)
-        .says("is a fit already; fit the shots again with it");
-    compare(&folders[0], &folders[1], &["--distance", "20 ft"])
-        .exits(2)
-        .says("--distance: ");
-    // A test is designed for the tracker of the fit.
-    let mut design = bankshot();
-    design.arg("design").arg(&folders[0]);
-    let design = design.args(["--shots", "25", "--repetitions", "4", "--json", "--quiet"]);
-    assert_eq!(Answer::of(design).exits(0).json()["tracker"], "lab");
-    // The profile of a fit has its usual shot.
-    let mut probability = bankshot();
-    probability
-        .arg("probability")
-        .arg(folders[0].join("profile.toml"));
-    Answer::of(probability.args(["--json", "--quiet"])).exits(0);
-    let of_nba = folder.path().join("nba");
-    fit(paths[1].to_str().unwrap(), &of_nba, &["--physics", "nba"]).exits(0);
-    compare(&folders[0], &of_nba, &[])
-        .exits(2)
-        .says("fitted with different physics");
-}
-
 /// A sensor that tells speeds beside the landings: what it says more than they give is said.
 #[test]
 fn contract_speeds_beside_landings_are_compared_with_them() {
@@ -909,150 +735,6 @@ fn contract_speeds_beside_landings_are_compared_with_them() {
         said.stdout().contains("speed_ft_s says +0."),
         "{}",
         said.stdout()
-    );
-}
-
-/// Authority: two equal sessions with errors a and b of one shot show a difference d with
-/// (1.96 + 0.84)^2 (a^2 + b^2) / d^2 shots each, and a is what the rows of the table give.
-#[test]
-fn contract_design_says_how_many_shots_show_a_difference() {
-    let folder = TempDir::new().unwrap();
-    let usual = fs::read_to_string("configs/free_throw.toml").unwrap();
-    let nominal =
-        "\n[nominal]\nspeed = \"24.2 ft/s\"\npitch = \"51 deg\"\nbackspin = \"3 rev/s\"\n";
-    let first = write_file(&folder, "usual.toml", usual.clone() + nominal);
-    let tired = usual.replace("c10 = \"0.25 ft/s\"", "c10 = \"0.5 ft/s\"");
-    assert_ne!(tired, usual);
-    let second = write_file(&folder, "tired.toml", tired + nominal);
-    let design = |profile: &std::path::Path, more: &[&str]| {
-        let mut command = bankshot();
-        command.arg("design").arg(profile);
-        command.args(["--shots", "100", "--repetitions", "8", "--json", "--quiet"]);
-        Answer::of(command.args(more)).exits(0).json()
-    };
-    let both = design(&first, &["--against", second.to_str().unwrap()]);
-    let of_second = design(&second, &[]);
-    let of_one_shot =
-        |json: &serde_json::Value, key: &str| 10.0 * json["tests"][0][key].as_f64().unwrap();
-    let known = |change: f64, key: &str| {
-        let [a, b] = [&both, &of_second].map(|json| of_one_shot(json, key));
-        let root = (1.96 + 0.8416) / change;
-        root * root * (a * a + b * b)
-    };
-    let differences = both["against"]["differences"].as_array().unwrap();
-    let named = |name: &str| differences.iter().find(|of| of["name"] == name).unwrap();
-    let (p, speed) = (named("probability"), named("speed_sd"));
-    // The means are equal, so no number of shots shows a difference.
-    assert!(named("pitch_mean")["shots_in_each_of_two"].is_null());
-    let shots = |of: &serde_json::Value| of["shots_in_each_of_two"].as_f64().unwrap();
-    let change = of_second["probability"].as_f64().unwrap() - both["probability"].as_f64().unwrap();
-    assert!((p["change"].as_f64().unwrap() - change).abs() < 1e-12 && change < -0.1);
-    assert!((shots(p) / known(change, "probability_error") - 1.0).abs() < 1e-9);
-    assert!((speed["change"].as_f64().unwrap() - 1.0).abs() < 1e-9);
-    let known = known(std::f64::consts::LN_2, "speed_sd_relative_error");
-    assert!((shots(speed) / known - 1.0).abs() < 1e-9);
-    assert!(both["against"]["differences"][0]["shots_in_second_session"].is_null());
-}
-
-#[test]
-fn contract_design_says_what_a_test_will_tell() {
-    let flags = [
-        "--speed",
-        "24.2 ft/s",
-        "--pitch",
-        "51 deg",
-        "--shots",
-        "25,100",
-        "--repetitions",
-        "8",
-    ];
-    let answer = Answer::of(
-        bankshot()
-            .args(["design", "configs/free_throw.toml", "--quiet"])
-            .args(flags),
-    );
-    let text = answer.exits(0).stdout().to_owned();
-    let row = |shots: &str| -> Vec<f64> {
-        let line = text
-            .lines()
-            .find(|line| line.trim_start().starts_with(shots))
-            .unwrap();
-        line.split_whitespace()
-            .filter_map(|word| word.parse().ok())
-            .collect()
-    };
-    // Known: 14 % and 7 % of a standard deviation, 6.7 and 3.3 points, 9.2 and 4.6 by counting;
-    // within a fifth.
-    for (shots, sd, fitted, counted) in [("25", 14.0, 6.7, 9.2), ("100", 7.0, 3.3, 4.6)] {
-        let found = row(shots);
-        let near = |value: f64, known: f64| (value / known - 1.0).abs() < 0.2;
-        assert!(
-            near(found[1], sd) && near(found[4], fitted) && near(found[5], counted),
-            "{text}"
-        );
-    }
-    // A target is met by a row of its own.
-    let json = Answer::of(
-        bankshot()
-            .args(["design", "configs/free_throw.toml", "--quiet", "--json"])
-            .args(flags)
-            .args(["--target", "4"]),
-    );
-    let answer = json.exits(0).json();
-    let tests = answer["tests"].as_array().unwrap();
-    let row = tests
-        .iter()
-        .find(|row| row["shots"] == answer["target"]["shots"])
-        .unwrap();
-    let error = row["probability_error"].as_f64().unwrap();
-    assert!((error / 0.04 - 1.0).abs() < 0.2, "{answer}");
-    // Two equal sessions: 1.96 + 0.84 standard deviations of a difference.
-    let change = row["least_change_of_probability"].as_f64().unwrap();
-    assert!((change / (2.8016 * std::f64::consts::SQRT_2 * error) - 1.0).abs() < 1e-3);
-    // A second session against one that is there.
-    let second = Answer::of(
-        bankshot()
-            .args(["design", "configs/free_throw.toml", "--quiet"])
-            .args(flags)
-            .args(["--first", "50"]),
-    );
-    let text = second.exits(0).stdout().to_owned();
-    assert!(
-        text.contains("since the 50 shots of the first session") && text.contains("never, "),
-        "{text}"
-    );
-    // Of a fit the first session is known as the fit knows it, whatever the new tracker is.
-    let folder = TempDir::new().unwrap();
-    fit("docs/data/gym_sensor.csv", folder.path(), &[]).exits(0);
-    let json: serde_json::Value =
-        serde_json::from_slice(&fs::read(folder.path().join("fit.json")).unwrap()).unwrap();
-    let mut command = bankshot();
-    command.arg("design").arg(folder.path());
-    let of_fit = [
-        "--shots",
-        "200,25",
-        "--repetitions",
-        "4",
-        "--tracker",
-        "lab",
-    ];
-    let change = ["--change", "3,10", "--json", "--quiet"];
-    let answer = Answer::of(command.args(of_fit).args(change))
-        .exits(0)
-        .json();
-    let first = &answer["first_session"];
-    assert_eq!(first["shots"], 125);
-    let known = |value: &serde_json::Value| value.as_f64().unwrap();
-    let of_posterior = known(&json["probability"]["sd"]);
-    assert!((known(&first["probability_error"]) / of_posterior - 1.0).abs() < 0.05);
-    assert_eq!(answer["tests"][0]["shots"], 25);
-    let changes = answer["changes"].as_array().unwrap();
-    assert!(changes[0]["shots_in_second_session"].is_null());
-    let (second, each) = ("shots_in_second_session", "shots_in_each_of_two");
-    // More than in equal sessions, as the first one is smaller than those.
-    assert!(
-        known(&changes[1][second]) > known(&changes[1][each]),
-        "{answer}"
     );
 }
 
@@ -1298,6 +980,71 @@ fn contract_warnings_of_a_fit_follow_its_profile() {
         .exits(2)
         .says("max_backspin is 1.50 rev/s")
         .says("fit them again with --backspin '1.50 rev/s'");
+}
+
+/// One place, with a coarse search.
+const ONE_PLACE: &str = r#"
+[sweep]
+name = "one place"
+shooter = "any.toml"
+court = "ncaa"
+compute = ["direct", "bank"]
+region = "arcs"
+distances = ["10 ft"]
+angles = ["0 deg", "40 deg"]
+angle_step = "40 deg"
+[grid]
+speed = 16
+pitch = 10
+polar = 10
+backspin = 3
+[search]
+standard_error = 0.01
+"#;
+
+/// The row of a measured player on the page of a team is the advice in short.
+#[test]
+fn contract_the_row_of_a_player_is_the_advice() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("ann");
+    fit("docs/data/gym_sensor.csv", &out, &[]).exits(0);
+    make_search_small(&out);
+    write_file(&folder, "place.toml", ONE_PLACE);
+    let mut team = bankshot();
+    team.current_dir(folder.path());
+    team.args(["team", "ann", "--sweep", "place.toml", "--out", "team"]);
+    Answer::of(team.arg("--quiet")).exits(0);
+    let page = fs::read_to_string(folder.path().join("team/team.html")).unwrap();
+    let cell = |name: &str| {
+        let start = format!("data-label=\"{name}\"><span><span class=\"entry\">");
+        let from = page.split_once(&start);
+        let (text, _) = from.unwrap().1.split_once("</span>").unwrap();
+        text.replace('\u{a0}', " ")
+    };
+    let advise = Answer::of(bankshot().args(["advise", "--brief"]).arg(&out)).exits(0);
+    let words = advise.stdout().split_whitespace().collect::<Vec<_>>();
+    let words = words.join(" ");
+    let now = cell("now");
+    let (share, range) = now.split_once(" (").unwrap();
+    let range = range.trim_end_matches(')');
+    let told = format!("now {share} % of such shots go in (95 %: {range} %");
+    assert!(words.contains(&told), "{now}: {words}");
+    let change = cell("change");
+    let (change, first) = change.split_once("; ").unwrap_or((&change, ""));
+    let can = cell("can make");
+    assert!(
+        words.contains(&format!("With the same scatter you can make {can} %"))
+            && words.contains(&format!(": {change}.")),
+        "{change}: {words}"
+    );
+    let told = match first {
+        "the speed first" => "Begin with the speed: ",
+        "the angle first" => "Begin with the angle: ",
+        "begin with either" => "Begin with either: ",
+        "speed and angle together" => "Change speed and angle together: ",
+        _ => "",
+    };
+    assert!(words.contains(told) && words.contains(&format!("What to train: {}", cell("train"))));
 }
 
 /// The page of a fit gets the advice, and once only.

@@ -3,6 +3,8 @@
 
 mod best;
 mod check;
+mod compare_sessions;
+mod design;
 mod fit;
 mod man;
 mod new;

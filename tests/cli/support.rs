@@ -157,3 +157,13 @@ pub(crate) fn file_names(folder: &Path) -> Vec<String> {
     names.sort();
     names
 }
+
+/// Fits the shots of a file into a folder.
+pub(crate) fn fit(file: &str, folder: &Path, flags: &[&str]) -> Answer {
+    let mut command = bankshot();
+    command
+        .args(["fit", file, "--quiet", "--out"])
+        .arg(folder)
+        .args(flags);
+    Answer::of(&mut command)
+}

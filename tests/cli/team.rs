@@ -71,6 +71,12 @@ fn contract_a_team_has_a_table_maps_and_posters() {
     let page = fs::read_to_string(out.join("team.html")).unwrap();
     assert!(page.contains("href=\"posters.html\"") && page.contains(">the best of the team<"));
     assert!(!page.contains("<b>"));
+    // On paper: a row for each player and the maps, nothing else.
+    let (printed, details) = page.split_once("<section class=\"unprinted\">").unwrap();
+    let summary = printed.split_once("<section class=\"summary\">").unwrap().1;
+    assert_eq!(summary.matches("<tr><td").count(), 2, "{summary}");
+    assert!(summary.contains(">bank it from<") && !summary.contains(">change<"));
+    assert!(details.contains("Makes in 100 at each place: direct/bank"));
     let posters = fs::read_to_string(out.join("posters.html")).unwrap();
     assert_eq!(posters.matches("<section>").count(), 2);
     assert!(!posters.contains("<b>"));

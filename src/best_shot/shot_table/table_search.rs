@@ -185,7 +185,7 @@ impl<'a> TableSearch<'a> {
         distances_m: &[f64],
         angle_rad: f64,
     ) -> Result<Vec<f64>, ShotTableError> {
-        const STAGE: &str = "where shots begin";
+        const STAGE: &str = "how near and far shots go in";
         let at = |distance_m| Location {
             distance_m,
             angle_rad,

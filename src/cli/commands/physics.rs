@@ -14,7 +14,7 @@ use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::fitting::{FittedShots, Interval, Measured, ShotsUnderPhysics, advise, wilson_interval};
 use crate::measured_shots::source::Source;
-use crate::output::fit_files::advice_text::changes_in_words;
+use crate::output::fit_files::change_in_words::changes_in_words;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::object;
 use crate::plots::physics_probabilities;

@@ -13,6 +13,15 @@ use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 /// The standard error of P where it is printed in whole percent.
 const ROUGHLY: f64 = 0.002;
 
+/// A share of the draws as a chance: no count of draws shows 0 or 100 %.
+pub(super) fn chance(share: f64) -> String {
+    match share {
+        share if share < 0.01 => "under 1 %".to_owned(),
+        share if share > 0.99 => "over 99 %".to_owned(),
+        share => format!("{:.0} %", 100.0 * share),
+    }
+}
+
 /// A probability as a percentage.
 #[must_use]
 pub fn percent(p: f64) -> String {

@@ -1,7 +1,10 @@
 //! The files and texts of a fitted shooter.
 
+pub mod advice_for_team;
+pub mod advice_json;
 pub mod advice_text;
 mod assumptions_json;
+pub mod change_in_words;
 pub mod draws_table;
 pub mod fit_json;
 pub mod fit_text;

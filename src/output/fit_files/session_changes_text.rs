@@ -27,6 +27,16 @@ impl SessionChange {
         }
     }
 
+    /// The value in words.
+    #[must_use]
+    pub fn in_words(&self) -> &str {
+        match self.name.as_str() {
+            "P" => "the chance of a shot",
+            "polar_mean" => "the direction, positive to the left",
+            name => quantity_in_words(name),
+        }
+    }
+
     /// The words for a growing and a falling value.
     fn directions(&self) -> [&'static str; 2] {
         match self.name.as_str() {
@@ -76,7 +86,8 @@ impl SessionChange {
     }
 
     /// Decimals that show two digits of the change's uncertainty, at most three.
-    fn decimals(&self) -> usize {
+    #[must_use]
+    pub fn decimals(&self) -> usize {
         let sd = self.comparison.change.sd / self.size;
         if sd > 0.0 {
             (1.0 - libm::floor(libm::log10(sd))).clamp(0.0, 3.0) as usize

@@ -1,168 +1,20 @@
-//! What the sweeps of a team say: who is best from where, who should bank from where; as text, CSV
-//! and a page.
+//! What the sweeps of a team say: who is best from where, who should bank from where.
 
+use super::player_sweep::{PlayerSweep, best_players};
+use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::Difference;
 use crate::fitting::UnseenParameter;
 use crate::output::fit_files::session_changes_text::two_digits;
-use crate::plots::svg::{Plot, shortened};
-use crate::report::team_page::{PageTable, TeamPage};
+use crate::plots::svg::shortened;
 use crate::sweep::probability_by_place::{
-    PlaceProbabilities, Preference, board_aim_of_sides, with_mirror_images,
+    PlaceProbabilities, board_aim_of_sides, left_and_right_differ, with_mirror_images,
 };
 use crate::units::{DEGREE_RAD, UnitSystem};
-use comfy_table::{Table, presets};
 
-/// Longest name of a player in the tables, in characters.
-pub(super) const LONGEST_NAME: usize = 24;
 /// Longest place in a list, in characters.
 const LONGEST_PLACE: usize = 60;
-/// What to say where a player's two sides differ.
-pub(super) const SIDES_DIFFER: &str = "Left and right differ for players whose aim is correlated with speed or angle. After a fit of few shots that can be chance: its profile.toml has the intervals.\n";
-
-/// A chance in 100.
-pub(super) fn in_hundred(p: f64) -> String {
-    format!("{:.1}", 100.0 * p)
-}
-
-pub(super) fn table_of(header: Vec<String>) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(header);
-    table
-}
-
 /// Places to bank from that are printed for each player.
 const MOST_BANK_PLACES: usize = 5;
-
-/// A player's finished sweep.
-pub(super) struct PlayerSweep {
-    pub(super) name: String,
-    pub(super) places: Vec<PlaceProbabilities>,
-    /// What a fitted player's own shots say, and where they were from.
-    pub(super) advice: Option<(String, String)>,
-}
-
-impl PlayerSweep {
-    /// The places where a bank shot is surely better, those with the greatest gain first.
-    fn bank_places(&self) -> Vec<&PlaceProbabilities> {
-        self.by_gain(|place| place.preference() == Some(Preference::Bank) && place.is_sure())
-    }
-
-    /// The places where the measured shots leave bank or direct open.
-    fn unsure_places(&self) -> Vec<&PlaceProbabilities> {
-        self.by_gain(|place| !place.is_sure())
-    }
-
-    /// Some places, those where a bank shot gains most first.
-    fn by_gain(&self, wanted: impl Fn(&PlaceProbabilities) -> bool) -> Vec<&PlaceProbabilities> {
-        let mut places: Vec<&PlaceProbabilities> =
-            self.places.iter().filter(|place| wanted(place)).collect();
-        let gain = |place: &PlaceProbabilities| place.bank_gain().map_or(1.0, |gain| gain.value);
-        places.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
-        places
-    }
-}
-
-/// Players whose P differs by less than this are level.
-const LEVEL: f64 = 0.01;
-
-/// The players with the greatest P at each place: those who are not surely worse than the best one
-/// by a shot in 100, or by twice the error of the difference.
-pub(super) fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
-    (0..players[0].places.len())
-        .map(|place| {
-            let found: Vec<(usize, Difference)> = players
-                .iter()
-                .enumerate()
-                .filter_map(|(i, player)| Some((i, player.places[place].best()?)))
-                .collect();
-            let best = found.iter().map(|(_, p)| *p);
-            let Some(best) = best.reduce(|a, b| if b.value > a.value { b } else { a }) else {
-                return Vec::new();
-            };
-            let is_level = |(_, p): &&(usize, Difference)| {
-                let error = libm::hypot(p.standard_error, best.standard_error);
-                best.value - p.value <= LEVEL.max(2.0 * error)
-            };
-            found.iter().filter(is_level).map(|(i, _)| *i).collect()
-        })
-        .collect()
-}
-
-pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
-    let (unit, metre) = units.length();
-    let (short, short_metre) = units.short_length();
-    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    let mut text =
-        format!("place,name,x_{unit},y_{unit},distance_{unit},court_angle_deg,best_players");
-    for player in players {
-        for column in [
-            "direct",
-            "direct error",
-            "bank",
-            "bank error",
-            "shoot",
-            "sure %",
-            &format!("bank aim right of the board's middle {short}"),
-            &format!("bank aim above the ring {short}"),
-            "least bank gain over rings",
-        ] {
-            text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
-        }
-    }
-    text.push('\n');
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.5}"));
-    for (place, best) in best_players(players).into_iter().enumerate() {
-        let known = &players[0].places[place];
-        let location = known.place.location();
-        text += &format!(
-            "{place},{},{:.3},{:.3},{:.3},{:.2},{}",
-            known.name.as_deref().map_or(String::new(), quoted),
-            known.place.x_m / metre,
-            known.place.y_m / metre,
-            location.distance_m / metre,
-            location.angle_rad / DEGREE_RAD,
-            match &best[..] {
-                [] => String::new(),
-                best => {
-                    let names: Vec<&str> = best.iter().map(|i| players[*i].name.as_str()).collect();
-                    quoted(&names.join("; "))
-                }
-            }
-        );
-        for player in players {
-            let chances = &player.places[place];
-            for p in [chances.direct, chances.bank] {
-                text += &format!(
-                    ",{},{}",
-                    number(p.map(|p| p.value)),
-                    number(p.map(|p| p.standard_error))
-                );
-            }
-            text += &format!(",{}", chances.preference().map_or("", Preference::name));
-            let share = chances.share_of_preferred();
-            text += &share.map_or(",".to_owned(), |share| format!(",{}", whole_percent(share)));
-            text += &chances
-                .board_aim_m
-                .map_or(",,".to_owned(), |(across_m, above_m)| {
-                    format!(
-                        ",{:.1},{:.1}",
-                        across_m / short_metre,
-                        above_m / short_metre
-                    )
-                });
-            let least = chances.least_gain_over_rings;
-            text += &format!(",{}", number(least.map(|(gain, _)| gain)));
-        }
-        text.push('\n');
-    }
-    text
-}
-
-/// A share in percent, rounded down: 90 is at least 90 %, which counts as sure.
-pub(super) fn whole_percent(share: f64) -> u32 {
-    (100.0 * share + 1e-9) as u32
-}
 
 /// A table of places and players is printed up to this size.
 const MOST_COLUMNS: usize = 5;
@@ -170,11 +22,9 @@ const MOST_COLUMNS: usize = 5;
 const LONGEST_IN_HEADER: usize = 9;
 /// See [`MOST_COLUMNS`].
 const MOST_ROWS: usize = 16;
-/// The page has one up to this many rows.
-const MOST_PAGE_ROWS: usize = 60;
 
 /// A place in words, and `direct/bank` of each player there.
-fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
+pub(super) fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
     let row = |(place, known): (usize, &PlaceProbabilities)| {
         let cell = |player: &PlayerSweep| {
             let p = |p: Option<Difference>| {
@@ -193,15 +43,19 @@ fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<String>> {
 }
 
 /// The names of the columns of [`place_rows`].
-fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<String> {
-    let names = players
-        .iter()
-        .map(|player| shortened(&player.name, longest_name));
+pub(super) fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<String> {
+    // A word a line, so that a name is cut as late as possible.
+    let name = |player: &PlayerSweep| {
+        let words = player.name.split_whitespace();
+        let words: Vec<String> = words.map(|word| shortened(word, longest_name)).collect();
+        words.join("\n")
+    };
+    let names = players.iter().map(name);
     std::iter::once("from".to_owned()).chain(names).collect()
 }
 
 /// The numbers of the players by the mean of P over all places, the greatest first, with that mean.
-fn by_mean(players: &[PlayerSweep]) -> Vec<(usize, f64)> {
+pub(super) fn by_mean(players: &[PlayerSweep]) -> Vec<(usize, f64)> {
     let mean = |player: &PlayerSweep| {
         let found = player.places.iter().filter_map(PlaceProbabilities::best);
         let found: Vec<f64> = found.map(|p| p.value).collect();
@@ -213,7 +67,7 @@ fn by_mean(players: &[PlayerSweep]) -> Vec<(usize, f64)> {
 }
 
 /// A row for each player: name, mean, places to bank from, places where nobody is as good.
-fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>> {
+pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>> {
     let row = |(number, mean): (usize, f64)| {
         let player = &players[number];
         let own = best.iter().filter(|of| of[..] == [number]).count();
@@ -233,7 +87,7 @@ fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>>
 }
 
 /// The columns of [`player_rows`].
-const PLAYER_COLUMNS: [&str; 4] = [
+pub(super) const PLAYER_COLUMNS: [&str; 4] = [
     "player",
     "mean of\nall places,\nbest kind",
     "banks at",
@@ -241,7 +95,7 @@ const PLAYER_COLUMNS: [&str; 4] = [
 ];
 
 /// What is to be said of places where players are level, and of what is taken as exact.
-fn remarks(
+pub(super) fn remarks(
     players: &[PlayerSweep],
     best: &[Vec<usize>],
     ring: (f64, f64),
@@ -339,8 +193,8 @@ fn place_list(
         let words = place_in_words(same[0], places, units);
         text += &format!(
             "{indent}{words}: {} (direct {})\n",
-            least_to_most(same.iter().map(|place| place.bank)),
-            least_to_most(same.iter().map(|place| place.direct)),
+            least_to_most(same.iter().map(|place| place.bank), 1),
+            least_to_most(same.iter().map(|place| place.direct), 1),
         );
         if let Some(words) = more(same) {
             text += &format!("{indent}  {words}\n");
@@ -354,7 +208,7 @@ fn place_list(
 }
 
 /// A place in a player's words, with its court angle: the words alone may be those of two.
-fn place_in_words(
+pub(super) fn place_in_words(
     place: &PlaceProbabilities,
     listed: &[&PlaceProbabilities],
     units: UnitSystem,
@@ -389,7 +243,11 @@ fn ring_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
 }
 
 /// P in 100 of a shot from one place, or from both sides: `80.6 to 82.2` where they differ.
-fn least_to_most(of_sides: impl Iterator<Item = Option<Difference>>) -> String {
+pub(super) fn least_to_most(
+    of_sides: impl Iterator<Item = Option<Difference>>,
+    decimals: usize,
+) -> String {
+    let in_hundred = |p: f64| format!("{:.decimals$}", 100.0 * p);
     let mut points: Vec<f64> = of_sides.flatten().map(|p| p.value).collect();
     points.sort_by(f64::total_cmp);
     match (points.first(), points.last()) {
@@ -402,7 +260,7 @@ fn least_to_most(of_sides: impl Iterator<Item = Option<Difference>>) -> String {
 }
 
 /// The same of all players, the surest first.
-fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<String> {
+pub(super) fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<String> {
     let order = by_mean(players).into_iter();
     order
         .map(|(number, _)| bank_text(&players[number], units))
@@ -433,61 +291,18 @@ pub(super) fn team_text(players: &[PlayerSweep], ring: (f64, f64), units: UnitSy
     text + &bank_texts(players, units).concat()
 }
 
-/// The page: the tables, the maps and the posters.
-pub(super) fn team_page(
-    players: &[PlayerSweep],
-    maps: Option<Plot>,
-    posters: Option<String>,
-    (warnings, ring): (&str, (f64, f64)),
-    units: UnitSystem,
-) -> TeamPage {
-    let best = best_players(players);
-    let (of_level, of_profiles) = remarks(players, &best, ring);
-    let mut tables = vec![PageTable {
-        caption:
-            "Makes in 100 of each one's best shot (not of the usual one), the best player first"
-                .to_owned(),
-        columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
-        rows: player_rows(players, &best),
-        is_printed: true,
-    }];
-    if best.len() <= MOST_PAGE_ROWS {
-        tables.push(PageTable {
-            caption: "Makes in 100 at each place: direct/bank".to_owned(),
-            columns: place_header(players, LONGEST_NAME),
-            rows: place_rows(players, units),
-            is_printed: false,
-        });
+/// What must be said of left and right.
+pub(super) fn notes(players: &[PlayerSweep]) -> String {
+    let differ = |player: &&PlayerSweep| left_and_right_differ(&player.places);
+    let measured = |player: &&PlayerSweep| player.advice.is_some();
+    let differing: Vec<&PlayerSweep> = players.iter().filter(differ).collect();
+    if differing.is_empty() {
+        return String::new();
     }
-    let advised = by_mean(players).into_iter();
-    let advised: Vec<&(String, String)> = advised
-        .filter_map(|(number, _)| players[number].advice.as_ref())
-        .collect();
-    let from_one_place = advised.windows(2).all(|pair| pair[0].1 == pair[1].1);
-    let advice_title = match advised.first() {
-        Some((_, from)) if from_one_place => {
-            format!("Each player's measured shot, {from}: now, and what to change")
-        }
-        _ => "Each player's measured shot: now, and what to change".to_owned(),
-    };
-    let advice = advised.iter().map(|(text, from)| {
-        // That the other kind is no better from there is no news on a page about banking.
-        let lines = text.trim_end().lines();
-        let lines = lines.filter(|line| !line.starts_with("Bank or direct: "));
-        let text = lines.collect::<Vec<_>>().join("\n");
-        match from_one_place {
-            true => text,
-            false => format!("{text} (From {from}.)"),
-        }
-    });
-    let advice = advice.collect();
-    TeamPage {
-        advice_title,
-        advice,
-        answer: bank_texts(players, units).concat(),
-        tables,
-        maps,
-        posters,
-        footer: format!("{warnings}{of_level}{of_profiles}"),
+    let mut text =
+        "Left and right differ for players whose aim is correlated with speed or angle.".to_owned();
+    if differing.iter().any(measured) {
+        text += " After a fit of few shots that can be chance: its profile.toml has the intervals.";
     }
+    text + "\n"
 }

@@ -1,0 +1,200 @@
+//! What changed between two fitted sessions.
+
+use super::fitted_sessions::Session;
+use crate::cli::failure::Failure;
+use crate::fitting::{
+    Interval, ProbabilityChange, SessionComparison, SpinSource, VALUE_NAMES, change_of_share,
+    compare_probabilities, compare_sessions, probability_change,
+};
+use crate::output::fit_files::fit_json::interval_json;
+use crate::output::fit_files::parameters::value_units;
+use crate::output::fit_files::session_changes_text::{Decision, SessionChange};
+use crate::output::json_object::{number, object};
+use crate::plots::session_changes::{ChangeCause, ChangedValue};
+use crate::units::UnitSystem;
+use serde_json::{Value, json};
+
+/// Shots that the causes of the change of P are computed with.
+const SHOTS: usize = 65_536;
+
+/// P and the planned ones of all changes; all if none are named.
+pub(super) fn planned(
+    all: Vec<SessionChange>,
+    names: &[String],
+) -> Result<Vec<SessionChange>, Failure> {
+    if names.is_empty() {
+        return Ok(all);
+    }
+    let known = |name: &String| {
+        all.iter()
+            .any(|change| change.name == *name && *name != "P")
+    };
+    if let Some(unknown) = names.iter().find(|name| !known(name)) {
+        let others = all.iter().filter(|change| change.name != "P");
+        let allowed: Vec<&str> = others.map(|change| change.name.as_str()).collect();
+        return Err(Failure::usage(format!(
+            "--planned: \"{unknown}\" is no value of these sessions; write some of {}",
+            allowed.join(", ")
+        )));
+    }
+    let is_kept = |change: &SessionChange| change.name == "P" || names.contains(&change.name);
+    Ok(all.into_iter().filter(is_kept).collect())
+}
+
+/// P, mean and standard deviation of each value, and the correlations.
+pub(super) fn changes(sessions: &[Session; 2], units: UnitSystem) -> Vec<SessionChange> {
+    let [before, after] = sessions;
+    let posteriors = [&before.posterior, &after.posterior];
+    let shots = posteriors.map(|posterior| posterior.shots);
+    let mut changes = vec![SessionChange {
+        name: "P".to_owned(),
+        unit: "%",
+        size: 0.01,
+        comparison: compare_probabilities([&before.probabilities, &after.probabilities], shots),
+    }];
+    let is_spin_measured = posteriors
+        .iter()
+        .all(|posterior| posterior.spin == SpinSource::Measured);
+    for (i, (unit, size)) in value_units(units).into_iter().enumerate() {
+        let is_spin = i == VALUE_NAMES.len() - 1;
+        // A spin that was not measured in both sessions tells nothing of a change.
+        if is_spin && !is_spin_measured {
+            continue;
+        }
+        let mut add = |what: &str, comparison: SessionComparison| {
+            changes.push(SessionChange {
+                name: format!("{}_{what}", VALUE_NAMES[i]),
+                unit,
+                size,
+                comparison,
+            });
+        };
+        add(
+            "mean",
+            compare_sessions(posteriors, |draw| draw.means[before.place][i]),
+        );
+        add("sd", compare_sessions(posteriors, |draw| draw.sds[i]));
+    }
+    for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
+        if b == VALUE_NAMES.len() - 1 && !is_spin_measured {
+            continue;
+        }
+        changes.push(SessionChange {
+            name: format!("corr_{}_{}", VALUE_NAMES[a], VALUE_NAMES[b]),
+            unit: "",
+            size: 1.0,
+            comparison: compare_sessions(posteriors, |draw| draw.correlation[(a, b)]),
+        });
+    }
+    changes
+}
+
+/// What the change of P comes from.
+pub(super) fn causes([before, after]: &[Session; 2]) -> ProbabilityChange {
+    probability_change(
+        &before.profile,
+        [&before.posterior, &after.posterior],
+        before.place,
+        [&before.probabilities, &after.probabilities],
+        SHOTS,
+    )
+}
+
+/// The values for the plot.
+pub(super) fn values_to_draw(changes: &[SessionChange]) -> Vec<ChangedValue> {
+    let value = |change: &SessionChange| {
+        let [before, after, by] = [
+            &change.comparison.before,
+            &change.comparison.after,
+            &change.comparison.change,
+        ]
+        .map(|interval| interval.scaled(1.0 / change.size));
+        ChangedValue {
+            name: change.in_words().to_owned(),
+            unit: change.unit,
+            decimals: change.decimals(),
+            before,
+            after,
+            change: by,
+            is_decided: change.decision(changes.len() - 1) == Decision::Made,
+        }
+    };
+    changes.iter().map(value).collect()
+}
+
+/// The causes of the change of P for the plot.
+pub(super) fn causes_to_draw(causes: &ProbabilityChange) -> Vec<ChangeCause> {
+    let [speed, pitch, polar] = &causes.by_mean_alone;
+    let named = [
+        ("the scatter", &causes.by_scatter),
+        ("the usual release", &causes.by_means),
+        ("of it the speed alone", speed),
+        ("the release angle alone", pitch),
+        ("the direction alone", polar),
+    ];
+    let cause = |(name, points): (&'static str, &Interval)| ChangeCause {
+        name,
+        points: points.scaled(100.0),
+    };
+    named.map(cause).into()
+}
+
+/// The comparison for programs.
+pub(super) fn json(
+    [before, after]: &[Session; 2],
+    changes: &[SessionChange],
+    causes: &ProbabilityChange,
+) -> Value {
+    let session = |session: &Session| {
+        let (made, labelled) = session.makes;
+        json!({
+            "name": session.name,
+            "shots": session.posterior.shots,
+            "made": made,
+            "with_result": labelled,
+        })
+    };
+    let listed = changes.iter().map(|change| {
+        let comparison = &change.comparison;
+        let decision = change.decision(changes.len() - 1);
+        let interval =
+            |interval: &Interval| object(interval_json(&interval.scaled(1.0 / change.size)));
+        json!({
+            "name": change.name,
+            "unit": change.unit,
+            "before": interval(&comparison.before),
+            "after": interval(&comparison.after),
+            "change": interval(&comparison.change),
+            "probability_of_growth": number(comparison.grew),
+            "is_decided": decision == Decision::Made,
+            "shots_to_decide": match decision {
+                Decision::Needs(shots) => Some(shots.ceil()),
+                Decision::Made | Decision::Unknown => None,
+            },
+        })
+    });
+    let change_of_makes = (before.makes.1 > 0 && after.makes.1 > 0).then(|| {
+        let change = change_of_share(before.makes, after.makes);
+        let [change, low, high] = [change.share, change.low, change.high].map(|p| 100.0 * p);
+        json!({ "unit": "%", "mean": change, "low": low, "high": high })
+    });
+    let by_scatter = |order: usize| {
+        let by = &causes.by_scatter_first_and_last[order];
+        object(interval_json(&by.scaled(100.0)))
+    };
+    let by_mean = |i: usize| object(interval_json(&causes.by_mean_alone[i].scaled(100.0)));
+    json!({
+        "shooter": before.profile.shooter().name,
+        "before": session(before),
+        "after": session(after),
+        "change_of_makes": change_of_makes,
+        "changes": listed.collect::<Value>(),
+        "change_of_P_by_scatter": object(interval_json(&causes.by_scatter.scaled(100.0))),
+        "change_of_P_by_usual_release": object(interval_json(&causes.by_means.scaled(100.0))),
+        "change_of_P_by_speed_alone": by_mean(0),
+        "change_of_P_by_pitch_alone": by_mean(1),
+        "change_of_P_by_polar_alone": by_mean(2),
+        "change_of_P_by_scatter_first": by_scatter(0),
+        "change_of_P_by_scatter_last": by_scatter(1),
+    })
+}

@@ -1,0 +1,187 @@
+//! The content of `team.html`.
+
+use super::court_results::{
+    PLAYER_COLUMNS, bank_texts, by_mean, least_to_most, notes, place_header, place_in_words,
+    place_rows, player_rows, remarks,
+};
+use super::player_advice::PlayerAdvice;
+use super::player_sweep::{PlayerSweep, best_players};
+use super::words::{LONGEST_NAME, in_hundred};
+use crate::plots::svg::{Plot, shortened};
+use crate::report::team_page::{PageTable, TeamPage};
+use crate::sweep::probability_by_place::{PlaceProbabilities, with_mirror_images};
+use crate::units::UnitSystem;
+
+/// The page has a table of all places up to this many.
+const MOST_PAGE_ROWS: usize = 60;
+/// Places to bank from in a row of the summary.
+const MOST_PLACES: usize = 4;
+
+/// The content of the page.
+pub(super) fn team_page(
+    players: &[PlayerSweep],
+    maps: Option<Plot>,
+    has_posters: bool,
+    (warnings, ring): (&str, (f64, f64)),
+    units: UnitSystem,
+) -> TeamPage {
+    let best = best_players(players);
+    let (of_level, of_profiles) = remarks(players, &best, ring);
+    let mut tables = vec![PageTable {
+        caption:
+            "Makes in 100 of each one's best shot (not of the usual one), the best player first"
+                .to_owned(),
+        columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
+        rows: player_rows(players, &best),
+    }];
+    if best.len() <= MOST_PAGE_ROWS {
+        tables.push(PageTable {
+            caption: "Makes in 100 at each place: direct/bank".to_owned(),
+            columns: place_header(players, LONGEST_NAME),
+            rows: place_rows(players, units),
+        });
+    }
+    let advised: Vec<&PlayerAdvice> = advised(players).collect();
+    let one_place = one_place(&advised);
+    let advice = advised.iter().map(|advice| {
+        // That the other kind is no better from there is no news on a page about banking.
+        let lines = advice.text.trim_end().lines();
+        let lines = lines.filter(|line| !line.starts_with("Bank or direct: "));
+        let text = lines.collect::<Vec<_>>().join("\n");
+        let mut remarks = Vec::new();
+        if one_place.is_none() {
+            remarks.push(format!("From {}.", advice.from));
+        }
+        if advice.further_places > 0 {
+            remarks.push(format!(
+                "The fit has {} more: `bankshot advise` tells them.",
+                match advice.further_places {
+                    1 => "1 place".to_owned(),
+                    places => format!("{places} places"),
+                }
+            ));
+        }
+        match remarks.is_empty() {
+            true => text,
+            false => format!("{text} ({})", remarks.join(" ")),
+        }
+    });
+    TeamPage {
+        advice: advice.collect(),
+        advice_title: match one_place {
+            Some(from) => format!("Each player's measured shot, {from}"),
+            None => "Each player's measured shot".to_owned(),
+        },
+        summary: summary(players, units),
+        answer: bank_texts(players, units).concat(),
+        tables,
+        maps,
+        posters: has_posters.then(|| "posters.html".to_owned()),
+        footer: format!("{warnings}{}{of_level}{of_profiles}", notes(players)),
+    }
+}
+
+/// The advice of the players who were measured, the best player first.
+fn advised(players: &[PlayerSweep]) -> impl Iterator<Item = &PlayerAdvice> {
+    let order = by_mean(players).into_iter();
+    order.filter_map(|(number, _)| players[number].advice.as_ref())
+}
+
+/// Where all measured shots are from, if that is one place.
+fn one_place<'a>(advised: &[&'a PlayerAdvice]) -> Option<&'a str> {
+    let first = advised.first()?;
+    let is_one = advised.iter().all(|other| other.from == first.from);
+    is_one.then_some(first.from.as_str())
+}
+
+/// A row for each player: the chances over the court, where to bank, and what to change.
+fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
+    let advised: Vec<&PlayerAdvice> = advised(players).collect();
+    let mut columns = vec!["player", "best shots", "bank it from"];
+    if !advised.is_empty() {
+        columns.extend(["now", "can make", "change", "train"]);
+    }
+    let rows = by_mean(players).into_iter().map(|(number, mean)| {
+        let player = &players[number];
+        let mut row = vec![
+            shortened(&player.name, LONGEST_NAME),
+            in_hundred(mean),
+            bank_lines(player, units),
+        ];
+        if !advised.is_empty() {
+            row.extend(player.advice.as_ref().map_or_else(
+                || std::array::from_fn(|_| String::new()),
+                |PlayerAdvice { short, from, .. }| {
+                    // The numbers of an interval stay on one line.
+                    let usual = short.usual.replace(' ', "\u{a0}");
+                    let usual = match one_place(&advised) {
+                        Some(_) => usual,
+                        None => format!("{usual}\n{from}"),
+                    };
+                    [
+                        usual,
+                        short.advised.clone(),
+                        short.change.clone(),
+                        short.training.clone(),
+                    ]
+                },
+            ));
+        }
+        row
+    });
+    let mut caption = "In 100 shots. Best shots: makes with the best release, the mean of all places. Bank it from: makes of the best bank shot (of the best direct one); ? where the measured shots do not tell yet which is better; * where direct is better on an unusual ring.".to_owned();
+    if !advised.is_empty() {
+        let from = one_place(&advised).map_or_else(String::new, |from| format!(", {from}"));
+        caption += &format!(
+            " Now: makes with the measured release{from} (95 % interval). Can make: makes after the change, with the same scatter. Train: the scatter that costs most."
+        );
+    }
+    PageTable {
+        caption,
+        columns: columns.into_iter().map(str::to_owned).collect(),
+        rows: rows.collect(),
+    }
+}
+
+/// The places to bank from, a line each: `either wing, 11 ft: 80 to 82 (75)`.
+fn bank_lines(player: &PlayerSweep, units: UnitSystem) -> String {
+    let (bank, unsure) = (player.bank_places(), player.unsure_places());
+    let words_of = |same: &[&PlaceProbabilities], listed: &[&PlaceProbabilities]| {
+        let words = same[0].in_players_words(listed, units);
+        let alike = [&bank, &unsure].into_iter().flatten();
+        let alike = alike.filter(|other| {
+            let is_same = same.iter().any(|place| place.place == other.place);
+            !is_same && other.in_players_words(listed, units) == words
+        });
+        // The angle only where the words are those of two places.
+        let words = match alike.count() {
+            0 => words,
+            _ => place_in_words(same[0], listed, units),
+        };
+        words.replace(" from the hoop", "")
+    };
+    let lines_of = |places: &[&PlaceProbabilities], mark: &str| -> Vec<String> {
+        let lines = with_mirror_images(places).into_iter().map(|same| {
+            let turns = same.iter().any(|place| place.turns_with_the_ring());
+            format!(
+                "{}: {} ({}){}{mark}",
+                words_of(&same, places),
+                least_to_most(same.iter().map(|place| place.bank), 0),
+                least_to_most(same.iter().map(|place| place.direct), 0),
+                if turns { " *" } else { "" }
+            )
+        });
+        lines.collect()
+    };
+    let mut lines = lines_of(&bank, "");
+    lines.extend(lines_of(&unsure, " ?"));
+    if lines.is_empty() {
+        return "nowhere: shoot direct".to_owned();
+    }
+    if lines.len() > MOST_PLACES {
+        let more = lines.len() - (MOST_PLACES - 1);
+        lines.truncate(MOST_PLACES - 1);
+        lines.push(format!("and {more} more"));
+    }
+    lines.join("\n")
+}

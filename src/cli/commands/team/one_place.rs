@@ -1,0 +1,168 @@
+//! A table of the players, each from one place.
+
+use super::team_profiles::load_players;
+use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
+use crate::analysis::sensitivity::{Difference, SensitivityTopics};
+use crate::best_shot::{ShotKind, find_kinds};
+use crate::cli::failure::Failure;
+use crate::cli::fit_folder;
+use crate::cli::nominal_shot_flags::PlaceOptions;
+use crate::cli::progress_bars::ProgressBars;
+use crate::cli::terminal::{print_prose, print_remark};
+use crate::plots::svg::shortened;
+use crate::shooter::Profile;
+use crate::sweep::probability_by_place::{Preference, SURE};
+use crate::units::DEGREE_RAD;
+use std::path::PathBuf;
+
+/// What a player is told about bank and direct.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    Prefer(Preference),
+    /// The measured shots leave both open.
+    Unsure,
+}
+
+impl Verdict {
+    const ALL: [Self; 4] = [
+        Self::Prefer(Preference::Bank),
+        Self::Prefer(Preference::Direct),
+        Self::Prefer(Preference::Either),
+        Self::Unsure,
+    ];
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Prefer(Preference::Bank) => "Bank it",
+            Self::Prefer(Preference::Direct) => "Shoot it direct",
+            Self::Prefer(Preference::Either) => "Either is as good",
+            Self::Unsure => "Not sure yet, the measured shots leave both open",
+        }
+    }
+}
+
+/// Prints a table of the players, each from a place of their own or all `from` one.
+pub(super) fn run(
+    (players, place): (&[PathBuf], Option<u32>),
+    from: &PlaceOptions,
+    quiet: bool,
+) -> Result<u8, Failure> {
+    let profiles = load_players((players, place), quiet)?;
+    let has_further_places = |(path, _): &(PathBuf, Profile)| {
+        path.ends_with("profile.toml") && path.with_file_name("profile_place_2.toml").is_file()
+    };
+    if !quiet && place.is_none() && profiles.iter().any(has_further_places) {
+        print_remark(
+            "of fits with several places: each player shoots from the first one; --place 2 takes the second, and --sweep COURT.toml any (a region \"places\" takes a list of them)",
+        );
+    }
+    let header = ["player", "place", "direct", "bank", "shoot it"];
+    let mut table = table_of(header.map(str::to_owned).to_vec());
+    let bars = ProgressBars::new(quiet);
+    let (mut any_either, mut any_draws, mut any_nearly_other) = (false, false, false);
+    let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
+    let mut verdicts: Vec<(Verdict, String)> = Vec::new();
+    for (path, profile) in profiles {
+        let profile = &from.moved(profile)?;
+        let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, &bars)?;
+        let p: Vec<Option<Difference>> = shots
+            .iter()
+            .map(|shot| {
+                let estimate = &shot.as_ref().ok()?.estimate;
+                Some(Difference {
+                    value: estimate.probability,
+                    standard_error: estimate.standard_error,
+                })
+            })
+            .collect();
+        let mut text = |kind: ShotKind| {
+            let is_nearly_other = shots[kind.index()]
+                .as_ref()
+                .is_ok_and(|shot| shot.share_of_other_kind(kind) > 0.5);
+            any_nearly_other |= is_nearly_other;
+            p[kind.index()].map_or("-".to_owned(), |p| {
+                format!(
+                    "{} \u{b1} {}{}",
+                    in_hundred(p.value),
+                    in_hundred(p.standard_error),
+                    if is_nearly_other { " *" } else { "" }
+                )
+            })
+        };
+        let preference = Preference::of(p[0], p[1]);
+        any_either |= preference == Some(Preference::Either);
+        let mut advice = preference
+            .map_or("no clean shot", Preference::name)
+            .to_owned();
+        let mut is_sure = true;
+        if let [Ok(direct), Ok(bank)] = &shots[..]
+            && preference != Some(Preference::Either)
+            && let Some(fit) = fit_folder::of_profile(&path)?
+        {
+            let nominals = [&direct.nominal, &bank.nominal];
+            let bank_is_better = fit_folder::bank_is_better(&fit, profile, nominals)?;
+            let share = match preference {
+                Some(Preference::Bank) => bank_is_better,
+                _ => 1.0 - bank_is_better,
+            };
+            advice += &format!(" ({} %)", whole_percent(share));
+            is_sure = share >= SURE;
+            any_draws = true;
+        }
+        let (long, metre) = profile.output().units.length();
+        let location = profile.location();
+        let name = shortened(&profile.shooter().name, LONGEST_NAME);
+        verdicts.extend(preference.map(|preference| {
+            let verdict = if is_sure {
+                Verdict::Prefer(preference)
+            } else {
+                Verdict::Unsure
+            };
+            (verdict, name.clone())
+        }));
+        let best = p.iter().flatten().map(|p| p.value).fold(0.0, f64::max);
+        let row = vec![
+            name,
+            format!(
+                "{:.2} {long},\n{}",
+                location.distance_m / metre,
+                match location.angle_rad / DEGREE_RAD {
+                    angle if angle >= 0.5 => format!("{angle:.0} deg right"),
+                    angle if angle <= -0.5 => format!("{:.0} deg left", -angle),
+                    _ => "in front".to_owned(),
+                }
+            ),
+            text(ShotKind::Direct),
+            text(ShotKind::Bank),
+            advice,
+        ];
+        rows.push((best, row));
+    }
+    rows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    for (_, row) in rows {
+        table.add_row(row);
+    }
+    let mut text = String::new();
+    for verdict in Verdict::ALL {
+        let told = verdicts.iter().filter(|(of, _)| *of == verdict);
+        let names: Vec<&str> = told.map(|(_, name)| name.as_str()).collect();
+        if !names.is_empty() {
+            text += &format!("{}: {}.\n", verdict.in_words(), names.join(", "));
+        }
+    }
+    text += &format!(
+        "\nmakes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n",
+        table.trim_fmt()
+    );
+    if any_either {
+        text += "either: the two differ by less than 1 in 100, or by less than twice the error of their difference\n";
+    }
+    if any_nearly_other {
+        text += "*: nearly the other kind: more than half of the makes of this bank shot do not touch the board first, or of this direct one do\n";
+    }
+    text += "\u{b1}: numerical; each profile is taken as exact (`bankshot advise` says how sure the P of a measured player is)\n";
+    if any_draws {
+        text += "in brackets: in how many of 100 draws of the fit this kind is the better one; from 90 on it is sure\n";
+    }
+    print_prose(&text)
+}

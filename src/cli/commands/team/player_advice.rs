@@ -1,0 +1,45 @@
+//! What the measured shots of a player say.
+
+use crate::cli::failure::Failure;
+use crate::cli::fit_folder::FitFolder;
+use crate::fitting::advise;
+use crate::output::fit_files::advice_for_team::{ShortAdvice, advice_for_poster, short_advice};
+use crate::output::fit_files::advice_text::brief_advice_text;
+use crate::probability::Progress;
+use crate::shooter::OutputSettings;
+
+/// What a fitted player's own shots say, at the first place of the fit.
+pub(super) struct PlayerAdvice {
+    /// A paragraph.
+    pub(super) text: String,
+    /// A sentence for the poster; empty where nothing is to be changed.
+    pub(super) poster: String,
+    /// For a row of a table.
+    pub(super) short: ShortAdvice,
+    /// Where the shots were from.
+    pub(super) from: String,
+    /// Further places of the fit, whose advice is not here.
+    pub(super) further_places: usize,
+}
+
+impl PlayerAdvice {
+    /// At the first place of the fit.
+    pub(super) fn of_fit(
+        fit: &FitFolder,
+        output: &OutputSettings,
+        progress: &dyn Progress,
+    ) -> Result<Self, Failure> {
+        let (profile, units) = (&fit.profiles[0], output.units);
+        let advice = advise(profile, &fit.posterior, 0, progress)?;
+        let (name, location) = (&profile.shooter().name, profile.location());
+        let (observed, angle) = (Some(fit.observed[0]), location.angle_rad);
+        let from = location.in_words(units);
+        Ok(Self {
+            text: brief_advice_text(name, &advice, observed, angle, units),
+            poster: advice_for_poster(&advice, observed, (&from, angle), units),
+            short: short_advice(&advice, observed, angle, units),
+            from,
+            further_places: fit.profiles.len() - 1,
+        })
+    }
+}

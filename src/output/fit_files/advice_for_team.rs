@@ -1,0 +1,112 @@
+//! Advice in the few words of a poster and of a row of a table.
+
+use super::advice_text::{MOST_DISAGREEMENT, Observed, disagreement, scatter_in_words};
+use super::change_in_words::{
+    ChangeWords, FirstChange, first_change, first_change_in_words, landing_in_words,
+};
+use crate::fitting::{Advice, AdviceStep, AdviceSteps};
+use crate::units::UnitSystem;
+
+/// The steps of advice if one of them is sure, and the makes and the measured shots belong
+/// together.
+fn steps_to_follow(advice: &Advice, observed: Observed) -> Option<&AdviceSteps> {
+    let steps = advice.steps.as_ref()?;
+    let is_sure = steps.steps.iter().any(AdviceStep::is_sure);
+    (is_sure && !is_doubted(advice, observed)).then_some(steps)
+}
+
+/// Whether the makes and the measured shots do not belong together.
+fn is_doubted(advice: &Advice, observed: Observed) -> bool {
+    observed.is_some_and(|(made, shots)| {
+        shots > 0 && disagreement(&advice.usual_probability, made, shots) >= MOST_DISAGREEMENT
+    })
+}
+
+/// Advice in a row of a table.
+#[derive(Clone, Debug)]
+pub struct ShortAdvice {
+    /// How many of 100 usual shots go in, with the interval: `34 (27 to 42)`.
+    pub usual: String,
+    /// How many of 100 then go in; empty where nothing is to be changed.
+    pub advised: String,
+    /// What to change, and what to begin with.
+    pub change: String,
+    /// The scatter that costs most.
+    pub training: String,
+}
+
+/// Advice in a row of a table.
+#[must_use]
+pub fn short_advice(
+    advice: &Advice,
+    observed: Observed,
+    court_angle_rad: f64,
+    units: UnitSystem,
+) -> ShortAdvice {
+    let p = advice.usual_probability;
+    let words = ChangeWords {
+        units,
+        court_angle_rad,
+    };
+    let change = match steps_to_follow(advice, observed) {
+        _ if is_doubted(advice, observed) => {
+            "nothing yet: the makes and the measured shots do not belong together".to_owned()
+        }
+        None => "nothing yet: no change is surely better".to_owned(),
+        Some(steps) => {
+            let first = match first_change(steps) {
+                _ if steps.alone.is_none() => "",
+                FirstChange::Speed => "; the speed first",
+                FirstChange::Pitch => "; the angle first",
+                FirstChange::Either => "; begin with either",
+                FirstChange::Both => "; speed and angle together",
+            };
+            words.of_releases(&advice.usual, &steps.advised) + first
+        }
+    };
+    let training = advice.training.first();
+    let steps = steps_to_follow(advice, observed);
+    ShortAdvice {
+        advised: steps.map_or_else(String::new, |steps| {
+            format!("{:.0}", 100.0 * (p.mean + steps.gain.mean))
+        }),
+        usual: format!(
+            "{:.0} ({:.0} to {:.0})",
+            100.0 * p.mean,
+            100.0 * p.low,
+            100.0 * p.high
+        ),
+        change,
+        training: training.map_or_else(String::new, |training| {
+            scatter_in_words(training.cause).to_owned()
+        }),
+    }
+}
+
+/// What a poster says of a player's own shots: how many go in, what to change, and what the player
+/// then sees; empty where no change is sure, or the makes and the measured shots do not belong
+/// together.
+#[must_use]
+pub fn advice_for_poster(
+    advice: &Advice,
+    observed: Observed,
+    (from, court_angle_rad): (&str, f64),
+    units: UnitSystem,
+) -> String {
+    let Some(steps) = steps_to_follow(advice, observed) else {
+        return String::new();
+    };
+    let p = advice.usual_probability;
+    let words = ChangeWords {
+        units,
+        court_angle_rad,
+    };
+    format!(
+        "Your shot, {from}: now {:.0} of 100 go in, {:.0} can: {}.{} {}",
+        100.0 * p.mean,
+        100.0 * (p.mean + steps.gain.mean),
+        words.of_releases(&advice.usual, &steps.advised),
+        first_change_in_words(advice, steps),
+        landing_in_words(advice, units).trim_end()
+    )
+}
