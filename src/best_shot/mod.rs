@@ -13,7 +13,7 @@ pub use best_by_pitch::{ShotAtPitch, best_by_pitch};
 pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
 pub use physics_comparison::{
     PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, SameShotProbability, compare_physics,
-    physics_variants, together,
+    likely_board_restitutions, physics_variants, together,
 };
 pub use search::{find, find_kinds};
 pub use shot_table::{

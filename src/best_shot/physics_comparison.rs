@@ -10,6 +10,9 @@ use crate::shooter::{Profile, ShotKind};
 use crate::units::{FOOT_M, UnitSystem};
 use std::collections::BTreeMap;
 
+/// A bank shot that makes so much less than the direct one is told too.
+const NEAR: f64 = 0.05;
+
 /// A physics to compare with.
 #[derive(Clone, Debug)]
 pub struct PhysicsVariant {
@@ -69,6 +72,16 @@ impl PhysicsComparison {
         self.same_shot = same_shot;
         for (row, probability) in self.rows.iter_mut().zip(of_rows) {
             row.same_shot = probability;
+        }
+        self
+    }
+
+    /// The same without the changes that something else rules out, by their names: they no longer
+    /// count as what nobody knows of this gym.
+    #[must_use]
+    pub fn without_changes(mut self, ruled_out: &[String]) -> Self {
+        for row in &mut self.rows {
+            row.is_unmeasured &= !ruled_out.contains(&row.name);
         }
         self
     }
@@ -153,8 +166,15 @@ impl PhysicsComparison {
         Some(row.same_shot.as_ref()?.probability)
     }
 
-    /// One sentence or two: how far P of the best direct shot rests on what nobody measured in this
-    /// gym, and how far that of [`Self::same_shot`] does.
+    /// P of the best bank shot.
+    #[must_use]
+    pub fn bank_p(row: &PhysicsRow) -> Option<f64> {
+        let shot = row.bank.as_ref().ok()?;
+        Some(shot.estimate.probability)
+    }
+
+    /// In words: how far P of the best shots rests on what nobody measured in this gym, and how far
+    /// that of [`Self::same_shot`] does.
     #[must_use]
     pub fn in_words(&self) -> Option<String> {
         let base = self.rows.get(self.base)?;
@@ -165,23 +185,48 @@ impl PhysicsComparison {
             let ends = [here + down, here + up].map(|p| p.clamp(0.0, 1.0));
             Some(format!("{here:.2} ({:.2} to {:.2})", ends[0], ends[1]))
         };
-        let direct = range(&Self::direct_p)?;
+        let direct = range(&Self::direct_p);
+        let is_bank_near = Self::bank_p(base) > Self::direct_p(base).map(|p| p - NEAR);
+        let bank = range(&Self::bank_p).filter(|_| is_bank_near);
+        let best: Vec<String> = [("direct", direct), ("bank", bank)]
+            .into_iter()
+            .filter_map(|(kind, range)| Some(format!("of the best {kind} shot {}", range?)))
+            .collect();
+        if best.is_empty() {
+            return None;
+        }
         let under = match self.base {
             0 => String::new(),
             _ => format!(" under {}", base.name),
         };
         let mut text = self.kinds_in_words();
         text += &format!(
-            "P of the best direct shot{under}, with the range that what nobody measured in this gym leaves: {direct}."
+            "P{under}, with the range that what nobody measured in this gym leaves: {}, searched anew in the gym as it is (the speed set there, by where shots land).",
+            best.join(", ")
         );
         if let Some(same) = range(&Self::same_shot_p) {
             text += &format!(
-                " P of {}, {}: {same}.",
+                " P of {}{}, {}: {same}.",
                 self.same_shot.in_words(),
+                self.kind_of_same_shot(),
                 self.same_shot.what_stays()
             );
         }
         Some(text)
+    }
+
+    /// Which kind the best shot of the first row is; empty for another shot.
+    fn kind_of_same_shot(&self) -> &'static str {
+        let Some(first) = self.rows.first() else {
+            return "";
+        };
+        match self.same_shot {
+            SameShot::BestOfFirstRow if Self::bank_p(first) > Self::direct_p(first) => {
+                " (a bank shot)"
+            }
+            SameShot::BestOfFirstRow => " (a direct shot)",
+            SameShot::OfProfile | SameShot::AsMeasured => "",
+        }
     }
 }
 
@@ -234,6 +279,14 @@ impl SameShot {
     }
 }
 
+/// The restitutions that a board may have where nobody measured it: a drop test is on a hard floor,
+/// a board on a mount may give way, and boards differ.
+#[must_use]
+pub fn likely_board_restitutions(physics: &Physics) -> [f64; 2] {
+    let own = physics.restitution_on(SolidId::Board);
+    [-0.05, 0.05].map(|by| (own + by).clamp(0.01, 0.99))
+}
+
 /// The physics of a profile, every preset, and single changes: of the profile's own physics if it
 /// has air, of `ncaa` otherwise. Heights in their names are in `units`.
 #[must_use]
@@ -274,9 +327,7 @@ pub fn physics_variants(own: &Physics, units: UnitSystem) -> Vec<PhysicsVariant>
         drag if (0.41..=0.54).contains(&drag) => [0.41, 0.54],
         drag => [0.9 * drag, 1.1 * drag],
     };
-    // A drop test is on a hard floor; a board on a mount may give way, and boards differ.
-    let board = base.restitution_on(SolidId::Board);
-    let boards = [-0.05, 0.05].map(|by| (board + by).clamp(0.01, 0.99));
+    let boards = likely_board_restitutions(&base);
     let drag_names = drags.map(|drag| format!("drag_coefficient {drag:.2}"));
     let board_names = boards.map(|board| format!("board_restitution {board:.2}"));
     // The altitude, the thickness of a ring and its bracket are known of every gym.

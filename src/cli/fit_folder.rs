@@ -8,12 +8,14 @@ use super::terminal::print_remark;
 use super::value_parsers::PhysicsArg;
 use crate::best_shot::{ShotAtPitch, TableShot};
 use crate::fitting::{
-    AngleOverDraws, Draw, DrawProbabilities, Interval, Place, Posterior, SpinSource, Values,
-    WeightedShots, fitted_profile, usual_probabilities, values_of,
+    AngleOverDraws, Draw, DrawProbabilities, Interval, KnownRelease, Place, Posterior, SpinSource,
+    VALUE_NAMES, Values, WeightedShots, best_angles_of_draws, fitted_profile, usual_probabilities,
+    values_of,
 };
 use crate::measured_shots::source::Source;
 use crate::output::fit_files::draws_table::read_draws;
 use crate::output::fit_files::fit_text::probability_text;
+use crate::output::fit_files::parameters::value_units;
 use crate::shooter::{Location, Nominal, NominalVariable, Profile, ProfileError, ShotKind};
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
 use std::fs::File;
@@ -57,6 +59,55 @@ impl FitFolder {
     pub(crate) fn place_numbered(&self, number: Option<u32>) -> Result<usize, Failure> {
         index_of_place(number, self.profiles.len())
     }
+}
+
+/// The releases of a fit whose results are known, from its `shots.csv`.
+pub(crate) fn read_releases(
+    folder: &Path,
+    units: UnitSystem,
+) -> Result<Vec<KnownRelease>, Failure> {
+    let path = folder.join("shots.csv");
+    let text = read_text(&path)?;
+    let mut reader = csv::ReaderBuilder::new()
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let headers = reader.headers().map_err(|error| damaged(&path, error))?;
+    let column = |name: &str| {
+        let mut names = headers.iter();
+        let found = names.position(|header| header == name);
+        found.ok_or_else(|| damaged(&path, format!("has no column {name}")))
+    };
+    let mut of_values = Vec::new();
+    for (name, (unit, size)) in VALUE_NAMES.iter().zip(value_units(units)) {
+        let unit = unit.replace('/', "_");
+        let columns = [
+            column(&format!("{name}_{unit}"))?,
+            column(&format!("{name}_error_{unit}"))?,
+        ];
+        of_values.push((columns, size));
+    }
+    let [place, made] = [column("place")?, column("made")?];
+    let mut releases = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| damaged(&path, error))?;
+        let number = |column: usize| record.get(column).and_then(|cell| cell.parse::<f64>().ok());
+        // Shots that were kept out have no values, those without a result tell nothing.
+        let read = || {
+            let mut release = KnownRelease {
+                place: (number(place)? as usize).checked_sub(1)?,
+                release: Values::default(),
+                release_sd: Values::default(),
+                made: number(made)? > 0.5,
+            };
+            for (i, ([value, error], size)) in of_values.iter().enumerate() {
+                release.release[i] = number(*value)? * size;
+                release.release_sd[i] = number(*error)? * size;
+            }
+            Some(release)
+        };
+        releases.extend(read());
+    }
+    Ok(releases)
 }
 
 /// The index of the place with a number, from 1, of so many; without a number the first.
@@ -321,15 +372,15 @@ pub(crate) fn of_profile(file: &Path) -> Result<Option<FitFolder>, Failure> {
     }
 }
 
-/// The share of a fit's draws in which a bank shot from the profile's location is better than a
-/// direct one.
-pub(crate) fn bank_is_better(
+/// By how much a bank shot from the profile's location is better than a direct one, for each draw
+/// of a fit.
+pub(crate) fn bank_gain_over_draws(
     fit: &FitFolder,
     profile: &Profile,
     [direct, bank]: [&Nominal; 2],
-) -> Result<f64, Failure> {
+) -> Result<DrawProbabilities, Failure> {
     let p = |shot| probability_over_draws(&fit.posterior.draws, profile, shot, SHOTS);
-    Ok(p(bank)?.minus(&p(direct)?).share_positive())
+    Ok(p(bank)?.minus(&p(direct)?))
 }
 
 /// Reads the folder of `--draws`, with a warning where its fit is that of another shooter.
@@ -426,27 +477,37 @@ pub(crate) fn kinds_over_draws(
 }
 
 /// P of the best shot at each pitch angle over the draws of a fit.
+pub(crate) struct OverDraws {
+    pub(crate) angles: Vec<Option<AngleOverDraws>>,
+    /// The first and the last of the angles between which the best one lies in 95 of 100 draws.
+    best: Option<(usize, usize)>,
+}
+
+/// P of the best shot at each pitch angle over the draws of a fit.
 pub(crate) fn angles_over_draws(
     fit: &FitFolder,
     profile: &Profile,
     rows: &[ShotAtPitch],
-) -> Result<Vec<Option<AngleOverDraws>>, Failure> {
+) -> Result<OverDraws, Failure> {
     let shots = rows.iter().map(|row| row.shot.as_ref());
     let p = |shot: Option<&TableShot>| {
         shot.map(|shot| probability_over_draws(&fit.posterior.draws, profile, &shot.nominal, SHOTS))
             .transpose()
     };
     let angles: Vec<_> = shots.map(p).collect::<Result<_, Failure>>()?;
-    Ok(AngleOverDraws::of_angles(&angles))
+    Ok(OverDraws {
+        best: best_angles_of_draws(&angles),
+        angles: AngleOverDraws::of_angles(&angles),
+    })
 }
 
 /// The same in words.
 pub(crate) fn angles_in_words(
     (folder, fit): (&Path, &FitFolder),
     rows: &[ShotAtPitch],
-    over_draws: &[Option<AngleOverDraws>],
+    over_draws: &OverDraws,
 ) -> String {
-    let angles = rows.iter().zip(over_draws);
+    let angles = rows.iter().zip(&over_draws.angles);
     let angles: Vec<(f64, AngleOverDraws)> = angles
         .filter_map(|(row, angle)| Some((row.pitch_rad / DEGREE_RAD, (*angle)?)))
         .collect();
@@ -464,6 +525,16 @@ pub(crate) fn angles_in_words(
         let [less, least, most] = percents(&angle.less);
         text += &format!(
             "{pitch_deg:>5.1}  {mean:>5.1} ({low:>4.1} to {high:>4.1})  {less:>5.1} ({least:>+5.1} to {most:>+5.1})\n"
+        );
+    }
+    if let Some((low, high)) = over_draws.best {
+        let [low, high] = [low, high].map(|i| rows[i].pitch_rad / DEGREE_RAD);
+        text += &format!(
+            "The best of these angles: {} in 95 of 100 draws.\n",
+            match low < high {
+                true => format!("from {low:.1} to {high:.1} deg"),
+                false => format!("{low:.1} deg"),
+            }
         );
     }
     text

@@ -15,6 +15,7 @@ mod nominal_shot_flags;
 mod output_files;
 mod plot_files;
 mod progress_bars;
+mod ring_told_by_makes;
 mod run_folder;
 mod scatter_flags;
 mod shooter_folders;

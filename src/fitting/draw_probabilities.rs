@@ -84,6 +84,16 @@ pub struct DrawProbabilities {
 }
 
 impl DrawProbabilities {
+    /// Of known values, without numerical error.
+    #[cfg(test)]
+    pub(crate) fn of_values(of_draws: Vec<f64>) -> Self {
+        let mean = of_draws.iter().sum::<f64>() / of_draws.len() as f64;
+        Self {
+            of_draws,
+            replicate_means: vec![mean; 2],
+        }
+    }
+
     /// P over the draws.
     #[must_use]
     pub fn interval(&self) -> Interval {

@@ -198,6 +198,65 @@ pub(super) fn common_normals(count: u32, seed: u64) -> Vec<Values> {
         .collect()
 }
 
+/// A release that is known but for errors that do not depend on each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownRelease {
+    /// Index of its place.
+    pub place: usize,
+    /// The mean.
+    pub release: Values,
+    /// The standard deviations.
+    pub release_sd: Values,
+    /// Whether it went in.
+    pub made: bool,
+}
+
+impl ExpectedMakes {
+    /// The shots whose result is known.
+    #[must_use]
+    pub fn known_releases(&self) -> Vec<KnownRelease> {
+        let known = self.shots.iter().filter_map(|shot| {
+            Some(KnownRelease {
+                place: shot.place,
+                release: shot.release,
+                release_sd: shot.release_sd,
+                made: shot.made?,
+            })
+        });
+        known.collect()
+    }
+}
+
+/// By how many of its standard deviations the number of makes is greater than expected, if each
+/// release was another one by `shift` and was shot under the physics of `profiles`, those of the
+/// places. `None` where no result is in doubt.
+#[must_use]
+pub fn made_z_of_releases(
+    profiles: &[Profile],
+    shots: &[KnownRelease],
+    shift: &Values,
+) -> Option<f64> {
+    let normals = common_normals(RELEASES, 1);
+    let chances: Vec<f64> = shots
+        .par_iter()
+        .map(|shot| {
+            let profile = &profiles[shot.place];
+            let made = normals.iter().filter(|z| {
+                let values: Values =
+                    std::array::from_fn(|i| shot.release[i] + shift[i] + shot.release_sd[i] * z[i]);
+                let release = profile.release(&nominal_of(&values));
+                let outcome = profile.simulator().simulate(&release);
+                outcome.is_ok_and(|outcome| outcome.verdict.made)
+            });
+            made.count() as f64 / f64::from(RELEASES)
+        })
+        .collect();
+    let expected: f64 = chances.iter().sum();
+    let variance: f64 = chances.iter().map(|p| p * (1.0 - p)).sum();
+    let made = shots.iter().filter(|shot| shot.made).count();
+    (variance > 0.0).then(|| (made as f64 - expected) / variance.sqrt())
+}
+
 /// The chances of measured shots for the typical draw. `profiles` are those of the places.
 #[must_use]
 pub fn expected_makes(

@@ -13,6 +13,7 @@ mod advice;
 mod advice_steps;
 mod angle_over_draws;
 mod chain_diagnostics;
+mod constant_error;
 mod dispersion_posterior;
 mod draw_probabilities;
 mod expected_makes;
@@ -37,12 +38,13 @@ mod unmeasured_parameter_likelihood;
 
 pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabilities};
 pub use advice_steps::{AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S};
-pub use angle_over_draws::AngleOverDraws;
+pub use angle_over_draws::{AngleOverDraws, best_angles_of_draws};
+pub use constant_error::{ConstantError, constant_errors};
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{
-    ExpectedMakes, ReliabilityBin, ShotChance, Wilson, change_of_share, expected_makes,
-    wilson_interval,
+    ExpectedMakes, KnownRelease, ReliabilityBin, ShotChance, Wilson, change_of_share,
+    expected_makes, made_z_of_releases, wilson_interval,
 };
 pub use fit_checks::{
     FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, WARNING_LEVEL,

@@ -19,6 +19,8 @@ pub struct SessionComparison {
     pub grew: f64,
     /// The harmonic mean of the shots of the two sessions.
     pub shots: f64,
+    /// Draws of each posterior.
+    pub draws: usize,
 }
 
 impl SessionComparison {
@@ -26,6 +28,14 @@ impl SessionComparison {
     #[must_use]
     pub fn is_decided(&self) -> bool {
         self.change.low > 0.0 || self.change.high < 0.0
+    }
+
+    /// By how many of its standard errors it changed, and the numerical standard error of that
+    /// number: mean and standard deviation are those of a finite number of draws.
+    #[must_use]
+    pub fn standard_errors(&self) -> (f64, f64) {
+        let z = self.change.mean.abs() / self.change.sd;
+        (z, ((1.0 + 0.5 * z * z) / self.draws.max(1) as f64).sqrt())
     }
 
     /// Shots in each session that would decide about a change of this size with 80 % power, where a
@@ -66,6 +76,7 @@ fn compare(before: &[f64], after: &[f64], shots: [usize; 2]) -> SessionCompariso
         change,
         grew,
         shots: 2.0 / (1.0 / shots[0] as f64 + 1.0 / shots[1] as f64),
+        draws: count,
     }
 }
 
@@ -188,6 +199,7 @@ mod tests {
             (compared.change.sd / expected - 1.0).abs() < 0.05,
             "{compared:?}"
         );
+        assert_eq!(compared.draws, 1000);
         assert!((compared.grew - 0.5).abs() < 0.05 && compared.change.mean.abs() < 0.01);
     }
 }

@@ -119,7 +119,8 @@ pub fn simulated_test(
         .collect()
 }
 
-/// Simulates `repetitions` tests of each size, and fits them.
+/// Simulates tests of each size, as many as it says, and fits them. `sizes` have shots and
+/// repetitions.
 ///
 /// # Errors
 /// A fit did not converge.
@@ -127,8 +128,7 @@ pub fn design(
     profile: &Profile,
     nominal: &Nominal,
     noise: &Covariance,
-    sizes: &[usize],
-    repetitions: u64,
+    sizes: &[(usize, u64)],
     progress: &dyn Progress,
 ) -> Result<Vec<DesignRow>, FitError> {
     let probability = Sampler::new(profile)
@@ -145,8 +145,9 @@ pub fn design(
     };
     let mut prior = super::prior::PopulationPrior::MEASURED;
     prior.backspin.mean = nominal.backspin_rad_s;
-    progress.begin("simulating tests", sizes.len() as u64 * repetitions);
-    let rows = sizes.iter().map(|&shots| {
+    let all = sizes.iter().map(|(_, repetitions)| repetitions).sum();
+    progress.begin("simulating tests", all);
+    let rows = sizes.iter().map(|&(shots, repetitions)| {
         let variances: Vec<Result<[f64; 4], FitError>> = (0..repetitions)
             .into_par_iter()
             .map(|repetition| {

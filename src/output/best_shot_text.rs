@@ -37,7 +37,11 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
             .probability
             .total_cmp(&a.1.estimate.probability)
     });
-    let in_hundred = |shot: &BestShot| format!("{:.0}", 100.0 * shot.estimate.probability);
+    // Nobody makes all shots.
+    let in_hundred = |shot: &BestShot| match shot.estimate.probability {
+        p if p >= 0.995 => "more than 99".to_owned(),
+        p => format!("{:.0}", 100.0 * p),
+    };
     let Some((kind, shot)) = found.first() else {
         return format!("{place}.\nNo shot from there can be advised:\n");
     };

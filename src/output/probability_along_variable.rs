@@ -41,6 +41,8 @@ pub struct ProbabilityAlong<'a> {
     pub is_rest_uncertain: bool,
     /// In ascending order of the variable.
     pub points: Vec<PointAlong>,
+    /// The first and the last of the points between which the best one lies in 95 of 100 draws.
+    pub best_of_draws: Option<(usize, usize)>,
 }
 
 impl ProbabilityAlong<'_> {
@@ -111,7 +113,7 @@ impl ProbabilityAlong<'_> {
         best.map(|(index, _)| index)
     }
 
-    /// What the variable is worth, in two sentences at most.
+    /// What the variable is worth, in three sentences at most.
     fn in_words(&self, best: usize) -> String {
         let (unit, ..) = self.unit();
         let name = self.name().replace('_', " ");
@@ -132,6 +134,19 @@ impl ProbabilityAlong<'_> {
                 value(low),
                 value(high)
             );
+        }
+        if let Some((low, high)) = self.best_of_draws {
+            text += &match low < high {
+                true => format!(
+                    " In 95 of 100 draws of the fit the best of them is from {} to {} {unit}.",
+                    value(low),
+                    value(high)
+                ),
+                false => format!(
+                    " In 95 of 100 draws of the fit {} {unit} is the best of them.",
+                    value(low)
+                ),
+            };
         }
         text
     }
@@ -316,6 +331,12 @@ impl ProbabilityAlong<'_> {
             named("variable", self.name().into()),
             named("points", points.collect()),
         ];
+        if let Some(ends) = self.best_of_draws {
+            let [low, high] =
+                [ends.0, ends.1].map(|i| number(rounded(self.value(&self.points[i].nominal))));
+            let range = object(vec![named("low", low), named("high", high)]);
+            record.push(named("best_over_draws", range));
+        }
         record.extend(provenance(self.profile.hash()));
         object(record)
     }

@@ -32,7 +32,7 @@ pub fn draw(
     };
     // Points and bars do not lie on the frame.
     let x_margin = 0.03 * (last - first);
-    let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 56.0);
+    let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 78.0);
     let name = shortened(&profile.shooter().name, 50);
     let title = match kind {
         TableKind::One(kind) => {
@@ -96,6 +96,7 @@ pub fn draw(
     let caption = format!(
         "P of the best shot at each pitch angle, and its speed. Large circle: the highest P.{kinds}{bars}"
     );
+    svg.footnote((20.0, TOP + PANEL.1 + 66.0), &caption);
     Some(Plot {
         name: "best_by_pitch".to_owned(),
         svg: svg.finish(&caption),

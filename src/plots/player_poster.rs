@@ -85,9 +85,13 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
                 of_hundred(best.0)
             ),
             _ => format!(
-                "Your surest place: {named}. With your best release {} of 100 go in there; {others} more {} as sure.",
+                "Your surest place: {named}. With your best release {} of 100 go in there; {others} other {} as sure.",
                 of_hundred(best.0),
-                if others == 1 { "is" } else { "are" }
+                if others == 1 {
+                    "place is"
+                } else {
+                    "places are"
+                }
             ),
         },
         if bank.is_empty() {
@@ -104,7 +108,7 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
         ));
     }
     sentences.extend(own.filter(|own| !own.is_empty()).map(str::to_owned));
-    let mut notes = ring_in_words(&bank) + &doubt_in_words(results.chances());
+    let mut notes = hoop_in_words(&bank) + &doubt_in_words(results.chances());
     if own.is_some() && left_and_right_differ(results.chances()) {
         notes +=
             " That left and right differ can be chance: it rests on the shots that were measured.";
@@ -230,11 +234,12 @@ fn square_in_words(units: UnitSystem) -> String {
     )
 }
 
-/// At how many of the places the bank shot is not better on each ring; empty if it is at all.
-fn ring_in_words(bank: &[&PlaceProbabilities]) -> String {
+/// At how many of the places the bank shot is not better on each ring and board; empty if it is at
+/// all.
+fn hoop_in_words(bank: &[&PlaceProbabilities]) -> String {
     let turned = bank
         .iter()
-        .filter(|place| place.turns_with_the_ring())
+        .filter(|place| place.turns_with_the_hoop())
         .count();
     let places = match turned {
         0 => return String::new(),
@@ -248,7 +253,7 @@ fn ring_in_words(bank: &[&PlaceProbabilities]) -> String {
     } else {
         "the places to bank from"
     };
-    format!(" Of {bank}: on an unusual ring direct is better {places}.")
+    format!(" Of {bank}: on an unusual ring or board direct is better {places}.")
 }
 
 /// Where banking helps most, and where to aim from each place.

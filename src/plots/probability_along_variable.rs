@@ -5,8 +5,10 @@ use super::svg::{Anchor, INK, Plot, Svg, shortened};
 use crate::output::probability_along_variable::ProbabilityAlong;
 
 /// Left and upper edge of the panel, and its width and height, px.
-const PANEL: ((f64, f64), (f64, f64)) = ((70.0, 74.0), (470.0, 260.0));
+const PANEL: ((f64, f64), (f64, f64)) = ((70.0, 84.0), (470.0, 260.0));
 
+/// Letters in a line above the panel.
+const PLACE_LETTERS: usize = 88;
 /// Letters in a line below the panel.
 const LINE_LETTERS: usize = 95;
 
@@ -47,7 +49,9 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
     let place = along.profile.location();
     let place = place.in_words(along.profile.output().units);
     let place = format!("{place}; {}", along.fixed_values());
-    svg.text((20.0, 46.0), 12.0, Anchor::Start, &place);
+    for (i, line) in textwrap::wrap(&place, PLACE_LETTERS).iter().enumerate() {
+        svg.text((20.0, 44.0 + 15.0 * i as f64), 11.0, Anchor::Start, line);
+    }
     axes.draw_grid(&mut svg);
     let at = |i: usize| axes.pixel((values[i], points[i].estimate.probability));
     let line = format!("stroke=\"{INK}\" stroke-width=\"2\" fill=\"none\"");

@@ -97,7 +97,7 @@ pub fn draw(
     draw_causes(&mut svg, (causes_top, causes_bottom), causes);
     svg.footnote(
         (20.0, causes_bottom + 54.0),
-        "Bars: 95 % intervals. Each value has a scale of its own. Bold: beyond chance, although so many values were looked at. Alone: with all else as before.",
+        "Bars: 95 % intervals. Each value has a scale of its own. Bold: beyond chance, although so many values were looked at. Alone: all else as before; these need not add up.",
     );
     Plot {
         name: "sessions".to_owned(),

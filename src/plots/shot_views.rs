@@ -7,7 +7,7 @@ use super::svg::{Anchor, FAINT, INK, Svg, shortened};
 use crate::dynamics::{Event, EventKind, Trace};
 use crate::math::vector::Vec3;
 use crate::model::{Physics, SolidId};
-use crate::units::UnitSystem;
+use crate::units::{INCH_M, UnitSystem};
 use std::f64::consts::TAU;
 
 /// Colour of made shots.
@@ -205,6 +205,12 @@ impl Panel {
             let style = format!("stroke=\"{FAINT}\" stroke-width=\"1\" fill=\"none\"");
             svg.polyline(board, &style);
         }
+        if self.view == View::FacingBoard {
+            let [half_width, below, above] = BOARD_SQUARE_M;
+            let square = rectangle((-half_width, half_width), (-below, above));
+            let style = format!("stroke=\"{FAINT}\" stroke-width=\"1\" fill=\"none\"");
+            svg.polyline(square, &style);
+        }
         if physics.bracket_width_m > 0.0 {
             let style =
                 format!("stroke=\"{RING_COLOUR}\" stroke-width=\"0.5\" fill=\"{BRACKET_FILL}\"");
@@ -250,6 +256,11 @@ impl Panel {
         }
     }
 }
+
+/// The rectangle on the board: half of its width, and how far it reaches below and above the ring,
+/// m. Rule books give 24 by 18 in outside, and the upper edge of its base line, 2 in wide, level
+/// with the ring.
+const BOARD_SQUARE_M: [f64; 3] = [12.0 * INCH_M, 2.0 * INCH_M, 16.0 * INCH_M];
 
 /// Lowest and highest edge of the board above the ring, m.
 fn board_edges(physics: &Physics) -> (f64, f64) {

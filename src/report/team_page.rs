@@ -144,8 +144,8 @@ impl TeamPage {
              .player + .player, .line + .player {{ margin-top: 0.6em; }}\n\
              .advice {{ max-width: 60em; }}\n\
              .summary .scroll {{ max-height: none; }} .summary td {{ white-space: normal; vertical-align: top; }}\n\
-             .summary td:first-child {{ font-weight: bold; }} .summary th {{ white-space: normal; }}\n\
-             @media print {{ td, th {{ padding: 0.5mm 1mm; }} figure.wide figcaption {{ display: none; }} figure.wide svg {{ max-height: 88mm; }} footer {{ font-size: 9px; }} }}\n\
+             .summary td:first-child {{ font-weight: bold; }} .summary th {{ white-space: normal; }} .summary td:nth-child(3) {{ min-width: 13em; }}\n\
+             @media print {{ td, th {{ padding: 0.5mm 1mm; }} figure.wide figcaption {{ display: none; }} figure.wide svg {{ max-height: 84mm; }} .summary table {{ font-size: 9.5px; }} .summary p {{ font-size: 9.5px; margin: 1mm 0; }} footer {{ font-size: 8.5px; }} }}\n\
              @media (max-width: 40rem) {{ figure.wide svg {{ min-width: 56rem; }} }}\n</style>\n<h1>The team</h1>\n\
              <section class=\"summary\">\n{summary}<p class=\"help-text\">{caption}</p>\n</section>\n{maps}{posters}\
              <section class=\"unprinted\">\n<h2>Where to bank, and where to aim</h2>\n<p class=\"answer\">{answer}</p>\n{advice}{tables}</section>\n\

@@ -266,7 +266,11 @@ impl SearchSettings {
             checks.require(key, holds, "from 1 to 89 deg");
         }
         if let Some((low, high)) = self.pitch_min_rad.zip(self.pitch_max_rad) {
-            let allowed = format!("less than pitch_max ({:.1} deg)", high / DEGREE_RAD);
+            let mut allowed = format!("less than pitch_max ({:.1} deg)", high / DEGREE_RAD);
+            if low == high {
+                allowed +=
+                    "; for one fixed angle give pitch under [nominal], and leave it out of choose";
+            }
             checks.require("search.pitch_min", low < high, &allowed);
         }
         checks.require(

@@ -9,6 +9,7 @@ use super::result_row::ResultRow;
 use super::sweep_toml::SweepConfig;
 use crate::analysis::sensitivity::Difference;
 use crate::math::normal_distribution::quantile;
+use crate::model::SolidId;
 use crate::shooter::{Nominal, ShotKind};
 use crate::units::UnitSystem;
 use std::collections::BTreeMap;
@@ -60,6 +61,17 @@ pub const SURE: f64 = 0.9;
 /// Places nearer than this are the same, m.
 const SAME_PLACE_M: f64 = 0.01;
 
+/// The least gain of a bank shot, and the solid under which it is that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastGain {
+    /// P of the bank shot less that of the direct one.
+    pub gain: f64,
+    /// The ring or the board.
+    pub solid: SolidId,
+    /// Its restitution.
+    pub restitution: f64,
+}
+
 /// A player's chances at one place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceProbabilities {
@@ -78,9 +90,9 @@ pub struct PlaceProbabilities {
     pub bank_is_better: Option<f64>,
     /// Shots of that fit.
     pub fitted_shots: Option<usize>,
-    /// Where the bank shot is preferred: the least gain of the same bank shot over the same direct
-    /// one under the restitutions that sources give for a ring, and that restitution.
-    pub least_gain_over_rings: Option<(f64, f64)>,
+    /// Where the bank shot is preferred: where the same bank shot gains least over the same direct
+    /// one, of the rings and the boards that a gym may have.
+    pub least_gain: Option<LeastGain>,
     /// Where on the board the best bank shot hits it: to the right of its middle line and above the
     /// hoop, m.
     pub board_aim_m: Option<(f64, f64)>,
@@ -110,7 +122,7 @@ impl PlaceProbabilities {
                     nominals: [nominal(&direct), nominal(&bank)],
                     bank_is_better: None,
                     fitted_shots: None,
-                    least_gain_over_rings: None,
+                    least_gain: None,
                     place: jobs.sources[place].place,
                     name: config
                         .place_names
@@ -183,11 +195,10 @@ impl PlaceProbabilities {
         Some(self.fitted_shots? as f64 * (root * root - 1.0))
     }
 
-    /// Whether the direct shot is the better one on some ring that sources give.
+    /// Whether the direct shot is the better one on some ring or board that the gym may have.
     #[must_use]
-    pub fn turns_with_the_ring(&self) -> bool {
-        self.least_gain_over_rings
-            .is_some_and(|(gain, _)| gain < 0.0)
+    pub fn turns_with_the_hoop(&self) -> bool {
+        self.least_gain.is_some_and(|least| least.gain < 0.0)
     }
 
     /// P of the bank shot minus that of the direct one; `None` where one of them is missing.
@@ -349,7 +360,7 @@ mod tests {
             nominals: [None; 2],
             bank_is_better,
             fitted_shots: Some(100),
-            least_gain_over_rings: None,
+            least_gain: None,
             board_aim_m: None,
         };
         for (share, told) in [(None, 0.74), (Some(0.95), 0.74), (Some(0.6), 0.70)] {

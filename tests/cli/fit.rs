@@ -788,6 +788,60 @@ fn contract_the_advice_is_told_under_each_physics() {
     assert!(usual("hoop_restitution 0.41") > usual("hoop_restitution 0.70") + 0.02);
 }
 
+/// What the makes of each ball say of a physics and of the tracker: the fit's own z in the first
+/// row, and no range with what is more than 3 standard deviations away.
+#[test]
+fn contract_the_makes_rule_out_a_physics() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("lab");
+    let fitted = fit("docs/data/lab.csv", &out, &["--json"]).exits(0).json();
+    let own_z = fitted["prediction"]["made_z"].as_f64().unwrap();
+    let errors = fitted["constant_errors"].as_array().unwrap();
+    let of_speed: Vec<f64> = errors
+        .iter()
+        .filter(|error| error["name"] == "speed")
+        .map(|error| error["made_z"].as_f64().unwrap())
+        .collect();
+    assert_eq!((errors.len(), of_speed.len()), (6, 2));
+    // The truth of this file has no constant error, and its noise is small beside the scatter.
+    assert!(of_speed.iter().all(|z| z.abs() < 3.0 && *z != own_z));
+    make_search_small(&out);
+    let physics = |more: &[&str]| {
+        let mut command = bankshot();
+        command.arg("physics").arg(&out).arg("--quiet").args(more);
+        Answer::of(&mut command).exits(0)
+    };
+    let rows = physics(&["--json"]).json();
+    let rows = rows.as_array().unwrap();
+    let z = |row: &serde_json::Value| row["fit"]["made_z"].as_f64().unwrap();
+    // But for errors of each value alone.
+    assert!((z(&rows[0]) - own_z).abs() < 0.3, "{} {own_z}", z(&rows[0]));
+    let text = physics(&[]);
+    let words = text.stdout().split_whitespace().collect::<Vec<_>>();
+    let words = words.join(" ");
+    let (_, ruled_out) = words
+        .split_once("rule these out, so that no range has them: ")
+        .unwrap();
+    let (ruled_out, _) = ruled_out.split_once(". ").unwrap();
+    let mut some = false;
+    for row in rows {
+        let name = row["physics"].as_str().unwrap();
+        let is_varied = [
+            "drag",
+            "release",
+            "restitution",
+            "stiffness",
+            "friction",
+            "lift",
+        ];
+        if is_varied.iter().any(|quantity| name.contains(quantity)) {
+            assert_eq!(ruled_out.contains(name), z(row).abs() > 3.0, "{name}");
+            some |= z(row).abs() > 3.0;
+        }
+    }
+    assert!(some);
+}
+
 /// Two shooters from two places. Then the same shots as those of one shooter in two sessions: the
 /// first begins at one place, the second holds shots from the other alone.
 #[test]
@@ -1032,17 +1086,18 @@ fn contract_the_row_of_a_player_is_the_advice() {
     let change = cell("change");
     let (change, first) = change.split_once("; ").unwrap_or((&change, ""));
     let can = cell("can make");
+    let can = can.split(' ').next().unwrap();
     assert!(
         words.contains(&format!("With the same scatter you can make {can} %"))
             && words.contains(&format!(": {change}.")),
         "{change}: {words}"
     );
-    let told = match first {
-        "the speed first" => "Begin with the speed: ",
-        "the angle first" => "Begin with the angle: ",
+    let told = match first.split([',', '(']).next().unwrap().trim_end() {
+        "begin with the speed" => "Begin with the speed: ",
+        "begin with the angle" => "Begin with the angle: ",
         "begin with either" => "Begin with either: ",
         "speed and angle together" => "Change speed and angle together: ",
-        _ => "",
+        other => panic!("{other}"),
     };
     assert!(words.contains(told) && words.contains(&format!("What to train: {}", cell("train"))));
 }

@@ -459,7 +459,7 @@ fn contract_wrong_ranges_are_refused() {
 /// Looks at the eighths between the nodes, none of which the program checks itself, and finds P
 /// with `probability`, and the best P with a table of that place alone.
 #[test]
-#[ignore = "eleven minutes: four launchers with the full search, every foot from 6 to 20 ft"]
+#[ignore = "ten minutes: five launchers with the full search, every foot from 6 to 20 ft"]
 fn campaign_interpolation_of_launchers() {
     let folder = TempDir::new().unwrap();
     let full = ROBOT.split("[grid]").next().unwrap();
@@ -468,6 +468,8 @@ fn campaign_interpolation_of_launchers() {
         ("middle", "4 ft", "2 %", "0.5 deg", "65 deg", "1 rev/s"),
         ("tall", "6.5 ft", "0.5 %", "0.5 deg", "60 deg", "3 rev/s"),
         ("kinked", "4 ft", "1 %", "0.4 deg", "65 deg", "2 rev/s"),
+        // The pitch is searched too.
+        ("free hood", "3.6 ft", "1 %", "0.5 deg", "", "2 rev/s"),
     ] {
         let text = full
             .replace("\"3 ft\"", &format!("\"{height}\""))
@@ -480,7 +482,10 @@ fn campaign_interpolation_of_launchers() {
                 .arg("table")
                 .arg(&profile)
                 .args(["--distances", distances, "--format", "json"])
-                .args(["--pitch", pitch, "--backspin", backspin, "--quiet"]);
+                .args(["--backspin", backspin, "--quiet"]);
+            if !pitch.is_empty() {
+                command.args(["--pitch", pitch]);
+            }
             Answer::of(&mut command).json()
         };
         let json = table("6 ft to 20 ft by 1 ft");
@@ -497,8 +502,9 @@ fn campaign_interpolation_of_launchers() {
                 };
                 let distance = between("distance_ft");
                 let nominal = format!(
-                    "[nominal]\nspeed = \"{} ft/s\"\npitch = \"{pitch}\"\npolar = \"{} deg\"\nbackspin = \"{backspin}\"\n",
+                    "[nominal]\nspeed = \"{} ft/s\"\npitch = \"{} deg\"\npolar = \"{} deg\"\nbackspin = \"{backspin}\"\n",
                     between("speed_ft_s"),
+                    between("pitch_deg"),
                     between("aim_deg"),
                 );
                 let here = text.replace("\"12 ft\"", &format!("\"{distance} ft\""));

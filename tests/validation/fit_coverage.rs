@@ -651,7 +651,14 @@ fn campaign_design_agrees_with_repeated_tests() {
             })
             .collect();
         let scatter = |k: usize| Interval::of(answers.iter().map(|answer| answer[k]).collect()).sd;
-        let rows = design(&profile, &nominal_of(&mean), &noise, &[shots], 48, &Silent).unwrap();
+        let rows = design(
+            &profile,
+            &nominal_of(&mean),
+            &noise,
+            &[(shots, 48)],
+            &Silent,
+        )
+        .unwrap();
         let row = rows[0];
         for (k, said) in [
             row.sd_errors[0],
@@ -682,6 +689,7 @@ fn session_changes(
     shots: usize,
 ) -> Vec<SessionChange> {
     let change = |name: &str, comparison| SessionChange {
+        ratio: None,
         name: name.to_owned(),
         unit: "",
         size: 1.0,

@@ -214,25 +214,13 @@ impl ShotTable {
                 distance_m: step,
                 angle_rad: [self.angles_rad[0]; 2],
             };
-            let corners = [(node, step[0]), (node + 1, step[1])];
-            let around: Vec<PlacedShot> = corners
-                .into_iter()
-                .filter_map(|(node, distance_m)| {
-                    Some(PlacedShot {
-                        location: Location {
-                            distance_m,
-                            ..cell.middle()
-                        },
-                        nominal: self.at(0, node)?.nominal,
-                    })
-                })
-                .collect();
             for location in cell.checked_places() {
                 let Some((nominal, looked_up)) = self.interpolated(location) else {
                     continue;
                 };
                 let shot = PlacedShot { location, nominal };
-                let known = BestKnown::Climbed(&around);
+                let found = best(&profile.moved_to(location)?, stretch.kind)?.ok();
+                let known = BestKnown::Searched(found.map(|shot| shot.probability));
                 checks.push(check(profile, stretch.kind, (shot, looked_up), known)?);
             }
         }

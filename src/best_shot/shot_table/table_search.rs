@@ -147,6 +147,7 @@ impl<'a> TableSearch<'a> {
             let around: Vec<PlacedShot> = cell
                 .corners()
                 .into_iter()
+                .chain([cell.middle()])
                 .filter_map(|location| {
                     let nominal = self.shot_at(&location)?.nominal;
                     Some(PlacedShot { location, nominal })
@@ -155,8 +156,13 @@ impl<'a> TableSearch<'a> {
             let mut checks = Vec::new();
             for location in cell.checked_places() {
                 if let Some((nominal, looked_up)) = table.interpolated(location) {
+                    // Climbs can miss an optimum that a search finds. Between rows of several court
+                    // angles there are too many places to search them all.
                     let best = if location == cell.middle() {
                         let shot = self.shot_at(&location);
+                        BestKnown::Searched(shot.map(|shot| shot.probability))
+                    } else if table.angles_rad.len() == 1 {
+                        let shot = best(&self.profile.moved_to(location)?, self.kind)?.ok();
                         BestKnown::Searched(shot.map(|shot| shot.probability))
                     } else {
                         BestKnown::Climbed(&around)

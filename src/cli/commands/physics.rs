@@ -10,10 +10,14 @@ use crate::cli::fit_folder::{self, FitFolder};
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::ring_told_by_makes::ring_told_by_makes;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use crate::fitting::{FittedShots, Interval, Measured, ShotsUnderPhysics, advise, wilson_interval};
+use crate::fitting::{
+    FittedShots, Interval, Measured, ShotsUnderPhysics, advise, made_z_of_releases, wilson_interval,
+};
 use crate::measured_shots::source::Source;
+use crate::model::Physics;
 use crate::output::fit_files::change_in_words::changes_in_words;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::object;
@@ -24,7 +28,7 @@ use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
 use comfy_table::{CellAlignment, LineStyle, Table, presets};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -112,6 +116,7 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
     let fitted = match &fit {
         Some(fit) => Some(FittedRows::new(
             (fit, place),
+            &options.profile,
             &variants,
             &comparison,
             &bars,
@@ -129,6 +134,8 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         });
         comparison = comparison.with_same_shot(SameShot::AsMeasured, of_rows);
     }
+    let ruled_out = RuledOut::new(&path, &comparison, fitted.as_ref());
+    comparison = comparison.without_changes(&ruled_out.names());
     if let Some(path) = &options.plot {
         let plot = physics_probabilities::draw(&profile.shooter().name, &comparison);
         plot_files::write_one(path, &plot)?;
@@ -140,7 +147,12 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         let rows = rows_json(&comparison.rows, fitted.as_ref());
         print_answer(&format!("{rows:#}\n"))
     } else {
-        print_prose(&comparison_text(&profile, &comparison, fitted.as_ref()))
+        print_prose(&comparison_text(
+            (&profile, options.location.is_given()),
+            &comparison,
+            fitted.as_ref(),
+            &ruled_out,
+        ))
     }
 }
 
@@ -168,6 +180,9 @@ struct FittedRows {
     measured: Measured,
     /// One for each row of the comparison.
     rows: Vec<Option<ShotsUnderPhysics>>,
+    /// By how many standard deviations the makes of each ball differ from what is expected in each
+    /// row, where releases were measured.
+    made_z: Vec<Option<f64>>,
     /// Made and all measured shots with a result.
     observed: (usize, usize),
 }
@@ -175,6 +190,7 @@ struct FittedRows {
 impl FittedRows {
     fn new(
         (fit, place): (&FitFolder, usize),
+        folder: &Path,
         variants: &[PhysicsVariant],
         comparison: &PhysicsComparison,
         bars: &ProgressBars,
@@ -186,20 +202,36 @@ impl FittedRows {
             Source::Landings | Source::Trajectories => Measured::Landing,
         };
         let shots = FittedShots::new((profile, &fit.posterior, place), &advice, measured);
+        // Where a landing was measured, the release of each shot depends on the physics.
+        let releases = match measured {
+            Measured::Release => fit_folder::read_releases(folder, fit.units)?,
+            Measured::Landing => Vec::new(),
+        };
+        let made_z = |physics: &Physics| {
+            let places = fit.profiles.iter();
+            let places = places.map(|profile| {
+                let other = profile.with(|settings| settings.physics = physics.clone());
+                other.ok()
+            });
+            let profiles: Vec<Profile> = places.collect::<Option<_>>()?;
+            made_z_of_releases(&profiles, &releases, &[0.0; 4])
+        };
         bars.begin("the advice under each physics", variants.len() as u64);
         let rows = comparison.rows.iter().map(|row| {
             // A variant under which the profile is not valid has no row.
             let variant = variants.iter().find(|variant| variant.name == row.name);
             let found = variant.and_then(|variant| shots.under(&variant.physics));
+            let z = variant.and_then(|variant| made_z(&variant.physics));
             bars.advance(1);
-            found
+            (found, z)
         });
-        let rows = rows.collect();
+        let (rows, made_z) = rows.unzip();
         bars.end();
         Ok(Self {
             changes: changes_in_words(&advice, profile.location().angle_rad, fit.units),
             measured,
             rows,
+            made_z,
             observed: fit.observed[place],
         })
     }
@@ -213,12 +245,8 @@ impl FittedRows {
     ) -> Option<(f64, f64)> {
         let base = of(self.rows[comparison.base].as_ref()?)?;
         let rows = comparison.rows.iter().zip(&self.rows);
-        let is_possible = |own: &Option<ShotsUnderPhysics>| {
-            own.as_ref()
-                .is_some_and(|own| !self.do_makes_contradict(own))
-        };
         let changes: Vec<(&str, f64)> = rows
-            .filter(|(row, own)| row.is_unmeasured && is_possible(own))
+            .filter(|(row, _)| row.is_unmeasured)
             .filter_map(|(row, own)| Some((row.name.as_str(), of(own.as_ref()?)?.mean - base.mean)))
             .collect();
         let [down, up] = together(&changes);
@@ -228,11 +256,16 @@ impl FittedRows {
         ))
     }
 
-    /// Whether the interval of P does not meet that of the makes.
-    fn do_makes_contradict(&self, own: &ShotsUnderPhysics) -> bool {
+    /// Whether the makes speak against a row: the makes of each ball where releases were measured,
+    /// and else the intervals of P and of the share of makes, if they do not meet.
+    fn do_makes_contradict(&self, row: usize) -> bool {
+        if let Some(z) = self.made_z[row] {
+            return z.abs() > FAR_MAKES;
+        }
         let (made, shots) = self.observed;
         let share = wilson_interval(made, shots);
-        shots > 0 && (own.usual.low > share.high || own.usual.high < share.low)
+        let usual = self.rows[row].as_ref().map(|own| own.usual);
+        shots > 0 && usual.is_some_and(|p| p.low > share.high || p.high < share.low)
     }
 
     /// The intervals of the fit and of the physics in one, and what the makes say.
@@ -264,15 +297,18 @@ impl FittedRows {
             "Of the measured shots {made} of {shots} went in: {:.2} (95 %: {:.2} to {:.2}).",
             share.share, share.low, share.high
         );
-        let contradicted: Vec<&str> = (comparison.rows.iter().zip(&self.rows))
-            .filter_map(|(row, own)| Some((row.name.as_str(), own.as_ref()?)))
-            .filter(|(_, own)| self.do_makes_contradict(own))
-            .map(|(name, _)| name)
-            .collect();
-        text += &match &contradicted[..] {
-            [] => " That speaks against none of the rows.\n".to_owned(),
-            rows => format!(
-                " That speaks against these, where the intervals do not meet: {}. The range before leaves out those of them that nobody measured in this gym. (A fit with --physics tells more: its z says whether the makes of each ball agree.)\n",
+        let rows = comparison.rows.iter().enumerate();
+        let contradicted = rows.filter(|(i, _)| self.do_makes_contradict(*i));
+        let contradicted: Vec<&str> = contradicted.map(|(_, row)| row.name.as_str()).collect();
+        let has_z = self.made_z.iter().any(Option::is_some);
+        text += &match (&contradicted[..], has_z) {
+            ([], _) => " They speak against none of the rows.\n".to_owned(),
+            (rows, true) => format!(
+                " The makes speak against these, where the balls that went in differ by more than {FAR_MAKES:.0} standard deviations from what is expected of their releases (z in the last table): {}.\n",
+                rows.join(", ")
+            ),
+            (rows, false) => format!(
+                " They speak against these, where the intervals do not meet: {}. (A fit with --physics tells more: its z says whether the makes of each ball agree.)\n",
                 rows.join(", ")
             ),
         };
@@ -291,8 +327,12 @@ impl FittedRows {
         if !self.changes.is_empty() {
             header.extend(["advice\ngains", "95 %"]);
         }
+        let has_z = self.made_z.iter().any(Option::is_some);
+        if has_z {
+            header.push("z");
+        }
         let mut table = table_with(header.into_iter().map(str::to_owned).collect());
-        for (row, own) in comparison.rows.iter().zip(&self.rows) {
+        for ((row, own), z) in comparison.rows.iter().zip(&self.rows).zip(&self.made_z) {
             let interval = |of: Option<Interval>, text: &dyn Fn(f64) -> String| {
                 of.map_or(["-".to_owned(), "-".to_owned()], |of| {
                     [
@@ -303,10 +343,17 @@ impl FittedRows {
             };
             let mut cells = vec![row.name.clone()];
             let usual = own.as_ref().map(|own| own.usual);
-            cells.extend(interval(usual, &|p| format!("{p:.3}")));
+            // Room for z in 80 columns.
+            let [p_decimals, gain_decimals] = if has_z { [2, 0] } else { [3, 1] };
+            cells.extend(interval(usual, &|p| format!("{p:.p_decimals$}")));
             if !self.changes.is_empty() {
                 let gain = own.as_ref().and_then(|own| Some(own.advised?[1]));
-                cells.extend(interval(gain, &|p| format!("{:+.1}", in_points(p))));
+                cells.extend(interval(gain, &|p| {
+                    format!("{:+.gain_decimals$}", in_points(p))
+                }));
+            }
+            if has_z {
+                cells.push(z.map_or("-".to_owned(), |z| format!("{z:+.1}")));
             }
             table.add_row(cells);
         }
@@ -343,7 +390,7 @@ impl FittedRows {
             text += &format!("No gain could be computed with {}.\n", unknown.join(", "));
         }
         let lost: Vec<String> = (1..comparison.rows.len())
-            .filter(|&i| !comparison.rows[i].is_unmeasured)
+            .filter(|&i| !comparison.rows[i].is_unmeasured && !self.do_makes_contradict(i))
             .filter(|&i| self.gain(i).is_some_and(|gain| gain.low <= 0.0))
             .map(|i| change(&comparison.rows[i]))
             .collect();
@@ -397,6 +444,61 @@ impl FittedRows {
     }
 }
 
+/// Makes farther from what is expected, in standard deviations, speak against a physics: about 1 of
+/// 400 tests by luck.
+const FAR_MAKES: f64 = 3.0;
+
+/// Changes that nobody measured in this gym, but that the makes of fitted shots rule out.
+struct RuledOut {
+    by_makes: Vec<String>,
+    /// Those of the ring, and the restitutions that `--free` found.
+    by_free: (Vec<String>, Option<(f64, f64)>),
+}
+
+impl RuledOut {
+    fn new(profile: &Path, comparison: &PhysicsComparison, fitted: Option<&FittedRows>) -> Self {
+        let told = ring_told_by_makes(&[profile.to_owned()]);
+        let rows = comparison.rows.iter().enumerate();
+        let rows = rows.filter(|(i, row)| row.is_unmeasured && *i != comparison.base);
+        let mut ruled_out = Self {
+            by_makes: Vec::new(),
+            by_free: (Vec::new(), told),
+        };
+        for (i, row) in rows {
+            let restitution = row.name.split_once("hoop_restitution ");
+            let restitution = restitution.and_then(|(_, value)| value.parse::<f64>().ok());
+            let is_beyond = restitution.zip(told);
+            if fitted.is_some_and(|fitted| fitted.do_makes_contradict(i)) {
+                ruled_out.by_makes.push(row.name.clone());
+            } else if is_beyond.is_some_and(|(e, (low, high))| e < low || e > high) {
+                ruled_out.by_free.0.push(row.name.clone());
+            }
+        }
+        ruled_out
+    }
+
+    fn names(&self) -> Vec<String> {
+        [&self.by_makes[..], &self.by_free.0].concat()
+    }
+
+    fn in_words(&self) -> String {
+        let mut text = String::new();
+        if !self.by_makes.is_empty() {
+            text += &format!(
+                "The makes of the measured shots rule these out, so that no range has them: {}.\n",
+                self.by_makes.join(", ")
+            );
+        }
+        if let (rows @ [_, ..], Some((low, high))) = (&self.by_free.0[..], self.by_free.1) {
+            text += &format!(
+                "By the makes the restitution of the ring is {low:.2} to {high:.2} (`fit --free`), so that no range has these: {}.\n",
+                rows.join(", ")
+            );
+        }
+        text
+    }
+}
+
 /// What a row changes: `hoop_restitution 0.41` of `with hoop_restitution 0.41`, or of `ncaa,
 /// hoop_restitution 0.41` where the profile's physics has no air.
 fn change(row: &PhysicsRow) -> String {
@@ -421,9 +523,10 @@ fn table_with(header: Vec<String>) -> Table {
 }
 
 fn comparison_text(
-    profile: &Profile,
+    (profile, is_moved): (&Profile, bool),
     comparison: &PhysicsComparison,
     fitted: Option<&FittedRows>,
+    ruled_out: &RuledOut,
 ) -> String {
     let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let units = profile.output().units;
@@ -463,6 +566,7 @@ fn comparison_text(
     let mut answer = comparison
         .in_words()
         .map_or_else(String::new, |words| words + "\n\n");
+    answer += &ruled_out.in_words();
     if let Some(fitted) = fitted {
         answer += &format!(
             "{}\n{}\n",
@@ -482,6 +586,7 @@ fn comparison_text(
             fitted.table(comparison).trim_fmt(),
             fitted.gains_in_words(comparison)
         ),
+        None if is_moved => "\n(Of a profile that was fitted to landings or trajectories the speeds were derived with the physics; here the scatter stays the same in each row.)\n".to_owned(),
         None => "\n(Of a profile that was fitted to landings or trajectories, give the folder of the fit: its speeds were derived with the physics, and change with it.)\n".to_owned(),
     };
     let first_row = match comparison.rows.first() {
@@ -519,10 +624,11 @@ fn changes_text(comparison: &PhysicsComparison) -> String {
     let rows = comparison.rows.iter().filter(|row| row.is_unmeasured);
     let mut names: Vec<&str> = rows.map(|row| row.name.as_str()).collect();
     names.sort_by(|a, b| most(b).total_cmp(&most(a)));
-    for name in names {
+    for &name in &names {
         let change = name.split_once(' ').map_or(name, |(_, change)| change);
         table.add_row(vec![change.to_owned(), of(&best, name), of(&same, name)]);
     }
+    let ring_is_asked = names.iter().any(|name| name.contains("hoop_restitution"));
     let both = [&best, &same].map(|changes| {
         let [down, up] = together(changes).map(|by| libm::round(100.0 * by) + 0.0);
         format!("{down:+.0} to {up:+.0}")
@@ -530,7 +636,13 @@ fn changes_text(comparison: &PhysicsComparison) -> String {
     let [of_best, of_same] = both;
     table.add_row(vec!["together about".to_owned(), of_best, of_same]);
     format!(
-        "\nWhat nobody measured in this gym, by what it does to P, in makes of 100 (`bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed):\n{}\n",
+        "\nWhat nobody measured in this gym, by what it does to P, in makes of 100{}:\n{}\n",
+        match ring_is_asked {
+            true => {
+                " (`bankshot fit SHOTS --free hoop_restitution` finds that one from made and missed)"
+            }
+            false => "",
+        },
         table.trim_fmt()
     )
 }
@@ -548,8 +660,8 @@ fn rows_json(rows: &[PhysicsRow], fitted: Option<&FittedRows>) -> Value {
         Err(reason) => json!({ "none": reason.to_string() }),
     };
     let of_fit = |i: usize| {
-        let row = fitted.and_then(|fitted| fitted.rows[i].as_ref());
-        row.map(|row| {
+        let row = fitted.and_then(|fitted| Some((fitted.rows[i].as_ref()?, fitted.made_z[i])));
+        row.map(|(row, made_z)| {
             let [advised, gain] = match &row.advised {
                 Some(advised) => advised.map(|p| object(interval_json(&p))),
                 None => [Value::Null, Value::Null],
@@ -558,6 +670,7 @@ fn rows_json(rows: &[PhysicsRow], fitted: Option<&FittedRows>) -> Value {
                 "usual_probability": object(interval_json(&row.usual)),
                 "advised_probability": advised,
                 "gain": gain,
+                "made_z": made_z,
             })
         })
     };

@@ -119,9 +119,10 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     let kind = options.kind.into();
     let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet))?;
     let over_draws = match &draws {
-        Some((_, fit)) => fit_folder::angles_over_draws(fit, &profile, &rows)?,
-        None => Vec::new(),
+        Some((_, fit)) => Some(fit_folder::angles_over_draws(fit, &profile, &rows)?),
+        None => None,
     };
+    let angles = over_draws.as_ref().map_or(&[][..], |over| &over.angles);
     // The angles have their best speed and aim, which those of the shooter need not be.
     let of_fit = fit.map_or_else(String::new, |fit| {
         let p = fit.usual_probabilities(0).interval();
@@ -134,25 +135,25 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     });
     let text = || {
         let text = by_pitch_text(&rows, kind, &profile, units) + &of_fit;
-        let words = draws
-            .as_ref()
-            .map(|(folder, fit)| fit_folder::angles_in_words((folder, fit), &rows, &over_draws));
+        let words = draws.as_ref().zip(over_draws.as_ref());
+        let words = words
+            .map(|((folder, fit), over)| fit_folder::angles_in_words((folder, fit), &rows, over));
         match words {
             Some(words) => format!("{text}\n{}", wrapped(&words)),
             None => text,
         }
     };
     let json = || {
-        let json = by_pitch_json(&rows, &over_draws, kind, &profile, units);
+        let json = by_pitch_json(&rows, angles, kind, &profile, units);
         format!("{json:#}\n")
     };
     output_files::write(&options.output, |form| match form {
-        OutputForm::Csv => by_pitch_csv(&rows, &over_draws, kind, &profile, units),
+        OutputForm::Csv => by_pitch_csv(&rows, angles, kind, &profile, units),
         OutputForm::Json => json(),
         OutputForm::Text => text(),
     })?;
     if let Some(path) = &options.plot
-        && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, (&rows, &over_draws), units)
+        && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, (&rows, angles), units)
     {
         plot_files::write_one(path, &plot)?;
     }

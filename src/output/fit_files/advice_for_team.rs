@@ -1,9 +1,12 @@
 //! Advice in the few words of a poster and of a row of a table.
 
-use super::advice_text::{MOST_DISAGREEMENT, Observed, disagreement, scatter_in_words};
+use super::advice_text::{
+    MOST_DISAGREEMENT, Observed, disagreement, most_worth_training, scatter_in_words,
+};
 use super::change_in_words::{
     ChangeWords, FirstChange, first_change, first_change_in_words, landing_in_words,
 };
+use super::fit_text::chance;
 use crate::fitting::{Advice, AdviceStep, AdviceSteps};
 use crate::units::UnitSystem;
 
@@ -27,7 +30,7 @@ fn is_doubted(advice: &Advice, observed: Observed) -> bool {
 pub struct ShortAdvice {
     /// How many of 100 usual shots go in, with the interval: `34 (27 to 42)`.
     pub usual: String,
-    /// How many of 100 then go in; empty where nothing is to be changed.
+    /// How many of 100 then go in, with the interval; empty where nothing is to be changed.
     pub advised: String,
     /// What to change, and what to begin with.
     pub change: String,
@@ -54,21 +57,37 @@ pub fn short_advice(
         }
         None => "nothing yet: no change is surely better".to_owned(),
         Some(steps) => {
-            let first = match first_change(steps) {
-                _ if steps.alone.is_none() => "",
-                FirstChange::Speed => "; the speed first",
-                FirstChange::Pitch => "; the angle first",
-                FirstChange::Either => "; begin with either",
-                FirstChange::Both => "; speed and angle together",
-            };
-            words.of_releases(&advice.usual, &steps.advised) + first
+            let first = steps.alone.map_or_else(String::new, |alone| {
+                let (name, share) = match alone.speed_is_better {
+                    share if share >= 0.5 => ("speed", share),
+                    share => ("angle", 1.0 - share),
+                };
+                match first_change(steps) {
+                    FirstChange::Speed => format!("; begin with the speed ({})", chance(share)),
+                    FirstChange::Pitch => format!("; begin with the angle ({})", chance(share)),
+                    FirstChange::Either => {
+                        format!("; begin with either, rather the {name} ({})", chance(share))
+                    }
+                    FirstChange::Both => "; speed and angle together".to_owned(),
+                }
+            });
+            words.of_releases(&advice.usual, &steps.advised) + &first
         }
     };
-    let training = advice.training.first();
+    let training = most_worth_training(&advice.training).into_iter();
+    let training: Vec<&str> = training
+        .map(|training| scatter_in_words(training.cause))
+        .collect();
     let steps = steps_to_follow(advice, observed);
     ShortAdvice {
         advised: steps.map_or_else(String::new, |steps| {
-            format!("{:.0}", 100.0 * (p.mean + steps.gain.mean))
+            let of_advised = advice.advised_probability;
+            format!(
+                "{:.0} ({:.0} to {:.0})",
+                100.0 * (p.mean + steps.gain.mean),
+                100.0 * of_advised.low,
+                100.0 * of_advised.high
+            )
         }),
         usual: format!(
             "{:.0} ({:.0} to {:.0})",
@@ -77,15 +96,12 @@ pub fn short_advice(
             100.0 * p.high
         ),
         change,
-        training: training.map_or_else(String::new, |training| {
-            scatter_in_words(training.cause).to_owned()
-        }),
+        training: training.join(", or "),
     }
 }
 
 /// What a poster says of a player's own shots: how many go in, what to change, and what the player
-/// then sees; empty where no change is sure, or the makes and the measured shots do not belong
-/// together.
+/// then sees; empty where the makes and the measured shots do not belong together.
 #[must_use]
 pub fn advice_for_poster(
     advice: &Advice,
@@ -93,10 +109,16 @@ pub fn advice_for_poster(
     (from, court_angle_rad): (&str, f64),
     units: UnitSystem,
 ) -> String {
-    let Some(steps) = steps_to_follow(advice, observed) else {
-        return String::new();
-    };
     let p = advice.usual_probability;
+    let Some(steps) = steps_to_follow(advice, observed) else {
+        return match is_doubted(advice, observed) {
+            true => String::new(),
+            false => format!(
+                "Your shot, {from}: now {:.0} of 100 go in. Keep it: no change is surely better.",
+                100.0 * p.mean
+            ),
+        };
+    };
     let words = ChangeWords {
         units,
         court_angle_rad,

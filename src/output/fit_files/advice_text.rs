@@ -104,17 +104,22 @@ pub fn other_kind_not_advised(advice: &Advice) -> String {
     )
 }
 
-/// What to train, in a sentence: the scatter that costs most, and what costs about as much.
-fn training_in_words(training: &[TrainingGain]) -> String {
+/// The scatter that costs most, and what costs about as much.
+pub(super) fn most_worth_training(training: &[TrainingGain]) -> Vec<&TrainingGain> {
     /// What gains this fraction of the largest gain is about as good.
     const AS_GOOD: f64 = 0.85;
-    let Some(first) = training.first() else {
+    let most = training.first().map_or(0.0, |first| first.gain.mean);
+    let all = training.iter();
+    all.filter(|other| other.gain.mean >= AS_GOOD * most)
+        .collect()
+}
+
+/// What to train, in a sentence: the scatter that costs most, and what costs about as much.
+fn training_in_words(training: &[TrainingGain]) -> String {
+    let as_good = most_worth_training(training);
+    if as_good.is_empty() {
         return String::new();
-    };
-    let as_good: Vec<&TrainingGain> = training
-        .iter()
-        .filter(|other| other.gain.mean >= AS_GOOD * first.gain.mean)
-        .collect();
+    }
     let names: Vec<&str> = as_good.iter().map(|t| scatter_in_words(t.cause)).collect();
     let gains: Vec<String> = as_good
         .iter()
@@ -227,7 +232,8 @@ pub fn advice_text(
     if let (Some(best), Some(probability), Some(gain)) =
         (&advice.best, &advice.best_probability, &advice.gain)
     {
-        if let Some(steps) = &advice.steps {
+        let is_changed = |steps: &&AdviceSteps| steps.is_changed.contains(&true);
+        if let Some(steps) = advice.steps.as_ref().filter(is_changed) {
             let p = &advice.advised_probability;
             text += &format!(
                 "gain of the advised shot  {}, P {} (95 %: {:.1} to {:.1} %)\n",

@@ -3,8 +3,8 @@
 use super::assumptions_json::{prior_json, tracker_errors_json};
 use super::parameters::{parameters, value_units};
 use crate::fitting::{
-    DrawProbabilities, Interval, PopulationPrior, ReleaseDifference, ShooterFit, TrackerNoise,
-    VALUE_NAMES, Wilson,
+    ConstantError, DrawProbabilities, Interval, PopulationPrior, ReleaseDifference, ShooterFit,
+    TrackerNoise, VALUE_NAMES, Wilson, constant_errors,
 };
 use crate::output::json_object::{Record, number, object, provenance};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -192,6 +192,7 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             }),
         ),
         named("tests", tests_json(fit)),
+        named("constant_errors", constant_errors_json(fit, source, units)),
         named("shots", posterior.shots.into()),
         named("rejected", rejected.collect()),
         named("measured_less_from_landings", differences.collect()),
@@ -263,4 +264,29 @@ fn tests_json(fit: &ShooterFit) -> Value {
         ),
         named("order", trends.collect()),
     ])
+}
+
+/// What constant errors of the tracker would do.
+fn constant_errors_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> Value {
+    let errors = constant_errors_of(fit, source).into_iter();
+    let error = |error: ConstantError| {
+        let (unit, size) = value_units(units)[error.value];
+        object(vec![
+            named("name", VALUE_NAMES[error.value].into()),
+            named("unit", unit.into()),
+            named("reads_too_high_by", number(error.by / size)),
+            named("probability", number(error.probability)),
+            named("made_z", error.made_z.map_or(Value::Null, number)),
+        ])
+    };
+    errors.map(error).collect()
+}
+
+/// What constant errors of the tracker would do; empty where no releases were measured.
+pub(super) fn constant_errors_of(fit: &ShooterFit, source: &FitSource<'_>) -> Vec<ConstantError> {
+    if source.kind != "releases" {
+        return Vec::new();
+    }
+    let noise = source.noise.release_covariance();
+    constant_errors(fit, [0, 1, 2].map(|i| libm::sqrt(noise[(i, i)].max(0.0))))
 }

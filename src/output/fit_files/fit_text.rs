@@ -1,17 +1,12 @@
 //! The answer of `fit` for people.
 
-use super::fit_json::FitSource;
+use super::fit_json::{FitSource, constant_errors_of};
 use super::parameters::{parameters, value_units};
 use crate::fitting::{
-    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, nominal_of, p_value,
+    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, p_value,
     values_at_height,
 };
-use crate::probability::{Sampler, Silent};
-use crate::shooter::NominalVariable;
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
-
-/// The standard error of P where it is printed in whole percent.
-const ROUGHLY: f64 = 0.002;
 
 /// A share of the draws as a chance: no count of draws shows 0 or 100 %.
 pub(super) fn chance(share: f64) -> String {
@@ -192,26 +187,38 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
 }
 
 /// That a constant error of the tracker is in no interval, and what one of the size of its noise
-/// would do to P where the speeds were measured.
+/// would do where releases were measured.
 fn of_constant_error(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
-    let error_m_s = libm::sqrt(source.noise.release_covariance()[(0, 0)].max(0.0));
-    if source.kind != "releases" || error_m_s == 0.0 {
+    let errors = constant_errors_of(fit, source);
+    if errors.is_empty() {
         return " They leave out a constant error of the tracker too.\n".to_owned();
     }
-    let (long, metre) = units.length();
-    let profile = &fit.profiles[0];
-    let usual = nominal_of(&fit.typical.means[0]);
-    let sampler = Sampler::new(profile);
-    let [slower, faster] = [-error_m_s, error_m_s].map(|by_m_s| {
-        let shot = usual.with(NominalVariable::Speed, usual.speed_m_s + by_m_s);
-        let seed = profile.search().seed;
-        let estimate = sampler.estimate(&shot, ROUGHLY, seed, &Silent);
-        100.0 * estimate.probability
-    });
-    format!(
-        " They leave out a constant error of the tracker too: if it reads all speeds {:.2} {long}/s too high (one standard deviation of its noise), the usual shot makes {slower:.0} of 100, if too low {faster:.0}. The makes expected and seen tell of a large one.\n",
-        error_m_s / metre
-    )
+    let has_z = errors.iter().any(|error| error.made_z.is_some());
+    let mut text = " They leave out a constant error of the tracker too. If it reads a value of all shots too high or too low by one standard deviation of its noise, so many of 100 usual shots go in".to_owned();
+    text += match has_z {
+        true => {
+            ", and the makes differ from what is then expected by z of their standard deviations (beyond 3 they speak against it):\n"
+        }
+        false => ":\n",
+    };
+    for pair in errors.chunks(2) {
+        let (unit, size) = value_units(units)[pair[0].value];
+        let decimals = if pair[0].value == 0 { 3 } else { 2 };
+        text += &format!(
+            "  {:<5} {:>5.decimals$} {unit:<4}",
+            VALUE_NAMES[pair[0].value],
+            pair[0].by / size
+        );
+        for error in pair {
+            let side = if error.by > 0.0 { "high" } else { "low" };
+            let z = error
+                .made_z
+                .map_or_else(String::new, |z| format!(" (z {z:+.1})"));
+            text += &format!("   too {side} {:>3.0}{z}", 100.0 * error.probability);
+        }
+        text += "\n";
+    }
+    text
 }
 
 /// The tests of the shots in one sentence, whether they warn or not.

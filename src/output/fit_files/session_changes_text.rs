@@ -15,6 +15,8 @@ pub struct SessionChange {
     pub size: f64,
     /// Before and after.
     pub comparison: SessionComparison,
+    /// The second over the first; of a standard deviation.
+    pub ratio: Option<Interval>,
 }
 
 impl SessionChange {
@@ -61,6 +63,13 @@ impl SessionChange {
     fn is_certain_among(&self, tested: usize) -> bool {
         let change = &self.comparison.change;
         change.mean.abs() > quantile_among(tested) * change.sd
+    }
+
+    /// Whether more or other draws may turn what [`Self::is_certain_among`] says.
+    #[must_use]
+    pub fn is_at_the_limit(&self, tested: usize) -> bool {
+        let (z, error) = self.comparison.standard_errors();
+        (z - quantile_among(tested)).abs() < 2.0 * error
     }
 
     fn is_decided(&self) -> bool {
@@ -140,6 +149,12 @@ fn points(change: &Interval) -> String {
     format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
 }
 
+/// The same in a list: `+3.1 (-1.2 to +7.4)`.
+fn without_level(change: &Interval) -> String {
+    let [mean, low, high] = [change.mean, change.low, change.high].map(tenths);
+    format!("{mean:+.1} ({low:+.1} to {high:+.1})")
+}
+
 /// The verdict in words, then the table. The sessions are before and after.
 #[must_use]
 pub fn session_changes_text(
@@ -170,14 +185,14 @@ pub fn session_changes_text(
     });
     let mut text = verdict(changes, tested);
     text += &format!(
-        "Of the change of the chance, the scatter makes {}, and the usual release (the means of speed, angle and direction) {}. What the scatter does depends on the usual release: {} at the old one, {} at the new one; the first number is the mean of both. Of the usual release the new speed alone, all else as before, makes {:+.1} points, the new angle alone {:+.1}, the new direction alone {:+.1}.\n",
+        "Of the change of the chance, the scatter makes {}, and the usual release (the means) {}. What the scatter does depends on the usual release: {} at the old one, {} at the new one; the first number is the mean of both. Of the usual release the new speed alone, all else as before, makes {}, the new angle alone {}, the new direction alone {}; these need not add up, as each does something else beside the others.\n",
         points(&causes.by_scatter),
         points(&causes.by_means),
         points(&causes.by_scatter_first_and_last[0]),
         points(&causes.by_scatter_first_and_last[1]),
-        tenths(causes.by_mean_alone[0].mean),
-        tenths(causes.by_mean_alone[1].mean),
-        tenths(causes.by_mean_alone[2].mean)
+        points(&causes.by_mean_alone[0]),
+        without_level(&causes.by_mean_alone[1]),
+        without_level(&causes.by_mean_alone[2])
     );
     if let [first @ (made, 1..), second @ (made_then, 1..)] = makes {
         let percent = |made: usize, of: usize| 100.0 * made as f64 / of as f64;
@@ -195,6 +210,18 @@ pub fn session_changes_text(
     );
     for change in changes {
         text += &line(change, tested);
+    }
+    let ratios = changes.iter().filter_map(|change| {
+        let ratio = change.ratio?;
+        let name = change.name.trim_end_matches("_sd");
+        Some(format!(
+            "{name} {:.2} (95 %: {:.2} to {:.2})",
+            ratio.mean, ratio.low, ratio.high
+        ))
+    });
+    let ratios: Vec<String> = ratios.collect();
+    if !ratios.is_empty() {
+        text += &format!("\nScatter after over before: {}.\n", ratios.join(", "));
     }
     text += "\n\
         r          a correlation\n\
@@ -264,6 +291,15 @@ fn values_in_words(changes: &[SessionChange], tested: usize) -> String {
     if !certain.is_empty() {
         text += &format!("Changed: {}.\n", list(&certain));
     }
+    let at_limit: Vec<String> = certain
+        .iter()
+        .chain(&possible)
+        .filter(|change| change.is_at_the_limit(tested))
+        .map(|change| {
+            let (z, _) = change.comparison.standard_errors();
+            format!("{} ({z:.2})", quantity_in_words(&change.name))
+        })
+        .collect();
     if !possible.is_empty() {
         text += &format!(
             "May have changed: {}. ({} own 95 % interval leaves out zero. But of {} values that stay the same, one or more seem to change in {:.0} of 100 comparisons.)\n",
@@ -271,6 +307,13 @@ fn values_in_words(changes: &[SessionChange], tested: usize) -> String {
             if possible.len() == 1 { "Its" } else { "Their" },
             tested,
             100.0 * (1.0 - libm::pow(0.95, tested as f64))
+        );
+    }
+    if !at_limit.is_empty() {
+        text += &format!(
+            "At the limit between the two: {}. {:.2} standard errors count as changed, and other draws (--seed) can turn this: report the interval, not the verdict.\n",
+            at_limit.join(", "),
+            quantile_among(tested)
         );
     }
     text

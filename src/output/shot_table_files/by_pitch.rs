@@ -92,6 +92,7 @@ pub fn by_pitch_text(
         return text;
     };
     text += &wrapped(&in_words(rows, (best_row, best), kind, units));
+    text += &at_speed_limit_in_words(rows, profile);
     text += &other_kind_in_words(rows, best, kind);
     text += &wrapped(&physics_note(profile, units));
     let spin = if profile.search().choice.includes(NominalVariable::Backspin) {
@@ -180,6 +181,28 @@ fn other_kind_in_words(rows: &[ShotAtPitch], best: &TableShot, kind: TableKind) 
         "At some of these angles the {} shot makes up to {:.0} of 100: --kind best takes the better one.",
         kind.other().name(),
         100.0 * most
+    ))
+}
+
+/// At which angles the speed is the greatest one of the profile; empty where at none.
+fn at_speed_limit_in_words(rows: &[ShotAtPitch], profile: &Profile) -> String {
+    let Some(most_m_s) = profile.search().speed_max_m_s else {
+        return String::new();
+    };
+    let at_limit = found(rows).filter(|(_, shot)| shot.nominal.speed_m_s > (1.0 - 1e-6) * most_m_s);
+    let angles: Vec<String> = at_limit
+        .map(|(rad, _)| {
+            decimal(rad / DEGREE_RAD, 1)
+                .trim_end_matches(".0")
+                .to_owned()
+        })
+        .collect();
+    if angles.is_empty() {
+        return String::new();
+    }
+    wrapped(&format!(
+        "At {} deg the speed is speed_max of the profile: a faster launcher makes more there.",
+        angles.join(", ")
     ))
 }
 

@@ -13,6 +13,7 @@ pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<Str
         kinds_note(table, units),
         steep_note(table, units),
         range_note(table, units),
+        mean_note(table),
         no_shot_note(table, profile, units),
         Some(check_note(table, units)),
         added_note(table, units),
@@ -124,6 +125,30 @@ pub(super) fn speed_limit_in_words(profile: &Profile, units: UnitSystem) -> Stri
     })
 }
 
+/// The mean of P over the places that were asked for: two launchers can be told apart by it.
+fn mean_note(table: &ShotTable) -> Option<String> {
+    let mut sum = 0.0;
+    let mut places = 0;
+    for (a, angle_rad) in table.angles_rad.iter().enumerate() {
+        for (d, distance_m) in table.distances_m.iter().enumerate() {
+            let is_added = table.added_distances_m.contains(distance_m)
+                || table.added_angles_rad.contains(angle_rad);
+            // At a jump a place has a row of each side: the first one counts.
+            let is_second = d > 0 && table.distances_m[d - 1] == *distance_m;
+            if !is_added && !is_second {
+                sum += table.at(a, d).map_or(0.0, |shot| shot.probability);
+                places += 1;
+            }
+        }
+    }
+    (places > 1).then(|| {
+        format!(
+            "The mean of P over the {places} places that were asked for is {:.3} (0 where there is no shot).",
+            sum / f64::from(places)
+        )
+    })
+}
+
 /// Where no clean shot goes in, and the greatest speed, if the profile has one.
 fn no_shot_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option<String> {
     let places = Places::where_row(table, |shot| shot.is_none());
@@ -165,7 +190,7 @@ fn check_note(table: &ShotTable, units: UnitSystem) -> String {
     };
     format!(
         "Checked at {} places, the quarters between the table's: interpolated shots lose at most \
-         {:.4} in P (at {}), and their interpolated P errs by at most {:.4} (at {}).",
+         {:.4} in P there (at {}), and their interpolated P errs by at most {:.4} (at {}).",
         table.checks.len(),
         costliest.loss().max(0.0),
         place_text(table, &costliest.location, units),

@@ -51,6 +51,7 @@ pub(super) fn changes(sessions: &[Session; 2], units: UnitSystem) -> Vec<Session
         unit: "%",
         size: 0.01,
         comparison: compare_probabilities([&before.probabilities, &after.probabilities], shots),
+        ratio: None,
     }];
     let is_spin_measured = posteriors
         .iter()
@@ -61,8 +62,9 @@ pub(super) fn changes(sessions: &[Session; 2], units: UnitSystem) -> Vec<Session
         if is_spin && !is_spin_measured {
             continue;
         }
-        let mut add = |what: &str, comparison: SessionComparison| {
+        let mut add = |what: &str, comparison: SessionComparison, ratio: Option<Interval>| {
             changes.push(SessionChange {
+                ratio,
                 name: format!("{}_{what}", VALUE_NAMES[i]),
                 unit,
                 size,
@@ -72,8 +74,17 @@ pub(super) fn changes(sessions: &[Session; 2], units: UnitSystem) -> Vec<Session
         add(
             "mean",
             compare_sessions(posteriors, |draw| draw.means[before.place][i]),
+            None,
         );
-        add("sd", compare_sessions(posteriors, |draw| draw.sds[i]));
+        let log = compare_sessions(posteriors, |draw| libm::log(draw.sds[i])).change;
+        let ratio = Interval {
+            mean: libm::exp(log.mean),
+            sd: libm::exp(log.mean) * log.sd,
+            low: libm::exp(log.low),
+            high: libm::exp(log.high),
+        };
+        let sd = compare_sessions(posteriors, |draw| draw.sds[i]);
+        add("sd", sd, Some(ratio));
     }
     for (a, b) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
         if b == VALUE_NAMES.len() - 1 && !is_spin_measured {
@@ -84,6 +95,7 @@ pub(super) fn changes(sessions: &[Session; 2], units: UnitSystem) -> Vec<Session
             unit: "",
             size: 1.0,
             comparison: compare_sessions(posteriors, |draw| draw.correlation[(a, b)]),
+            ratio: None,
         });
     }
     changes
@@ -111,7 +123,10 @@ pub(super) fn values_to_draw(changes: &[SessionChange]) -> Vec<ChangedValue> {
         .map(|interval| interval.scaled(1.0 / change.size));
         ChangedValue {
             name: change.in_words().to_owned(),
-            unit: change.unit,
+            unit: match change.name.as_str() {
+                "P" => "points",
+                _ => change.unit,
+            },
             decimals: change.decimals(),
             before,
             after,
@@ -124,9 +139,12 @@ pub(super) fn values_to_draw(changes: &[SessionChange]) -> Vec<ChangedValue> {
 
 /// The causes of the change of P for the plot.
 pub(super) fn causes_to_draw(causes: &ProbabilityChange) -> Vec<ChangeCause> {
+    let [old, new] = &causes.by_scatter_first_and_last;
     let [speed, pitch, polar] = &causes.by_mean_alone;
     let named = [
-        ("the scatter", &causes.by_scatter),
+        ("the scatter, mean of both:", &causes.by_scatter),
+        ("at the old usual release", old),
+        ("at the new usual release", new),
         ("the usual release", &causes.by_means),
         ("of it the speed alone", speed),
         ("the release angle alone", pitch),
@@ -166,7 +184,9 @@ pub(super) fn json(
             "after": interval(&comparison.after),
             "change": interval(&comparison.change),
             "probability_of_growth": number(comparison.grew),
+            "ratio": change.ratio.map(|ratio| object(interval_json(&ratio))),
             "is_decided": decision == Decision::Made,
+            "is_at_the_limit": change.is_at_the_limit(changes.len() - 1),
             "shots_to_decide": match decision {
                 Decision::Needs(shots) => Some(shots.ceil()),
                 Decision::Made | Decision::Unknown => None,

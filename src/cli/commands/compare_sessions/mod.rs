@@ -165,8 +165,14 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
         let changes = planned(changes(sessions, units(&sessions[0])), &options.planned)?;
         let causes = causes(sessions);
         if let Some(path) = &options.plot {
+            let [first, second] = sessions.each_ref().map(|session| &session.profile);
+            // The names of two fits may have their sessions.
+            let shooter = match first.shooter().name == second.shooter().name {
+                true => first.shooter().name.as_str(),
+                false => "",
+            };
             let plot = session_changes::draw(
-                &sessions[0].profile.shooter().name,
+                shooter,
                 sessions.each_ref().map(|session| session.name.as_str()),
                 &values_to_draw(&changes),
                 &causes_to_draw(&causes),

@@ -124,7 +124,8 @@ pub(super) fn shots_for_changes(
         let never = never.filter(|points| further_shots(rows, first, points / 100.0).is_none());
         let larger: String = never
             .map(|points| {
-                let root = POWER * first.p.of_one_shot / (points / 100.0);
+                let of_one_shot = known_after(rows, most, |row| row.probability_error).of_one_shot;
+                let root = POWER * of_one_shot / (points / 100.0);
                 format!(
                     " For {points} points the first session would need about {} shots or more.",
                     two_digits(root * root)
@@ -148,6 +149,21 @@ pub(super) fn shots_for_changes(
         },
         lines(&columns(&of_each), &columns(&falls_each))
     )
+}
+
+/// The largest test that answers ask for, where it is so much larger than those of the rows that
+/// they do not tell it: the error of a test does not fall with the root of its shots alone, as what
+/// is known before it wears off.
+pub(super) fn size_to_check(rows: &[DesignRow], changes: &[f64]) -> Option<usize> {
+    /// Rows tell tests up to so many times as large.
+    const FAR: f64 = 1.5;
+    let most = rows.iter().map(|row| row.shots).max()?;
+    let asked = changes
+        .iter()
+        .map(|points| shots_in_each(rows, points / 100.0));
+    let largest = asked.filter(|shots| *shots <= MOST_SHOTS as f64);
+    let largest = largest.fold(0.0, f64::max);
+    (largest > FAR * most as f64).then_some(largest as usize)
 }
 
 /// Shots in each of two equal sessions that show a change of P.

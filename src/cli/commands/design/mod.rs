@@ -7,6 +7,7 @@ mod tested_shot;
 use self::against::Against;
 use self::changes::{
     FirstSession, MOST_SHOTS, changes_json, least_change, shots_for, shots_for_changes,
+    size_to_check,
 };
 use self::tested_shot::TestedShot;
 use crate::cli::config_files::read_text;
@@ -114,6 +115,9 @@ fn tracker_named(name: &str, sees: Option<Source>) -> Result<TrackerOfTest, Fail
     Ok(TrackerOfTest { name, noise, sees })
 }
 
+/// Simulated tests of a size that the answer asked for, at least.
+const LEAST_REPETITIONS: u64 = 12;
+
 pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let named = options
         .tracker
@@ -155,15 +159,16 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let own_noise = noise(&tracker, profile, nominal)?;
     let bars = ProgressBars::new(quiet);
     let simulate_of = |shot: &TestedShot, noise: &Covariance, sizes: &[usize]| {
-        design(
-            &shot.profile,
-            &shot.nominal,
-            noise,
-            sizes,
-            options.repetitions,
-            &bars,
-        )
-        .map_err(|error| Failure {
+        // A large test scatters less from one simulation to the next, and takes longer.
+        let largest = options.shots.iter().copied().max().unwrap_or(0) as u64;
+        let of_size = |shots: usize| match options.repetitions * largest / shots as u64 {
+            fewer if shots as u64 > largest => {
+                fewer.max(options.repetitions.min(LEAST_REPETITIONS))
+            }
+            _ => options.repetitions,
+        };
+        let sizes: Vec<(usize, u64)> = sizes.iter().map(|n| (*n, of_size(*n))).collect();
+        design(&shot.profile, &shot.nominal, noise, &sizes, &bars).map_err(|error| Failure {
             code: match error {
                 FitError::NotConverged { .. } => code::IMPRECISE,
                 FitError::NoScatter => code::USAGE,
@@ -177,6 +182,11 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     sizes.sort_unstable();
     sizes.dedup();
     let mut rows = simulate(&sizes)?;
+    let checked = size_to_check(&rows, &options.change);
+    if let Some(shots) = checked {
+        rows.extend(simulate(&[shots])?);
+        sizes.push(shots);
+    }
     // Shots that are there already were measured by the tracker of their fit.
     let first = options
         .first
@@ -261,6 +271,11 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
             100.0 * row.probability_error,
             100.0 * row.counting_error,
             100.0 * least_change(row, first.as_ref())
+        );
+    }
+    if let Some(shots) = checked {
+        text += &format!(
+            "\nThe row of {shots} shots is there because --change asks about tests as large as that.\n"
         );
     }
     text += &format!(

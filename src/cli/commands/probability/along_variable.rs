@@ -10,7 +10,7 @@ use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_lists::ascending_values;
-use crate::fitting::AngleOverDraws;
+use crate::fitting::{AngleOverDraws, best_angles_of_draws};
 use crate::output::best_shot_text::PROFILE_IS_EXACT;
 use crate::output::probability_along_variable::{PointAlong, ProbabilityAlong};
 use crate::plots;
@@ -133,6 +133,7 @@ pub(super) fn run(
         bars.advance(1);
     }
     bars.end();
+    let best_of_draws = best_angles_of_draws(&of_draws);
     let over = AngleOverDraws::of_angles(&of_draws);
     for (point, over) in points.iter_mut().zip(over) {
         point.over_draws = over;
@@ -143,6 +144,7 @@ pub(super) fn run(
     let along = ProbabilityAlong {
         profile,
         variable,
+        best_of_draws,
         is_aim,
         points,
         is_rest_uncertain: usual_at.is_some(),

@@ -120,7 +120,7 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
                     };
                     [
                         usual,
-                        short.advised.clone(),
+                        short.advised.replace(' ', "\u{a0}"),
                         short.change.clone(),
                         short.training.clone(),
                     ]
@@ -129,11 +129,22 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
         }
         row
     });
-    let mut caption = "In 100 shots. Best shots: makes with the best release, the mean of all places. Bank it from: makes of the best bank shot (of the best direct one); ? where the measured shots do not tell yet which is better; * where direct is better on an unusual ring.".to_owned();
+    let mut caption = "In 100 shots. Best shots: makes with the best release, the mean of all places. Bank it from: makes of the best bank shot (of the best direct one)".to_owned();
+    if players
+        .iter()
+        .any(|player| !player.unsure_places().is_empty())
+    {
+        caption += "; ? where the measured shots do not tell yet which is better";
+    }
+    let mut banks = players.iter().flat_map(|player| player.bank_places());
+    if banks.any(PlaceProbabilities::turns_with_the_hoop) {
+        caption += "; * where direct is better on an unusual ring or board";
+    }
+    caption += ".";
     if !advised.is_empty() {
         let from = one_place(&advised).map_or_else(String::new, |from| format!(", {from}"));
         caption += &format!(
-            " Now: makes with the measured release{from} (95 % interval). Can make: makes after the change, with the same scatter. Train: the scatter that costs most."
+            " Now: makes with the measured release{from} (95 % interval). Can make: makes after the change, with the same scatter (95 % interval). Change: in brackets the chance that this beginning makes more than the other one. Train: the scatter that costs most."
         );
     }
     PageTable {
@@ -162,19 +173,19 @@ fn bank_lines(player: &PlayerSweep, units: UnitSystem) -> String {
     };
     let lines_of = |places: &[&PlaceProbabilities], mark: &str| -> Vec<String> {
         let lines = with_mirror_images(places).into_iter().map(|same| {
-            let turns = same.iter().any(|place| place.turns_with_the_ring());
+            let turns = same.iter().any(|place| place.turns_with_the_hoop());
             format!(
                 "{}: {} ({}){}{mark}",
                 words_of(&same, places),
                 least_to_most(same.iter().map(|place| place.bank), 0),
                 least_to_most(same.iter().map(|place| place.direct), 0),
-                if turns { " *" } else { "" }
+                if turns { "\u{a0}*" } else { "" }
             )
         });
         lines.collect()
     };
     let mut lines = lines_of(&bank, "");
-    lines.extend(lines_of(&unsure, " ?"));
+    lines.extend(lines_of(&unsure, "\u{a0}?"));
     if lines.is_empty() {
         return "nowhere: shoot direct".to_owned();
     }

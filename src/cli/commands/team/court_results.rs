@@ -1,9 +1,11 @@
 //! What the sweeps of a team say: who is best from where, who should bank from where.
 
+use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
 use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::Difference;
 use crate::fitting::UnseenParameter;
+use crate::model::SolidId;
 use crate::output::fit_files::session_changes_text::two_digits;
 use crate::plots::svg::shortened;
 use crate::sweep::probability_by_place::{
@@ -121,23 +123,28 @@ pub(super) fn remarks(
     } else {
         "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n"
     };
-    (of_level + &of_rings(players, ring), of_profiles)
+    (of_level + &of_hoops(players, ring), of_profiles)
 }
 
-/// What the ring of the gym has to do with bank or direct; empty where it decides nothing.
-fn of_rings(players: &[PlayerSweep], (low, high): (f64, f64)) -> String {
+/// What the ring and the board of the gym have to do with bank or direct; empty where they decide
+/// nothing and nothing was asked about them.
+fn of_hoops(players: &[PlayerSweep], (low, high): (f64, f64)) -> String {
     let mut places = players.iter().flat_map(|player| player.bank_places());
-    if !places.any(PlaceProbabilities::turns_with_the_ring) {
-        return String::new();
+    let turns = places.any(PlaceProbabilities::turns_with_the_hoop);
+    let told = (low, high) != UnseenParameter::HoopRestitution.usual_range();
+    let mut text = match told {
+        true => format!(
+            "By the makes the restitution of the ring is {low:.2} to {high:.2}: P is that of the ring of the profiles, and where to bank was tried on these rings.\n"
+        ),
+        false if turns => format!(
+            "Nobody measured the ring of this gym; sources give restitutions from {low:.2} (a dead ring) to {high:.2} (a lively one). `bankshot fit SHOTS --free hoop_restitution` asks the makes about it; after that this command heeds what they say.\n"
+        ),
+        false => String::new(),
+    };
+    if turns {
+        text += "Boards were tried 0.05 to each side of the restitution of the profiles. On some of these rings and boards direct is better, at the places that say so.\n";
     }
-    if (low, high) != UnseenParameter::HoopRestitution.usual_range() {
-        return format!(
-            "By the makes the restitution of the ring is {low:.2} to {high:.2}; on some of these rings direct is better at the places that say so.\n"
-        );
-    }
-    format!(
-        "Nobody measured the ring of this gym; sources give restitutions from {low:.2} (a dead ring) to {high:.2} (a lively one). `bankshot fit SHOTS --free hoop_restitution` asks the makes about it; after that this command heeds what they say.\n"
-    )
+    text
 }
 
 /// From where a player should bank, and from where that is open.
@@ -146,7 +153,7 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let aim = |same: &[&PlaceProbabilities]| {
         let aim = board_aim_of_sides(same, units);
         let aim = aim.map(|aim| format!("aim at the board, {aim}"));
-        let words = [aim, ring_in_words(same)];
+        let words = [aim, hoop_in_words(same)];
         let words: Vec<String> = words.into_iter().flatten().collect();
         (!words.is_empty()).then(|| words.join("; "))
     };
@@ -230,16 +237,29 @@ pub(super) fn place_in_words(
 /// More shots than these are no plan.
 const MOST_SHOTS: f64 = 5000.0;
 
-/// That the direct shot is better on some ring; `None` if it is on none, from either side.
-fn ring_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
-    let of_rings = same.iter().filter_map(|place| place.least_gain_over_rings);
-    let (gain, restitution) = of_rings.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-    (gain < 0.0).then(|| {
-        format!(
-            "on a ring of restitution {restitution:.2} direct is better by {}",
-            in_hundred(-gain)
-        )
-    })
+/// That the direct shot is better on some ring or board; `None` if it is on none, from either side.
+fn hoop_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
+    let turned: Vec<&PlaceProbabilities> = same
+        .iter()
+        .copied()
+        .filter(|place| place.turns_with_the_hoop())
+        .collect();
+    let of_place = turned.iter().filter_map(|place| place.least_gain);
+    let least = of_place.reduce(|a, b| if b.gain < a.gain { b } else { a })?;
+    let side = match turned[..] {
+        [one] if same.len() > 1 && one.place.y_m > 0.0 => " from the right",
+        [_] if same.len() > 1 => " from the left",
+        _ => "",
+    };
+    Some(format!(
+        "on a {} of restitution {:.2} direct is better by {}{side}",
+        match least.solid {
+            SolidId::Board => "board",
+            _ => "ring",
+        },
+        least.restitution,
+        in_hundred(-least.gain)
+    ))
 }
 
 /// P in 100 of a shot from one place, or from both sides: `80.6 to 82.2` where they differ.
@@ -291,8 +311,31 @@ pub(super) fn team_text(players: &[PlayerSweep], ring: (f64, f64), units: UnitSy
     text + &bank_texts(players, units).concat()
 }
 
-/// What must be said of left and right.
+/// What must be said of where the shots were measured, and of left and right.
 pub(super) fn notes(players: &[PlayerSweep]) -> String {
+    measured_places(players) + &sides(players)
+}
+
+/// From where the players were measured: what they do elsewhere is taken from there.
+fn measured_places(players: &[PlayerSweep]) -> String {
+    let advice = players.iter().filter_map(|player| player.advice.as_ref());
+    let advice: Vec<&PlayerAdvice> = advice.collect();
+    let Some(first) = advice.first() else {
+        return String::new();
+    };
+    let is_one = advice
+        .iter()
+        .all(|other| other.from == first.from && other.further_places == 0);
+    let from = match is_one {
+        true => format!("from one place, {}", first.from),
+        false => "from the places of their fits".to_owned(),
+    };
+    format!(
+        "The players were measured {from}. At every other place P is computed with the scatter from there, which nobody measured.\n"
+    )
+}
+
+fn sides(players: &[PlayerSweep]) -> String {
     let differ = |player: &&PlayerSweep| left_and_right_differ(&player.places);
     let measured = |player: &&PlayerSweep| player.advice.is_some();
     let differing: Vec<&PlayerSweep> = players.iter().filter(differ).collect();

@@ -15,19 +15,26 @@ use crate::sweep::probability_by_place::{Preference, SURE};
 use crate::units::DEGREE_RAD;
 use std::path::PathBuf;
 
+/// The share of the draws from which on a kind that is not sure is still named.
+const LIKELY: f64 = 0.75;
+
 /// What a player is told about bank and direct.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Verdict {
     Prefer(Preference),
+    /// The measured shots leave both open, but more of the draws say so.
+    Lean(Preference),
     /// The measured shots leave both open.
     Unsure,
 }
 
 impl Verdict {
-    const ALL: [Self; 4] = [
+    const ALL: [Self; 6] = [
         Self::Prefer(Preference::Bank),
         Self::Prefer(Preference::Direct),
         Self::Prefer(Preference::Either),
+        Self::Lean(Preference::Bank),
+        Self::Lean(Preference::Direct),
         Self::Unsure,
     ];
 
@@ -36,6 +43,8 @@ impl Verdict {
             Self::Prefer(Preference::Bank) => "Bank it",
             Self::Prefer(Preference::Direct) => "Shoot it direct",
             Self::Prefer(Preference::Either) => "Either is as good",
+            Self::Lean(Preference::Bank) => "Rather bank it, but that is not sure",
+            Self::Lean(_) => "Rather shoot it direct, but that is not sure",
             Self::Unsure => "Not sure yet, the measured shots leave both open",
         }
     }
@@ -94,29 +103,30 @@ pub(super) fn run(
         let mut advice = preference
             .map_or("no clean shot", Preference::name)
             .to_owned();
-        let mut is_sure = true;
+        let mut share_of_draws = 1.0;
         if let [Ok(direct), Ok(bank)] = &shots[..]
             && preference != Some(Preference::Either)
             && let Some(fit) = fit_folder::of_profile(&path)?
         {
             let nominals = [&direct.nominal, &bank.nominal];
-            let bank_is_better = fit_folder::bank_is_better(&fit, profile, nominals)?;
+            let bank_is_better =
+                fit_folder::bank_gain_over_draws(&fit, profile, nominals)?.share_positive();
             let share = match preference {
                 Some(Preference::Bank) => bank_is_better,
                 _ => 1.0 - bank_is_better,
             };
             advice += &format!(" ({} %)", whole_percent(share));
-            is_sure = share >= SURE;
+            share_of_draws = share;
             any_draws = true;
         }
         let (long, metre) = profile.output().units.length();
         let location = profile.location();
         let name = shortened(&profile.shooter().name, LONGEST_NAME);
         verdicts.extend(preference.map(|preference| {
-            let verdict = if is_sure {
-                Verdict::Prefer(preference)
-            } else {
-                Verdict::Unsure
+            let verdict = match share_of_draws {
+                share if share >= SURE => Verdict::Prefer(preference),
+                share if share >= LIKELY => Verdict::Lean(preference),
+                _ => Verdict::Unsure,
             };
             (verdict, name.clone())
         }));

@@ -4,7 +4,7 @@ use super::court_page::team_page;
 use super::court_results::{notes, team_text};
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
-use super::sureness::{find_ring_dependence, find_sureness, ring_range, sureness_s};
+use super::sureness::{find_hoop_dependence, find_sureness, sureness_s};
 use super::team_csv::team_csv;
 use super::team_profiles::load_players;
 use crate::cli::commands::plan_sweep_time_and_memory::forecast_s;
@@ -14,8 +14,10 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder::{self, FitFolder};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
+use crate::cli::ring_told_by_makes::ring_told_by_makes;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_prose, print_remark, time_in_words};
+use crate::fitting::UnseenParameter;
 use crate::output::atomic_file;
 use crate::plots::player_poster::PlayerPoster;
 use crate::plots::sweep_results::SweepResults;
@@ -102,7 +104,8 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
     let folder_of = |player: &PlannedPlayer| out.join(run_folder::safe_name(&player.name));
     let folders: Vec<PathBuf> = planned.iter().map(folder_of).collect();
     let units = planned[0].config.settings.output.units;
-    let ring = ring_range(paths);
+    let told = ring_told_by_makes(paths);
+    let ring = told.unwrap_or(UnseenParameter::HoopRestitution.usual_range());
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
         forecast_in_words(&planned)
             .iter()
@@ -140,7 +143,7 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
         let (rows, _) = swept.union()?;
         let mut places = PlaceProbabilities::of_sweep(&config, &rows);
         let bars = ProgressBars::new(quiet);
-        find_ring_dependence(&mut places, &config, ring, &bars)?;
+        find_hoop_dependence(&mut places, &config, ring, &bars)?;
         let mut advice = None;
         if let Some(fit) = &fit {
             find_sureness(&mut places, &config, fit, &bars)?;

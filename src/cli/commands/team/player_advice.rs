@@ -34,12 +34,17 @@ impl PlayerAdvice {
         let (name, location) = (&profile.shooter().name, profile.location());
         let (observed, angle) = (Some(fit.observed[0]), location.angle_rad);
         let from = location.in_words(units);
+        let further_places = fit.profiles.len() - 1;
+        let mut poster = advice_for_poster(&advice, observed, (&from, angle), units);
+        if further_places == 0 && !poster.is_empty() {
+            poster += " (You were measured there alone: the map takes your scatter from there.)";
+        }
         Ok(Self {
             text: brief_advice_text(name, &advice, observed, angle, units),
-            poster: advice_for_poster(&advice, observed, (&from, angle), units),
+            poster,
             short: short_advice(&advice, observed, angle, units),
             from,
-            further_places: fit.profiles.len() - 1,
+            further_places,
         })
     }
 }

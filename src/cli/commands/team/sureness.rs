@@ -1,63 +1,96 @@
-//! How sure it is that a bank shot is better: over the draws of a fit, and over the rings that a
-//! gym may have.
+//! How sure it is that a bank shot is better: over the draws of a fit, and over the rings and
+//! boards that a gym may have.
 
 use crate::analysis::sensitivity::Difference;
+use crate::best_shot::likely_board_restitutions;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder::{self, FitFolder};
-use crate::fitting::{UnseenParameter, nominal_of};
+use crate::fitting::{DrawProbabilities, nominal_of};
 use crate::model::SolidId;
 use crate::probability::{Progress, Sampler, Silent};
 use crate::sweep::SweepConfig;
-use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
-use std::path::{Path, PathBuf};
+use crate::sweep::probability_by_place::{LeastGain, PlaceProbabilities, Preference};
 use std::time::Instant;
 
 /// Kinds that differ by more than this in P are compared by no draws: the better one is.
 const FAR_APART: f64 = 0.1;
 
 /// Finds in how many draws of a player's fit the bank shot is the better one, at each place where
-/// one kind is preferred to the other.
+/// one kind is preferred to the other. A place and its mirror image have one answer, of both
+/// together, unless the draws tell the two sides apart: few shots are measured, and what a player
+/// does on the left is then what is known of the right.
 pub(super) fn find_sureness(
     places: &mut [PlaceProbabilities],
     config: &SweepConfig,
     fit: &FitFolder,
     progress: &dyn Progress,
 ) -> Result<(), Failure> {
-    let is_open = |place: &&mut PlaceProbabilities| {
+    let is_open = |place: &PlaceProbabilities| {
         let is_near = |gain: Difference| gain.value.abs() <= FAR_APART;
         place.preference() != Some(Preference::Either) && place.bank_gain().is_some_and(is_near)
     };
-    let open: Vec<&mut PlaceProbabilities> = places.iter_mut().filter(is_open).collect();
-    progress.begin("bank or direct, over the draws", open.len() as u64);
-    for place in open {
-        place.fitted_shots = Some(fit.posterior.shots);
-        if let [Some(direct), Some(bank)] = &place.nominals {
-            let profile = config.settings.at(place.place.location())?;
-            let share = fit_folder::bank_is_better(fit, &profile, [direct, bank])?;
-            place.bank_is_better = Some(share);
+    let mirror_of = |places: &[PlaceProbabilities], i: usize| {
+        let mut others = places.iter();
+        others.position(|other| places[i].has_mirror_in(&[other]))
+    };
+    let mirrors: Vec<Option<usize>> = (0..places.len()).map(|i| mirror_of(places, i)).collect();
+    let is_asked =
+        |i: usize| is_open(&places[i]) || mirrors[i].is_some_and(|mirror| is_open(&places[mirror]));
+    let asked: Vec<usize> = (0..places.len()).filter(|&i| is_asked(i)).collect();
+    progress.begin("bank or direct, over the draws", asked.len() as u64);
+    let mut gains: Vec<Option<DrawProbabilities>> = vec![None; places.len()];
+    for &i in &asked {
+        if let [Some(direct), Some(bank)] = &places[i].nominals {
+            let profile = config.settings.at(places[i].place.location())?;
+            let gain = fit_folder::bank_gain_over_draws(fit, &profile, [direct, bank])?;
+            gains[i] = Some(gain);
         }
         progress.advance(1);
     }
     progress.end();
+    for &i in &asked {
+        let Some(gain) = &gains[i] else { continue };
+        let mirror = mirrors[i].and_then(|mirror| gains[mirror].as_ref());
+        let place = &mut places[i];
+        place.fitted_shots = Some(fit.posterior.shots);
+        place.bank_is_better = Some(match mirror {
+            Some(mirror) => share_of_both(gain, mirror),
+            None => gain.share_positive(),
+        });
+    }
     Ok(())
+}
+
+/// The share of the draws in which bank is better at a place, its mirror image taken with it unless
+/// the draws tell the two apart.
+fn share_of_both(gain: &DrawProbabilities, mirror: &DrawProbabilities) -> f64 {
+    /// The sides differ if so many draws agree which is the better one.
+    const TOLD_APART: f64 = 0.975;
+    let more_here = gain.minus(mirror).share_positive();
+    if more_here.max(1.0 - more_here) >= TOLD_APART {
+        return gain.share_positive();
+    }
+    let both = gain.of_draws.iter().zip(&mirror.of_draws);
+    let positive = both.filter(|(a, b)| *a + *b > 0.0).count();
+    positive as f64 / gain.of_draws.len() as f64
 }
 
 /// Seconds that [`find_sureness`] takes at one place, measured with a shot of the fit.
 pub(super) fn sureness_s(fit: &FitFolder) -> f64 {
     let nominal = nominal_of(&fit.posterior.typical().means[0]);
     let start = Instant::now();
-    match fit_folder::bank_is_better(fit, &fit.profiles[0], [&nominal; 2]) {
+    match fit_folder::bank_gain_over_draws(fit, &fit.profiles[0], [&nominal; 2]) {
         Ok(_) => start.elapsed().as_secs_f64(),
         Err(_) => 0.0,
     }
 }
 
-/// Standard error of P under another ring: the differences share their samples.
-const RING_ERROR: f64 = 0.002;
+/// Standard error of P with another ring or board: the differences share their samples.
+const HOOP_ERROR: f64 = 0.002;
 
-/// Finds by how much the bank shot, where it is preferred, is better on the rings that sources
-/// give: nobody measured that of the gym. The shots stay as they are.
-pub(super) fn find_ring_dependence(
+/// Finds by how much the bank shot, where it is preferred, is better on the rings and boards that
+/// the gym may have: nobody measured those. The shots stay as they are.
+pub(super) fn find_hoop_dependence(
     places: &mut [PlaceProbabilities],
     config: &SweepConfig,
     (low, high): (f64, f64),
@@ -65,31 +98,37 @@ pub(super) fn find_ring_dependence(
 ) -> Result<(), Failure> {
     let is_bank = |place: &&mut PlaceProbabilities| place.preference() == Some(Preference::Bank);
     let places: Vec<&mut PlaceProbabilities> = places.iter_mut().filter(is_bank).collect();
-    progress.begin("bank or direct on other rings", places.len() as u64);
+    progress.begin("bank or direct on other hoops", places.len() as u64);
     for place in places {
         if let [Some(direct), Some(bank)] = place.nominals {
             let profile = config.settings.at(place.place.location())?;
-            let mut least: Option<(f64, f64)> = None;
-            for restitution in [low, high] {
+            let boards = likely_board_restitutions(profile.physics());
+            let rings = [low, high].map(|of| (SolidId::Ring, of));
+            let all = rings
+                .into_iter()
+                .chain(boards.map(|of| (SolidId::Board, of)));
+            for (solid, restitution) in all {
                 let other = profile.with(|settings| {
-                    let set = settings
-                        .physics
-                        .set_restitution_on(SolidId::Ring, restitution);
-                    debug_assert!(set.is_ok(), "sources give restitutions");
+                    let set = settings.physics.set_restitution_on(solid, restitution);
+                    debug_assert!(set.is_ok(), "between 0 and 1");
                 })?;
                 let sampler = Sampler::new(&other);
                 let [direct, bank] = [&direct, &bank].map(|shot| {
                     let seed = other.search().seed;
                     sampler
-                        .estimate(shot, RING_ERROR, seed, &Silent)
+                        .estimate(shot, HOOP_ERROR, seed, &Silent)
                         .probability
                 });
-                let gain = bank - direct;
-                if least.is_none_or(|(least, _)| gain < least) {
-                    least = Some((gain, restitution));
+                let found = LeastGain {
+                    gain: bank - direct,
+                    solid,
+                    restitution,
+                };
+                let is_less = |least: LeastGain| found.gain < least.gain;
+                if place.least_gain.is_none_or(is_less) {
+                    place.least_gain = Some(found);
                 }
             }
-            place.least_gain_over_rings = least;
         }
         progress.advance(1);
     }
@@ -97,34 +136,26 @@ pub(super) fn find_ring_dependence(
     Ok(())
 }
 
-/// The restitutions that the ring may have: those that the makes tell, where the folder of the fits
-/// or a fit has what `--free hoop_restitution` found, else those that sources give.
-pub(super) fn ring_range(players: &[PathBuf]) -> (f64, f64) {
-    let parameter = UnseenParameter::HoopRestitution;
-    let (low, high) = parameter.usual_range();
-    let told = players.iter().flat_map(|path| {
-        let folder = if path.is_dir() {
-            path.as_path()
-        } else {
-            path.parent().unwrap_or(Path::new(""))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both sides have the share of the draws in which bank gains on the two together; where the
+    /// draws tell the sides apart each has its own.
+    #[test]
+    fn contract_mirror_images_have_one_answer_unless_told_apart() {
+        let gains = |gain: &dyn Fn(usize) -> f64| {
+            DrawProbabilities::of_values((0..100).map(gain).collect())
         };
-        let of_all = [folder.join("free.json"), folder.join("../free.json")];
-        let read = |file: &PathBuf| -> Option<serde_json::Value> {
-            serde_json::from_str(&std::fs::read_to_string(file).ok()?).ok()
-        };
-        let mut found: Vec<serde_json::Value> = of_all.iter().filter_map(read).collect();
-        found.extend(read(&folder.join("fit.json")).map(|fit| fit["free"].clone()));
-        found
-    });
-    let range = |list: serde_json::Value| {
-        let found = list
-            .as_array()?
-            .iter()
-            .find(|of| of["name"] == parameter.name())?;
-        let is_decided = found["is_decided"].as_bool()?;
-        let ends = (found["low"].as_f64()?, found["high"].as_f64()?);
-        is_decided.then_some(ends)
-    };
-    let found = told.filter_map(range).find(|(low, high)| low < high);
-    found.unwrap_or((low, high))
+        // Bank is better in 80 draws here and in 40 there, on average in 60.
+        let here = gains(&|draw| if draw < 80 { 0.01 } else { -0.01 });
+        let there = gains(&|draw| if draw % 5 < 2 { 0.012 } else { -0.009 });
+        let both = share_of_both(&here, &there);
+        assert_eq!(both, share_of_both(&there, &here));
+        // Of the 80 draws the mean is above 0 in each, of the other 20 in the 8 of the second side.
+        assert!((both - 0.88).abs() < 1e-12, "{both}");
+        let surely_more = gains(&|_| 0.02);
+        assert_eq!(share_of_both(&surely_more, &here), 1.0);
+        assert!((share_of_both(&here, &surely_more) - 0.8).abs() < 1e-12);
+    }
 }

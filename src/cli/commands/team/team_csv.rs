@@ -22,7 +22,7 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             "sure %",
             &format!("bank aim right of the board's middle {short}"),
             &format!("bank aim above the ring {short}"),
-            "least bank gain over rings",
+            "least bank gain over rings and boards",
         ] {
             text += &format!(",{}", quoted(&format!("{} {column}", player.name)));
         }
@@ -68,8 +68,8 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
                         above_m / short_metre
                     )
                 });
-            let least = chances.least_gain_over_rings;
-            text += &format!(",{}", number(least.map(|(gain, _)| gain)));
+            let least = chances.least_gain;
+            text += &format!(",{}", number(least.map(|least| least.gain)));
         }
         text.push('\n');
     }
