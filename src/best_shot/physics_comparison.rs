@@ -39,6 +39,17 @@ pub struct PhysicsRow {
     pub same_shot: Option<SameShotProbability>,
     /// As [`PhysicsVariant::is_unmeasured`].
     pub is_unmeasured: bool,
+    /// How far towards this change the gym may be, 0 to 1: less than 1 where something rules the
+    /// change out. Changes of P are taken to grow evenly on the way.
+    pub possible_share: f64,
+}
+
+impl PhysicsRow {
+    /// Whether something rules the change out.
+    #[must_use]
+    pub fn is_ruled_out(&self) -> bool {
+        self.possible_share < 1.0
+    }
 }
 
 /// P of one shot.
@@ -76,23 +87,25 @@ impl PhysicsComparison {
         self
     }
 
-    /// The same without the changes that something else rules out, by their names: they no longer
-    /// count as what nobody knows of this gym.
+    /// The same with how far towards each row the gym may be.
     #[must_use]
-    pub fn without_changes(mut self, ruled_out: &[String]) -> Self {
-        for row in &mut self.rows {
-            row.is_unmeasured &= !ruled_out.contains(&row.name);
+    pub fn with_possible_shares(mut self, shares: &[f64]) -> Self {
+        for (row, share) in self.rows.iter_mut().zip(shares) {
+            row.possible_share = *share;
         }
         self
     }
 
-    /// What the single changes that nobody measured in this gym do to a P of a row: their names and
-    /// P less that of the base, the largest first.
+    /// What the single changes that nobody measured in this gym do to a P of a row, as far as the
+    /// gym may have them: their names and P less that of the base, the largest first.
     pub fn unmeasured_changes(&self, p: impl Fn(&PhysicsRow) -> Option<f64>) -> Vec<(&str, f64)> {
         let base = self.rows.get(self.base).and_then(&p);
         let rows = self.rows.iter().filter(|row| row.is_unmeasured);
         let mut changes: Vec<(&str, f64)> = rows
-            .filter_map(|row| Some((row.name.as_str(), p(row)? - base?)))
+            .filter_map(|row| {
+                let by = p(row)? - base?;
+                Some((row.name.as_str(), row.possible_share * by))
+            })
             .collect();
         changes.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         changes
@@ -132,7 +145,10 @@ impl PhysicsComparison {
         };
         let rows = self.rows.iter().filter(|row| row.is_unmeasured);
         let turned: Vec<&str> = rows
-            .filter(|row| bank_gain(row).is_some_and(|other| other * gain < 0.0))
+            .filter(|row| {
+                let there = bank_gain(row).map(|there| gain + row.possible_share * (there - gain));
+                there.is_some_and(|there| there * gain < 0.0)
+            })
             .map(|row| {
                 row.name
                     .split_once(' ')
@@ -484,6 +500,7 @@ pub fn compare_physics(
         rows.push(PhysicsRow {
             name: variant.name.clone(),
             is_unmeasured: variant.is_unmeasured,
+            possible_share: 1.0,
             aim_past_centre_m: direct
                 .as_ref()
                 .ok()

@@ -375,10 +375,9 @@ impl Columns {
                 if let Some(at) = unit.find(['+', '-']) {
                     let number = unit[at..].trim();
                     let is_plausible = |offset: &f64| offset.is_finite() && offset.abs() < 1e9;
-                    zero.offset =
-                        number.parse().ok().filter(is_plausible).ok_or_else(|| {
-                            format!("{number} is not a number to add, such as +9")
-                        })?;
+                    zero.offset = number.parse().ok().filter(is_plausible).ok_or_else(|| {
+                        format!("{number} is not a number to add, such as +9 or -9")
+                    })?;
                     unit = &unit[..at];
                 }
                 let turned = name

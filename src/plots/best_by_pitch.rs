@@ -3,8 +3,8 @@
 use super::axes::Axes;
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
-use crate::fitting::AngleOverDraws;
-use crate::shooter::{Profile, ShotKind};
+use crate::fitting::{AngleOverDraws, Interval};
+use crate::shooter::{Nominal, Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
 /// Width and height of a panel, px.
@@ -12,17 +12,30 @@ const PANEL: (f64, f64) = (330.0, 230.0);
 /// Left edge of the first panel, and distance of the second one from it, px.
 const LEFT: f64 = 70.0;
 const APART: f64 = 430.0;
+/// Letters in a line of the caption.
+const CAPTION_LETTERS: usize = 130;
+/// Colour of the usual shot.
+const USUAL_COLOUR: &str = "#d55e00";
 /// Top of the panels, px.
 const TOP: f64 = 74.0;
 
-/// Draws both curves; `None` with fewer than two angles that have a shot. P over the draws of a fit
-/// may be given, one for each row.
+/// The usual shot of a fit.
+#[derive(Clone, Copy, Debug)]
+pub struct UsualShot {
+    /// It.
+    pub nominal: Nominal,
+    /// Its P over the draws.
+    pub probability: Interval,
+}
+
+/// Draws both curves, and the `usual` shot if it is known; `None` with fewer than two angles that
+/// have a shot. P over the draws of a fit may be given, one for each row.
 #[must_use]
 pub fn draw(
     profile: &Profile,
     kind: TableKind,
     (rows, over_draws): (&[ShotAtPitch], &[Option<AngleOverDraws>]),
-    units: UnitSystem,
+    (usual, units): (Option<UsualShot>, UnitSystem),
 ) -> Option<Plot> {
     let (long, metre) = units.length();
     let angles = rows.iter().filter(|row| row.shot.is_some());
@@ -32,7 +45,7 @@ pub fn draw(
     };
     // Points and bars do not lie on the frame.
     let x_margin = 0.03 * (last - first);
-    let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 78.0);
+    let mut svg = Svg::new(LEFT + APART + PANEL.0 + 30.0, TOP + PANEL.1 + 92.0);
     let name = shortened(&profile.shooter().name, 50);
     let title = match kind {
         TableKind::One(kind) => {
@@ -51,11 +64,19 @@ pub fn draw(
         .map(probability);
     let ends = over_draws.iter().flatten().map(|angle| angle.probability);
     let chances = chances.chain(ends.flat_map(|p| [p.low, p.high]));
+    // One beyond the angles would lie outside of the panels.
+    let is_inside = |usual: &UsualShot| {
+        (first - x_margin..=last + x_margin).contains(&(usual.nominal.pitch_rad / DEGREE_RAD))
+    };
+    let usual = usual.filter(is_inside);
+    let of_usual = usual.map(|usual| [usual.probability.low, usual.probability.high]);
+    let chances = chances.chain(of_usual.into_iter().flatten());
     let (lowest, highest) = chances.fold((1.0_f64, 0.0_f64), |(low, high), p| {
         (low.min(p), high.max(p))
     });
     let p_margin = (0.08 * (highest - lowest)).max(0.005);
     let speeds = rows.iter().filter_map(|row| row.shot.as_ref()).map(speed);
+    let speeds = speeds.chain(usual.map(|usual| usual.nominal.speed_m_s / metre));
     let (slowest, fastest) = speeds.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
         (low.min(v), high.max(v))
     });
@@ -80,8 +101,15 @@ pub fn draw(
         let style = format!("stroke=\"{INK}\" stroke-width=\"1\" fill=\"none\"");
         svg.polyline([end(probability.low), end(probability.high)], &style);
     }
+    if let Some(usual) = usual {
+        draw_usual(&mut svg, &of_p, &usual);
+    }
     of_p.draw(&mut svg, "", "pitch angle (deg)", "P");
     draw_curve(&mut svg, &of_speed, (rows, kind), &speed);
+    if let Some(UsualShot { nominal, .. }) = usual {
+        let at = (nominal.pitch_rad / DEGREE_RAD, nominal.speed_m_s / metre);
+        mark_usual(&mut svg, of_speed.pixel(at));
+    }
     let label = format!("best speed ({long}/s)");
     of_speed.draw(&mut svg, "", "pitch angle (deg)", &label);
     let bars = if over_draws.is_empty() {
@@ -93,15 +121,38 @@ pub fn draw(
         TableKind::One(_) => "",
         TableKind::Better => " White points: bank shots.",
     };
+    let of_usual = match usual {
+        Some(_) => " Square: the usual shot as it was measured (its bar: 95 % of the draws).",
+        None => "",
+    };
     let caption = format!(
-        "P of the best shot at each pitch angle, and its speed. Large circle: the highest P.{kinds}{bars}"
+        "P of the best shot at each pitch angle, and its speed. Large circle: the highest P.{kinds}{bars}{of_usual}"
     );
-    svg.footnote((20.0, TOP + PANEL.1 + 66.0), &caption);
+    for (i, line) in textwrap::wrap(&caption, CAPTION_LETTERS).iter().enumerate() {
+        let y = TOP + PANEL.1 + 64.0 + 15.0 * i as f64;
+        svg.footnote((20.0, y), line);
+    }
     Some(Plot {
         name: "best_by_pitch".to_owned(),
         svg: svg.finish(&caption),
         caption,
     })
+}
+
+/// The usual shot with the interval of its P.
+fn draw_usual(svg: &mut Svg, of_p: &Axes, usual: &UsualShot) {
+    let pitch_deg = usual.nominal.pitch_rad / DEGREE_RAD;
+    let at = |p: f64| of_p.pixel((pitch_deg, p));
+    let style = format!("stroke=\"{USUAL_COLOUR}\" stroke-width=\"2\" fill=\"none\"");
+    let ends = [usual.probability.low, usual.probability.high];
+    svg.polyline(ends.map(at), &style);
+    mark_usual(svg, at(usual.probability.mean));
+}
+
+fn mark_usual(svg: &mut Svg, (x, y): (f64, f64)) {
+    const HALF: f64 = 4.5;
+    let style = format!("fill=\"{USUAL_COLOUR}\"");
+    svg.rect((x - HALF, y - HALF), (2.0 * HALF, 2.0 * HALF), &style);
 }
 
 /// Draws a value of the shots as a line with points; a gap where there is no shot.

@@ -108,7 +108,7 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
         ));
     }
     sentences.extend(own.filter(|own| !own.is_empty()).map(str::to_owned));
-    let mut notes = hoop_in_words(&bank) + &doubt_in_words(results.chances());
+    let mut notes = hoop_in_words(&bank, units) + &doubt_in_words(results.chances());
     if own.is_some() && left_and_right_differ(results.chances()) {
         notes +=
             " That left and right differ can be chance: it rests on the shots that were measured.";
@@ -234,26 +234,23 @@ fn square_in_words(units: UnitSystem) -> String {
     )
 }
 
-/// At how many of the places the bank shot is not better on each ring and board; empty if it is at
+/// From which of the places the bank shot is not better on each ring and board; empty if it is from
 /// all.
-fn hoop_in_words(bank: &[&PlaceProbabilities]) -> String {
-    let turned = bank
-        .iter()
-        .filter(|place| place.turns_with_the_hoop())
-        .count();
-    let places = match turned {
+fn hoop_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
+    let turned = bank.iter().copied();
+    let turned: Vec<&PlaceProbabilities> =
+        turned.filter(|place| place.turns_with_the_hoop()).collect();
+    let places = match turned.len() {
         0 => return String::new(),
         _ if bank.len() == 1 => "there".to_owned(),
-        all if all == bank.len() => "at all of them".to_owned(),
-        1 => "at one of them".to_owned(),
-        some => format!("at {some} of them"),
+        all if all == bank.len() => "from all places to bank from".to_owned(),
+        _ => {
+            let groups = with_mirror_images(&turned).into_iter();
+            let words = groups.map(|same| same[0].in_players_words(&turned, units));
+            format!("from {}", words.collect::<Vec<_>>().join("; "))
+        }
     };
-    let bank = if bank.len() == 1 {
-        "the place to bank from"
-    } else {
-        "the places to bank from"
-    };
-    format!(" Of {bank}: on an unusual ring or board direct is better {places}.")
+    format!(" On an unusual ring or board direct is better {places}.")
 }
 
 /// Where banking helps most, and where to aim from each place.

@@ -88,6 +88,9 @@ pub struct PlaceProbabilities {
     /// The share of the draws of the player's fit in which the bank shot is the better one; `None`
     /// without a fit, or where it was not computed.
     pub bank_is_better: Option<f64>,
+    /// The share of the draws that agree on which side, this or its mirror image, bank gains more;
+    /// where that tells the sides apart.
+    pub sides_differ: Option<f64>,
     /// Shots of that fit.
     pub fitted_shots: Option<usize>,
     /// Where the bank shot is preferred: where the same bank shot gains least over the same direct
@@ -121,6 +124,7 @@ impl PlaceProbabilities {
                 Self {
                     nominals: [nominal(&direct), nominal(&bank)],
                     bank_is_better: None,
+                    sides_differ: None,
                     fitted_shots: None,
                     least_gain: None,
                     place: jobs.sources[place].place,
@@ -359,6 +363,7 @@ mod tests {
             bank: p(0.74),
             nominals: [None; 2],
             bank_is_better,
+            sides_differ: None,
             fitted_shots: Some(100),
             least_gain: None,
             board_aim_m: None,

@@ -17,7 +17,7 @@ use crate::fitting::{
     FittedShots, Interval, Measured, ShotsUnderPhysics, advise, made_z_of_releases, wilson_interval,
 };
 use crate::measured_shots::source::Source;
-use crate::model::Physics;
+use crate::model::{Physics, SolidId};
 use crate::output::fit_files::change_in_words::changes_in_words;
 use crate::output::fit_files::fit_json::interval_json;
 use crate::output::json_object::object;
@@ -134,8 +134,10 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         });
         comparison = comparison.with_same_shot(SameShot::AsMeasured, of_rows);
     }
-    let ruled_out = RuledOut::new(&path, &comparison, fitted.as_ref());
-    comparison = comparison.without_changes(&ruled_out.names());
+    let told_ring = ring_told_by_makes(std::slice::from_ref(&path));
+    let own_ring = profile.physics().restitution_on(SolidId::Ring);
+    let shares = possible_shares(&comparison, (own_ring, told_ring), fitted.as_ref());
+    comparison = comparison.with_possible_shares(&shares);
     if let Some(path) = &options.plot {
         let plot = physics_probabilities::draw(&profile.shooter().name, &comparison);
         plot_files::write_one(path, &plot)?;
@@ -151,7 +153,7 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
             (&profile, options.location.is_given()),
             &comparison,
             fitted.as_ref(),
-            &ruled_out,
+            told_ring,
         ))
     }
 }
@@ -247,7 +249,10 @@ impl FittedRows {
         let rows = comparison.rows.iter().zip(&self.rows);
         let changes: Vec<(&str, f64)> = rows
             .filter(|(row, _)| row.is_unmeasured)
-            .filter_map(|(row, own)| Some((row.name.as_str(), of(own.as_ref()?)?.mean - base.mean)))
+            .filter_map(|(row, own)| {
+                let by = of(own.as_ref()?)?.mean - base.mean;
+                Some((row.name.as_str(), row.possible_share * by))
+            })
             .collect();
         let [down, up] = together(&changes);
         Some((
@@ -259,13 +264,38 @@ impl FittedRows {
     /// Whether the makes speak against a row: the makes of each ball where releases were measured,
     /// and else the intervals of P and of the share of makes, if they do not meet.
     fn do_makes_contradict(&self, row: usize) -> bool {
+        self.contradiction(row) > 0.0
+    }
+
+    /// How far the makes are from allowing a row, in a unit that grows evenly with the change; not
+    /// above 0 where they do.
+    fn contradiction(&self, row: usize) -> f64 {
         if let Some(z) = self.made_z[row] {
-            return z.abs() > FAR_MAKES;
+            return z.abs() - FAR_MAKES;
         }
         let (made, shots) = self.observed;
         let share = wilson_interval(made, shots);
         let usual = self.rows[row].as_ref().map(|own| own.usual);
-        shots > 0 && usual.is_some_and(|p| p.low > share.high || p.high < share.low)
+        match usual {
+            Some(p) if shots > 0 => (p.low - share.high).max(share.low - p.high),
+            _ => -1.0,
+        }
+    }
+
+    /// How far towards a row the gym may be by the makes, 0 to 1.
+    fn possible_share(&self, base: usize, row: usize) -> f64 {
+        let there = self.contradiction(row);
+        // What a line from the base to the row says, by z with its sign where it is known.
+        let here = match (self.made_z[base], self.made_z[row]) {
+            (Some(base), Some(z)) if z < 0.0 => -base - FAR_MAKES,
+            (Some(base), Some(_)) => base - FAR_MAKES,
+            _ => self.contradiction(base),
+        };
+        // A base that the makes contradict is no place to measure from.
+        match there > 0.0 && here < 0.0 {
+            true => here / (here - there),
+            false => 1.0,
+        }
     }
 
     /// The intervals of the fit and of the physics in one, and what the makes say.
@@ -287,7 +317,7 @@ impl FittedRows {
                 in_points(high)
             );
         }
-        text += " (95 % interval of the fit, and the changes taken together: the root of the sum of squares).\n";
+        text += " (95 % interval of the fit, and the changes taken together: the root of the sum of squares; a constant error of the tracker is not in it: see `bankshot fit`).\n";
         let (made, shots) = self.observed;
         if shots == 0 {
             return text;
@@ -332,6 +362,9 @@ impl FittedRows {
             header.push("z");
         }
         let mut table = table_with(header.into_iter().map(str::to_owned).collect());
+        if let Some(names) = table.column_mut(0).filter(|_| has_z) {
+            names.set_padding((0, 1));
+        }
         for ((row, own), z) in comparison.rows.iter().zip(&self.rows).zip(&self.made_z) {
             let interval = |of: Option<Interval>, text: &dyn Fn(f64) -> String| {
                 of.map_or(["-".to_owned(), "-".to_owned()], |of| {
@@ -367,7 +400,8 @@ impl FittedRows {
         }
         let names = |wanted: &dyn Fn(Option<Interval>) -> bool| {
             let rows = comparison.rows.iter().enumerate();
-            let rows = rows.filter(|(i, row)| row.is_unmeasured && wanted(self.gain(*i)));
+            let rows = rows.filter(|(_, row)| row.is_unmeasured && !row.is_ruled_out());
+            let rows = rows.filter(|(i, _)| wanted(self.gain(*i)));
             rows.map(|(_, row)| change(row)).collect::<Vec<_>>()
         };
         let unsure = names(&|gain| gain.is_some_and(|gain| gain.low <= 0.0));
@@ -418,7 +452,7 @@ impl FittedRows {
             text += &format!(" gains {} under the first row's physics", points(&own));
         }
         let rows = comparison.rows.iter().enumerate();
-        let unmeasured = rows.filter(|(_, row)| row.is_unmeasured);
+        let unmeasured = rows.filter(|(_, row)| row.is_unmeasured && !row.is_ruled_out());
         let gains: Vec<(String, Interval)> = unmeasured
             .filter_map(|(i, row)| Some((change(row), self.gain(i)?)))
             .collect();
@@ -448,55 +482,48 @@ impl FittedRows {
 /// 400 tests by luck.
 const FAR_MAKES: f64 = 3.0;
 
-/// Changes that nobody measured in this gym, but that the makes of fitted shots rule out.
-struct RuledOut {
-    by_makes: Vec<String>,
-    /// Those of the ring, and the restitutions that `--free` found.
-    by_free: (Vec<String>, Option<(f64, f64)>),
+/// How far towards each row the gym may be, 0 to 1: as far as the makes of the fitted shots, and
+/// the ring that `--free` found, leave it. `own_ring` is the restitution of the first row's.
+fn possible_shares(
+    comparison: &PhysicsComparison,
+    (own_ring, told_ring): (f64, Option<(f64, f64)>),
+    fitted: Option<&FittedRows>,
+) -> Vec<f64> {
+    let of_row = |(i, row): (usize, &PhysicsRow)| {
+        if !row.is_unmeasured {
+            return 1.0;
+        }
+        let by_makes = fitted.map_or(1.0, |fitted| fitted.possible_share(comparison.base, i));
+        let restitution = row.name.split_once("hoop_restitution ");
+        let restitution = restitution.and_then(|(_, value)| value.parse::<f64>().ok());
+        let by_ring = restitution
+            .zip(told_ring)
+            .map_or(1.0, |(ring, (low, high))| {
+                let end = ring.clamp(low, high);
+                ((end - own_ring) / (ring - own_ring)).clamp(0.0, 1.0)
+            });
+        by_makes.min(by_ring)
+    };
+    comparison.rows.iter().enumerate().map(of_row).collect()
 }
 
-impl RuledOut {
-    fn new(profile: &Path, comparison: &PhysicsComparison, fitted: Option<&FittedRows>) -> Self {
-        let told = ring_told_by_makes(&[profile.to_owned()]);
-        let rows = comparison.rows.iter().enumerate();
-        let rows = rows.filter(|(i, row)| row.is_unmeasured && *i != comparison.base);
-        let mut ruled_out = Self {
-            by_makes: Vec::new(),
-            by_free: (Vec::new(), told),
-        };
-        for (i, row) in rows {
-            let restitution = row.name.split_once("hoop_restitution ");
-            let restitution = restitution.and_then(|(_, value)| value.parse::<f64>().ok());
-            let is_beyond = restitution.zip(told);
-            if fitted.is_some_and(|fitted| fitted.do_makes_contradict(i)) {
-                ruled_out.by_makes.push(row.name.clone());
-            } else if is_beyond.is_some_and(|(e, (low, high))| e < low || e > high) {
-                ruled_out.by_free.0.push(row.name.clone());
-            }
-        }
-        ruled_out
+/// Which of the changes that nobody measured are ruled out, and what that means.
+fn ruled_out_in_words(comparison: &PhysicsComparison, told_ring: Option<(f64, f64)>) -> String {
+    let rows = comparison.rows.iter();
+    let ruled_out: Vec<String> = rows
+        .filter(|row| row.is_ruled_out())
+        .map(|row| format!("{} ({:.0} %)", change(row), 100.0 * row.possible_share))
+        .collect();
+    if ruled_out.is_empty() {
+        return String::new();
     }
-
-    fn names(&self) -> Vec<String> {
-        [&self.by_makes[..], &self.by_free.0].concat()
-    }
-
-    fn in_words(&self) -> String {
-        let mut text = String::new();
-        if !self.by_makes.is_empty() {
-            text += &format!(
-                "The makes of the measured shots rule these out, so that no range has them: {}.\n",
-                self.by_makes.join(", ")
-            );
-        }
-        if let (rows @ [_, ..], Some((low, high))) = (&self.by_free.0[..], self.by_free.1) {
-            text += &format!(
-                "By the makes the restitution of the ring is {low:.2} to {high:.2} (`fit --free`), so that no range has these: {}.\n",
-                rows.join(", ")
-            );
-        }
-        text
-    }
+    let ring = told_ring.map_or_else(String::new, |(low, high)| {
+        format!(" (the ring's restitution is {low:.2} to {high:.2}, as `fit --free` found)")
+    });
+    format!(
+        "The makes of the measured shots rule some changes out{ring}; every range goes only as far towards them as the makes leave it: {}.\n",
+        ruled_out.join(", ")
+    )
 }
 
 /// What a row changes: `hoop_restitution 0.41` of `with hoop_restitution 0.41`, or of `ncaa,
@@ -526,7 +553,7 @@ fn comparison_text(
     (profile, is_moved): (&Profile, bool),
     comparison: &PhysicsComparison,
     fitted: Option<&FittedRows>,
-    ruled_out: &RuledOut,
+    told_ring: Option<(f64, f64)>,
 ) -> String {
     let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let units = profile.output().units;
@@ -566,7 +593,7 @@ fn comparison_text(
     let mut answer = comparison
         .in_words()
         .map_or_else(String::new, |words| words + "\n\n");
-    answer += &ruled_out.in_words();
+    answer += &ruled_out_in_words(comparison, told_ring);
     if let Some(fitted) = fitted {
         answer += &format!(
             "{}\n{}\n",
@@ -604,7 +631,22 @@ fn comparison_text(
 
 /// What each change that nobody measured does to P of the best direct shot and of the usual one.
 fn changes_text(comparison: &PhysicsComparison) -> String {
-    let best = comparison.unmeasured_changes(PhysicsComparison::direct_p);
+    // Of the kind that is the better one.
+    let base = &comparison.rows[comparison.base];
+    let [direct, bank] = [
+        PhysicsComparison::direct_p(base),
+        PhysicsComparison::bank_p(base),
+    ];
+    let (title, best) = match bank > direct {
+        true => (
+            "best\nbank shot",
+            comparison.unmeasured_changes(PhysicsComparison::bank_p),
+        ),
+        false => (
+            "best\ndirect shot",
+            comparison.unmeasured_changes(PhysicsComparison::direct_p),
+        ),
+    };
     let same = comparison.unmeasured_changes(PhysicsComparison::same_shot_p);
     if best.is_empty() && same.is_empty() {
         return String::new();
@@ -613,7 +655,7 @@ fn changes_text(comparison: &PhysicsComparison) -> String {
         let change = changes.iter().find(|(of, _)| *of == name);
         change.map_or("-".to_owned(), |(_, by)| format!("{:+.1}", in_points(*by)))
     };
-    let header = ["change", "best\ndirect shot", "same\nshot"];
+    let header = ["change", title, "same\nshot"];
     let mut table = table_with(header.map(str::to_owned).to_vec());
     // Those that do most first.
     let most = |name: &str| {
@@ -626,7 +668,13 @@ fn changes_text(comparison: &PhysicsComparison) -> String {
     names.sort_by(|a, b| most(b).total_cmp(&most(a)));
     for &name in &names {
         let change = name.split_once(' ').map_or(name, |(_, change)| change);
-        table.add_row(vec![change.to_owned(), of(&best, name), of(&same, name)]);
+        let ruled_out = comparison.rows.iter().find(|row| row.name == name);
+        let share = ruled_out.map_or(1.0, |row| row.possible_share);
+        let change = match share < 1.0 {
+            true => format!("{:.0} % of the way to {change}", 100.0 * share),
+            false => change.to_owned(),
+        };
+        table.add_row(vec![change, of(&best, name), of(&same, name)]);
     }
     let ring_is_asked = names.iter().any(|name| name.contains("hoop_restitution"));
     let both = [&best, &same].map(|changes| {

@@ -15,14 +15,16 @@ use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, wrapped};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
+use crate::fitting::nominal_of;
 use crate::output::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
 use crate::output::shot_table_files::pitch_over_distances::{
     DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
 };
 use crate::plots;
+use crate::plots::best_by_pitch::UsualShot;
 use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile, SearchSettings};
-use crate::units::{DEGREE_RAD, Dimension};
+use crate::units::{DEGREE_RAD, Dimension, REV_RAD};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -111,8 +113,8 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     }
     // A folder that is no fit is refused before the search.
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
-    let is_told = !options.json && !options.place.is_given();
-    let fit = match is_told && options.profile.join("fit.json").is_file() {
+    let is_own_place = !options.place.is_given();
+    let fit = match is_own_place && options.profile.join("fit.json").is_file() {
         true => Some(fit_folder::read(&options.profile)?),
         false => None,
     };
@@ -124,10 +126,21 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     };
     let angles = over_draws.as_ref().map_or(&[][..], |over| &over.angles);
     // The angles have their best speed and aim, which those of the shooter need not be.
-    let of_fit = fit.map_or_else(String::new, |fit| {
-        let p = fit.usual_probabilities(0).interval();
+    let usual = fit.as_ref().map(|fit| UsualShot {
+        nominal: nominal_of(&fit.posterior.typical().means[0]),
+        probability: fit.usual_probabilities(0).interval(),
+    });
+    let of_fit = usual.as_ref().map_or_else(String::new, |usual| {
+        let p = usual.probability;
+        let spin = usual.nominal.backspin_rad_s / REV_RAD;
+        let is_searched = profile.search().choice.includes(NominalVariable::Backspin);
+        let of_spin = match is_searched {
+            true => format!(" The spin was {spin:.2} rev/s; --backspin '{spin:.2} rev/s' keeps it."),
+            false => String::new(),
+        };
         wrapped(&format!(
-            "As it was measured, the usual shot makes {:.1} of 100 (95 %: {:.1} to {:.1}); its speed and aim need not be the best ones.",
+            "As it was measured, the usual shot (at {:.1} deg) makes {:.1} of 100 (95 %: {:.1} to {:.1}); its speed and aim need not be the best ones.{of_spin}",
+            usual.nominal.pitch_rad / DEGREE_RAD,
             100.0 * p.mean,
             100.0 * p.low,
             100.0 * p.high
@@ -153,7 +166,8 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         OutputForm::Text => text(),
     })?;
     if let Some(path) = &options.plot
-        && let Some(plot) = plots::best_by_pitch::draw(&profile, kind, (&rows, angles), units)
+        && let Some(plot) =
+            plots::best_by_pitch::draw(&profile, kind, (&rows, angles), (usual, units))
     {
         plot_files::write_one(path, &plot)?;
     }

@@ -7,6 +7,7 @@ use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
+use crate::cli::shooter_folders;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::fitting::advise;
@@ -196,7 +197,13 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
         return Err(Failure::usage(format!(
             "{}: is not the folder of a `best`, `compare`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST}){}",
             folder.display(),
-            runs_within(folder)
+            match shooter_folders::of_shooters(folder).is_empty() {
+                true => runs_within(folder),
+                false => format!(
+                    "; it has the fits of several shooters: `bankshot advise {} --brief` has what to tell each, `bankshot team` a page of all",
+                    folder.display()
+                ),
+            }
         )));
     }
     let read_if_exists = |name: &str| {

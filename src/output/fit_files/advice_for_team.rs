@@ -1,7 +1,8 @@
 //! Advice in the few words of a poster and of a row of a table.
 
 use super::advice_text::{
-    MOST_DISAGREEMENT, Observed, disagreement, most_worth_training, scatter_in_words,
+    MOST_DISAGREEMENT, Observed, disagreement, more_shots_in_words, most_worth_training,
+    scatter_in_words,
 };
 use super::change_in_words::{
     ChangeWords, FirstChange, first_change, first_change_in_words, landing_in_words,
@@ -55,7 +56,9 @@ pub fn short_advice(
         _ if is_doubted(advice, observed) => {
             "nothing yet: the makes and the measured shots do not belong together".to_owned()
         }
-        None => "nothing yet: no change is surely better".to_owned(),
+        None => {
+            "nothing yet: no change is surely better.".to_owned() + &more_shots_in_words(advice)
+        }
         Some(steps) => {
             let first = steps.alone.map_or_else(String::new, |alone| {
                 let (name, share) = match alone.speed_is_better {
@@ -80,15 +83,18 @@ pub fn short_advice(
         .collect();
     let steps = steps_to_follow(advice, observed);
     ShortAdvice {
-        advised: steps.map_or_else(String::new, |steps| {
-            let of_advised = advice.advised_probability;
-            format!(
-                "{:.0} ({:.0} to {:.0})",
-                100.0 * (p.mean + steps.gain.mean),
-                100.0 * of_advised.low,
-                100.0 * of_advised.high
-            )
-        }),
+        advised: steps.map_or_else(
+            || advised_in_doubt(advice, observed),
+            |steps| {
+                let of_advised = advice.advised_probability;
+                format!(
+                    "{:.0} ({:.0} to {:.0})",
+                    100.0 * (p.mean + steps.gain.mean),
+                    100.0 * of_advised.low,
+                    100.0 * of_advised.high
+                )
+            },
+        ),
         usual: format!(
             "{:.0} ({:.0} to {:.0})",
             100.0 * p.mean,
@@ -98,6 +104,21 @@ pub fn short_advice(
         change,
         training: training.join(", or "),
     }
+}
+
+/// What the best release makes where no step towards it is sure: `91 ?`; empty where it gains
+/// nothing.
+fn advised_in_doubt(advice: &Advice, observed: Observed) -> String {
+    /// Less than this gain in P is none.
+    const WORTH_IT: f64 = 0.005;
+    let gain = advice.gain.filter(|gain| gain.mean > WORTH_IT);
+    let gain = gain.filter(|_| !is_doubted(advice, observed));
+    gain.map_or_else(String::new, |gain| {
+        format!(
+            "{:.0} ?",
+            100.0 * (advice.usual_probability.mean + gain.mean)
+        )
+    })
 }
 
 /// What a poster says of a player's own shots: how many go in, what to change, and what the player

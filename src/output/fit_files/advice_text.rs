@@ -37,7 +37,7 @@ fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -
 
 /// How many more shots would make a step sure, in a sentence; empty where none is open, or they
 /// would be too many.
-fn more_shots_in_words(advice: &Advice) -> String {
+pub(super) fn more_shots_in_words(advice: &Advice) -> String {
     /// More than this many times the shots is no plan.
     const MOST_TIMES: f64 = 10.0;
     let steps = advice.steps.iter().flat_map(|steps| &steps.steps);

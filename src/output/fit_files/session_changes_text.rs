@@ -227,7 +227,7 @@ pub fn session_changes_text(
         r          a correlation\n\
         direction  the chance that it changed this way at all; 50 % says nothing\n\
         decide     about how many shots a session would decide a change of this size; for the values below P with room for chance, as several are looked at (--planned names those that count). yes: decided now. -: less than its own uncertainty, so its size says nothing (`bankshot design` says what a change of 5 or 10 points takes)\n\
-        The intervals leave out the physics of this gym, which is the same in both sessions: with another one (`bankshot fit --physics`) the change can be another too.\n";
+        The intervals leave out the physics of this gym and a constant error of the tracker, which are the same in both sessions: with others (`bankshot fit --physics`, an offset in --map) the change can be another too.\n";
     text
 }
 

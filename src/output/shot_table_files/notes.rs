@@ -2,7 +2,7 @@
 
 use crate::best_shot::{ShotKind, ShotTable, TableKind, TableShot};
 use crate::model::SolidId;
-use crate::shooter::{Location, Profile, ReleaseVariable};
+use crate::shooter::{Location, Nominal, Profile, ReleaseVariable};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// What a reader of the table must know: what interpolation costs, which nodes were added, where
@@ -19,6 +19,7 @@ pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<Str
         added_note(table, units),
         jump_note(table, units),
         limit_note(table, profile, units),
+        reserve_note(table, profile, units),
         bounce_note(table, units),
         nearly_other_kind_note(table, units),
         unlikely_note(table, units),
@@ -453,6 +454,29 @@ fn limit_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option
         }
     }
     (!texts.is_empty()).then(|| texts.join(" "))
+}
+
+/// Whether a shot is so fast that speed_max of the profile is less than one standard deviation
+/// away.
+pub(super) fn has_no_reserve(profile: &Profile, nominal: &Nominal) -> bool {
+    let sd = profile
+        .shooter()
+        .dispersion
+        .sigma(ReleaseVariable::Speed, nominal);
+    let most = profile.search().speed_max_m_s;
+    most.is_some_and(|most| nominal.speed_m_s > most - sd)
+}
+
+/// At which rows no speed is left to correct them in the gym.
+fn reserve_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option<String> {
+    let places = Places::of(table, |shot| has_no_reserve(profile, &shot.nominal));
+    (!places.is_empty()).then(|| {
+        format!(
+            "In {} the speed is within one standard deviation of speed_max: {}. There nothing is left to set it higher in the gym.",
+            places.count_text(),
+            places.text(table, units)
+        )
+    })
 }
 
 /// How many shots touch more than they should.

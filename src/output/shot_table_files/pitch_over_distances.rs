@@ -2,7 +2,7 @@
 //! launcher whose angle is fixed.
 
 use super::by_pitch::{by_pitch_csv, by_pitch_json, kind_before_shot};
-use super::notes::{physics_note, speed_limit_in_words};
+use super::notes::{has_no_reserve, physics_note, speed_limit_in_words};
 use super::table_text::{decimal, line, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind};
 use crate::shooter::{Profile, ShotKind};
@@ -99,6 +99,28 @@ fn cost_in_words(from: &[&DistanceShots], row: usize, units: UnitSystem) -> Stri
     })
 }
 
+/// From where the shots at a pitch angle have no reserve of speed, with a space before it; empty
+/// where all have one.
+fn reserve_in_words(from: &[&DistanceShots], row: usize, units: UnitSystem) -> String {
+    let is_short = |shots: &&&DistanceShots| {
+        let shot = shots.shots[row].shot.as_ref();
+        shot.is_some_and(|shot| has_no_reserve(&shots.profile, &shot.nominal))
+    };
+    let places: Vec<String> = from
+        .iter()
+        .filter(is_short)
+        .map(|shots| shots.distance(units).to_string())
+        .collect();
+    if places.is_empty() {
+        return String::new();
+    }
+    format!(
+        " But from {} {} its speed is within one standard deviation of speed_max: there nothing is left to set it higher in the gym, which a flatter angle leaves.",
+        places.join(", "),
+        units.length().0
+    )
+}
+
 /// P at each pitch angle and distance for people, at most 80 columns wide: the angle with the
 /// greatest mean and that with the greatest least P, then a table.
 #[must_use]
@@ -171,6 +193,7 @@ pub fn pitch_over_distances_text(
         false => ".".to_owned(),
     };
     words += &of_list;
+    words += &reserve_in_words(from, best, units);
     if rows.len() > 1 && from.len() > 1 {
         words += &cost_in_words(from, best, units);
     }

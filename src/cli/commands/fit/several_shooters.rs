@@ -145,6 +145,15 @@ pub(super) fn fit(
             path.display(),
             out.display()
         ));
+        let has_results = rows.iter().any(|row| {
+            let fit = row.fit.as_ref();
+            fit.is_some_and(|fit| fit.makes.labelled > 0)
+        });
+        if has_results && options.free.is_empty() {
+            print_remark(
+                "before a `bankshot team` with --sweep: the same command with --free hoop_restitution asks the makes about the ring of this gym, on which bank or direct rests",
+            );
+        }
     }
     Ok(worst)
 }

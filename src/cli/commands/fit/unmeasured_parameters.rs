@@ -136,7 +136,8 @@ pub(super) fn estimate(
                 file.physics_name,
                 file.physics.restitution_on(SolidId::Ring)
             ),
-            physics_with(file, &format!("hoop_restitution = {best:.2}")),
+            physics_with(file, &format!("hoop_restitution = {best:.2}"))
+                + "`bankshot team` and `bankshot physics` of these fits heed the interval as it is: nothing need be fitted or swept again.\n",
         ),
     };
     let [low, high] = curve.interval.map(|end| end / size);

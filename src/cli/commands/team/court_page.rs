@@ -2,7 +2,7 @@
 
 use super::court_results::{
     PLAYER_COLUMNS, bank_texts, by_mean, least_to_most, notes, place_header, place_in_words,
-    place_rows, player_rows, remarks,
+    place_rows, player_rows, remarks, sure_in_words,
 };
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
@@ -130,11 +130,12 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
         row
     });
     let mut caption = "In 100 shots. Best shots: makes with the best release, the mean of all places. Bank it from: makes of the best bank shot (of the best direct one)".to_owned();
+    let has_draws = |place: &PlaceProbabilities| place.bank_is_better.is_some();
     if players
         .iter()
-        .any(|player| !player.unsure_places().is_empty())
+        .any(|player| player.places.iter().any(has_draws))
     {
-        caption += "; ? where the measured shots do not tell yet which is better";
+        caption += ", and in how many of 100 draws of the fit it is the better one";
     }
     let mut banks = players.iter().flat_map(|player| player.bank_places());
     if banks.any(PlaceProbabilities::turns_with_the_hoop) {
@@ -154,7 +155,7 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
     }
 }
 
-/// The places to bank from, a line each: `either wing, 11 ft: 80 to 82 (75)`.
+/// The places to bank from, a line each: `either wing, 11 ft: 80 to 82 (75), 96 %`.
 fn bank_lines(player: &PlayerSweep, units: UnitSystem) -> String {
     let (bank, unsure) = (player.bank_places(), player.unsure_places());
     let words_of = |same: &[&PlaceProbabilities], listed: &[&PlaceProbabilities]| {
@@ -171,21 +172,41 @@ fn bank_lines(player: &PlayerSweep, units: UnitSystem) -> String {
         };
         words.replace(" from the hoop", "")
     };
-    let lines_of = |places: &[&PlaceProbabilities], mark: &str| -> Vec<String> {
-        let lines = with_mirror_images(places).into_iter().map(|same| {
-            let turns = same.iter().any(|place| place.turns_with_the_hoop());
-            format!(
-                "{}: {} ({}){}{mark}",
-                words_of(&same, places),
-                least_to_most(same.iter().map(|place| place.bank), 0),
-                least_to_most(same.iter().map(|place| place.direct), 0),
-                if turns { "\u{a0}*" } else { "" }
-            )
-        });
-        lines.collect()
+    let p_of = |same: &[&PlaceProbabilities]| {
+        let [bank, direct] = [
+            least_to_most(same.iter().map(|place| place.bank), 0),
+            least_to_most(same.iter().map(|place| place.direct), 0),
+        ];
+        format!("{bank} ({direct})")
     };
-    let mut lines = lines_of(&bank, "");
-    lines.extend(lines_of(&unsure, "\u{a0}?"));
+    let surely = with_mirror_images(&bank).into_iter().map(|same| {
+        let turns = same.iter().any(|place| place.turns_with_the_hoop());
+        let sure = sure_in_words(&same).map_or_else(String::new, |sure| format!(", {sure}"));
+        format!(
+            "{}: {}{sure}{}",
+            words_of(&same, &bank),
+            p_of(&same),
+            if turns { "\u{a0}*" } else { "" }
+        )
+    });
+    let open = with_mirror_images(&unsure).into_iter().filter_map(|same| {
+        /// Draws that are divided more evenly lean to no side.
+        const LEANS: f64 = 0.6;
+        let leaning = match same[0].share_of_preferred()? {
+            share if share >= LEANS => format!(
+                ", rather {} ({})",
+                same[0].preference()?.name(),
+                sure_in_words(&same)?
+            ),
+            _ => String::new(),
+        };
+        Some(format!(
+            "not sure{leaning}: {}: {}",
+            words_of(&same, &unsure),
+            p_of(&same)
+        ))
+    });
+    let mut lines: Vec<String> = surely.chain(open).collect();
     if lines.is_empty() {
         return "nowhere: shoot direct".to_owned();
     }

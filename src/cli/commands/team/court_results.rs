@@ -153,7 +153,8 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let aim = |same: &[&PlaceProbabilities]| {
         let aim = board_aim_of_sides(same, units);
         let aim = aim.map(|aim| format!("aim at the board, {aim}"));
-        let words = [aim, hoop_in_words(same)];
+        let sure = sure_in_words(same).map(|sure| format!("bank is better with {sure} certainty"));
+        let words = [sure, aim, hoop_in_words(same), sides_in_words(same)];
         let words: Vec<String> = words.into_iter().flatten().collect();
         (!words.is_empty()).then(|| words.join("; "))
     };
@@ -171,7 +172,7 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
                 place.preference()?.name()
             ))
         });
-        let shares: Vec<String> = shares.collect();
+        let shares: Vec<String> = shares.chain(sides_in_words(same)).collect();
         (!shares.is_empty()).then(|| shares.join("; "))
     };
     let surely = place_list(&player.bank_places(), ("  ", &aim), units);
@@ -185,6 +186,27 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
         text += &format!("  not sure yet which is better:\n{perhaps}");
     }
     text
+}
+
+/// In how many of 100 draws the preferred kind is the better one at a place, or at both sides:
+/// `92 %`, `over 99 %`. `None` where no draws were asked.
+pub(super) fn sure_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
+    let shares = same.iter().filter_map(|place| place.share_of_preferred());
+    let least = shares.reduce(f64::min)?;
+    Some(match whole_percent(least) {
+        100 => "over 99 %".to_owned(),
+        percent => format!("{percent} %"),
+    })
+}
+
+/// That the draws tell a place from its mirror image; `None` where they do not.
+fn sides_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
+    let agree = same.iter().filter_map(|place| place.sides_differ);
+    let agree = agree.reduce(f64::min)?;
+    Some(format!(
+        "left and right differ with {} % certainty",
+        whole_percent(agree).min(99)
+    ))
 }
 
 /// P of the bank shot at some places, a line for each, which begins with `indent`, and below it

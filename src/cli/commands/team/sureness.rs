@@ -53,23 +53,27 @@ pub(super) fn find_sureness(
         let mirror = mirrors[i].and_then(|mirror| gains[mirror].as_ref());
         let place = &mut places[i];
         place.fitted_shots = Some(fit.posterior.shots);
+        let told_apart = mirror.and_then(|mirror| told_apart(gain, mirror));
+        place.sides_differ = told_apart;
         place.bank_is_better = Some(match mirror {
-            Some(mirror) => share_of_both(gain, mirror),
-            None => gain.share_positive(),
+            Some(mirror) if told_apart.is_none() => share_of_both(gain, mirror),
+            _ => gain.share_positive(),
         });
     }
     Ok(())
 }
 
-/// The share of the draws in which bank is better at a place, its mirror image taken with it unless
-/// the draws tell the two apart.
-fn share_of_both(gain: &DrawProbabilities, mirror: &DrawProbabilities) -> f64 {
-    /// The sides differ if so many draws agree which is the better one.
+/// The share of the draws that agree on which side bank gains more, where it is so large that the
+/// sides differ.
+fn told_apart(gain: &DrawProbabilities, mirror: &DrawProbabilities) -> Option<f64> {
     const TOLD_APART: f64 = 0.975;
     let more_here = gain.minus(mirror).share_positive();
-    if more_here.max(1.0 - more_here) >= TOLD_APART {
-        return gain.share_positive();
-    }
+    let agree = more_here.max(1.0 - more_here);
+    (agree >= TOLD_APART).then_some(agree)
+}
+
+/// The share of the draws in which bank is better at a place and its mirror image together.
+fn share_of_both(gain: &DrawProbabilities, mirror: &DrawProbabilities) -> f64 {
     let both = gain.of_draws.iter().zip(&mirror.of_draws);
     let positive = both.filter(|(a, b)| *a + *b > 0.0).count();
     positive as f64 / gain.of_draws.len() as f64
@@ -154,8 +158,9 @@ mod tests {
         assert_eq!(both, share_of_both(&there, &here));
         // Of the 80 draws the mean is above 0 in each, of the other 20 in the 8 of the second side.
         assert!((both - 0.88).abs() < 1e-12, "{both}");
+        assert_eq!(told_apart(&here, &there), None);
         let surely_more = gains(&|_| 0.02);
-        assert_eq!(share_of_both(&surely_more, &here), 1.0);
-        assert!((share_of_both(&here, &surely_more) - 0.8).abs() < 1e-12);
+        assert_eq!(told_apart(&here, &surely_more), Some(1.0));
+        assert_eq!(told_apart(&surely_more, &here), Some(1.0));
     }
 }
