@@ -62,10 +62,7 @@ impl FitFolder {
 }
 
 /// The releases of a fit whose results are known, from its `shots.csv`.
-pub(crate) fn read_releases(
-    folder: &Path,
-    units: UnitSystem,
-) -> Result<Vec<KnownRelease>, Failure> {
+pub(crate) fn read_releases(folder: &Path, fit: &FitFolder) -> Result<Vec<KnownRelease>, Failure> {
     let path = folder.join("shots.csv");
     let text = read_text(&path)?;
     let mut reader = csv::ReaderBuilder::new()
@@ -78,7 +75,7 @@ pub(crate) fn read_releases(
         found.ok_or_else(|| damaged(&path, format!("has no column {name}")))
     };
     let mut of_values = Vec::new();
-    for (name, (unit, size)) in VALUE_NAMES.iter().zip(value_units(units)) {
+    for (name, (unit, size)) in VALUE_NAMES.iter().zip(value_units(fit.units)) {
         let unit = unit.replace('/', "_");
         let columns = [
             column(&format!("{name}_{unit}"))?,
@@ -105,7 +102,8 @@ pub(crate) fn read_releases(
             }
             Some(release)
         };
-        releases.extend(read());
+        let is_of_place = |release: &KnownRelease| release.place < fit.profiles.len();
+        releases.extend(read().filter(is_of_place));
     }
     Ok(releases)
 }

@@ -21,6 +21,8 @@ const SHOTS: usize = 8_192;
 pub struct DesignRow {
     /// Shots of the test.
     pub shots: usize,
+    /// Simulated tests.
+    pub repetitions: u64,
     /// Relative standard deviations of the three standard deviations (speed, pitch, polar angle).
     pub sd_errors: [f64; 3],
     /// Standard deviation of P from the fitted profile.
@@ -193,6 +195,7 @@ pub fn design(
         let [speed, pitch, polar, p] = sums.map(|sum| (sum / repetitions as f64).sqrt());
         Ok(DesignRow {
             shots,
+            repetitions,
             sd_errors: [speed, pitch, polar],
             probability_error: p,
             simulation_error,

@@ -33,15 +33,17 @@ impl Preference {
             (None, None) => return None,
             (Some(_), None) => Self::Direct,
             (None, Some(_)) => Self::Bank,
-            (Some(direct), Some(bank)) => {
-                let gain = difference(bank, direct);
-                match (is_advised(gain), gain.value > 0.0) {
-                    (false, _) => Self::Either,
-                    (true, true) => Self::Bank,
-                    (true, false) => Self::Direct,
-                }
-            }
+            (Some(direct), Some(bank)) => Self::of_gain(difference(bank, direct)),
         })
+    }
+
+    /// Of P of the bank shot less that of the direct one.
+    fn of_gain(gain: Difference) -> Self {
+        match (is_advised(gain), gain.value > 0.0) {
+            (false, _) => Self::Either,
+            (true, true) => Self::Bank,
+            (true, false) => Self::Direct,
+        }
     }
 
     /// The name in tables.
@@ -91,6 +93,9 @@ pub struct PlaceProbabilities {
     /// The share of the draws that agree on which side, this or its mirror image, bank gains more;
     /// where that tells the sides apart.
     pub sides_differ: Option<f64>,
+    /// The mean of what bank gains here and at the mirror image, where the draws do not tell the
+    /// two apart.
+    pub gain_of_both_sides: Option<Difference>,
     /// Shots of that fit.
     pub fitted_shots: Option<usize>,
     /// Where the bank shot is preferred: where the same bank shot gains least over the same direct
@@ -125,6 +130,7 @@ impl PlaceProbabilities {
                     nominals: [nominal(&direct), nominal(&bank)],
                     bank_is_better: None,
                     sides_differ: None,
+                    gain_of_both_sides: None,
                     fitted_shots: None,
                     least_gain: None,
                     place: jobs.sources[place].place,
@@ -153,18 +159,27 @@ impl PlaceProbabilities {
         both.reduce(|a, b| if b.value > a.value { b } else { a })
     }
 
-    /// P of the kind to tell the player: the greater one, but that of the direct shot where the
-    /// draws of the fit leave doubt that the bank shot is better.
+    /// P of the kind to tell the player: the preferred one, but that of the direct shot where the
+    /// draws of the fit leave doubt that the bank shot is better; the greater one where neither is
+    /// preferred.
     #[must_use]
     pub fn told(&self) -> Option<Difference> {
-        let is_doubtful = self.preference() == Some(Preference::Bank) && !self.is_sure();
-        self.direct.filter(|_| is_doubtful).or_else(|| self.best())
+        let told = match self.preference()? {
+            Preference::Bank if self.is_sure() => self.bank,
+            Preference::Bank | Preference::Direct => self.direct,
+            Preference::Either => None,
+        };
+        told.or_else(|| self.best())
     }
 
-    /// Which kind to shoot; `None` without any shot.
+    /// Which kind to shoot; `None` without any shot. Where the place and its mirror image have one
+    /// answer, that of both together.
     #[must_use]
     pub fn preference(&self) -> Option<Preference> {
-        Preference::of(self.direct, self.bank)
+        match self.gain_of_both_sides {
+            Some(gain) => Some(Preference::of_gain(gain)),
+            None => Preference::of(self.direct, self.bank),
+        }
     }
 
     /// The share of the draws in which the preferred kind is the better one; `None` where neither
@@ -364,6 +379,7 @@ mod tests {
             nominals: [None; 2],
             bank_is_better,
             sides_differ: None,
+            gain_of_both_sides: None,
             fitted_shots: Some(100),
             least_gain: None,
             board_aim_m: None,

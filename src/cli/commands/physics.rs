@@ -135,7 +135,10 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         comparison = comparison.with_same_shot(SameShot::AsMeasured, of_rows);
     }
     let told_ring = ring_told_by_makes(std::slice::from_ref(&path));
-    let own_ring = profile.physics().restitution_on(SolidId::Ring);
+    let base = &comparison.rows[comparison.base].name;
+    let base = variants.iter().find(|variant| variant.name == *base);
+    let base = base.map_or(profile.physics(), |variant| &variant.physics);
+    let own_ring = base.restitution_on(SolidId::Ring);
     let shares = possible_shares(&comparison, (own_ring, told_ring), fitted.as_ref());
     comparison = comparison.with_possible_shares(&shares);
     if let Some(path) = &options.plot {
@@ -206,7 +209,11 @@ impl FittedRows {
         let shots = FittedShots::new((profile, &fit.posterior, place), &advice, measured);
         // Where a landing was measured, the release of each shot depends on the physics.
         let releases = match measured {
-            Measured::Release => fit_folder::read_releases(folder, fit.units)?,
+            // Without them only z is missing.
+            Measured::Release => fit_folder::read_releases(folder, fit).unwrap_or_else(|failure| {
+                print_remark(&format!("no z of the makes: {}", failure.message));
+                Vec::new()
+            }),
             Measured::Landing => Vec::new(),
         };
         let made_z = |physics: &Physics| {
@@ -264,32 +271,37 @@ impl FittedRows {
     /// Whether the makes speak against a row: the makes of each ball where releases were measured,
     /// and else the intervals of P and of the share of makes, if they do not meet.
     fn do_makes_contradict(&self, row: usize) -> bool {
-        self.contradiction(row) > 0.0
+        match self.made_z[row] {
+            Some(z) => z.abs() > FAR_MAKES,
+            None => self.gap(row).is_some_and(|gap| gap > 0.0),
+        }
     }
 
-    /// How far the makes are from allowing a row, in a unit that grows evenly with the change; not
-    /// above 0 where they do.
-    fn contradiction(&self, row: usize) -> f64 {
-        if let Some(z) = self.made_z[row] {
-            return z.abs() - FAR_MAKES;
-        }
+    /// How far the interval of P of a row is from that of the share of makes; negative where they
+    /// meet.
+    fn gap(&self, row: usize) -> Option<f64> {
         let (made, shots) = self.observed;
         let share = wilson_interval(made, shots);
         let usual = self.rows[row].as_ref().map(|own| own.usual);
-        match usual {
-            Some(p) if shots > 0 => (p.low - share.high).max(share.low - p.high),
-            _ => -1.0,
-        }
+        let usual = usual.filter(|_| shots > 0)?;
+        Some((usual.low - share.high).max(share.low - usual.high))
     }
 
-    /// How far towards a row the gym may be by the makes, 0 to 1.
+    /// How far towards a row the gym may be by the makes, 0 to 1: z, or the gap, is taken to change
+    /// evenly on the way from the base.
     fn possible_share(&self, base: usize, row: usize) -> f64 {
-        let there = self.contradiction(row);
-        // What a line from the base to the row says, by z with its sign where it is known.
-        let here = match (self.made_z[base], self.made_z[row]) {
-            (Some(base), Some(z)) if z < 0.0 => -base - FAR_MAKES,
-            (Some(base), Some(_)) => base - FAR_MAKES,
-            _ => self.contradiction(base),
+        if !self.do_makes_contradict(row) {
+            return 1.0;
+        }
+        let (here, there) = match (self.made_z[base], self.made_z[row]) {
+            (Some(base), Some(z)) => {
+                let side = z.signum();
+                (side * base - FAR_MAKES, side * z - FAR_MAKES)
+            }
+            _ => match (self.gap(base), self.gap(row)) {
+                (Some(here), Some(there)) => (here, there),
+                _ => return 1.0,
+            },
         };
         // A base that the makes contradict is no place to measure from.
         match there > 0.0 && here < 0.0 {
@@ -343,6 +355,22 @@ impl FittedRows {
             ),
         };
         text
+    }
+
+    /// What the advice gains as far towards a row as the gym may be.
+    fn possible_gain(&self, comparison: &PhysicsComparison, row: usize) -> Option<Interval> {
+        let (there, share) = (self.gain(row)?, comparison.rows[row].possible_share);
+        if share >= 1.0 {
+            return Some(there);
+        }
+        let here = self.gain(comparison.base)?;
+        let between = |here: f64, there: f64| here + share * (there - here);
+        Some(Interval {
+            mean: between(here.mean, there.mean),
+            sd: between(here.sd, there.sd),
+            low: between(here.low, there.low),
+            high: between(here.high, there.high),
+        })
     }
 
     /// What the advice gains in a row.
@@ -400,8 +428,8 @@ impl FittedRows {
         }
         let names = |wanted: &dyn Fn(Option<Interval>) -> bool| {
             let rows = comparison.rows.iter().enumerate();
-            let rows = rows.filter(|(_, row)| row.is_unmeasured && !row.is_ruled_out());
-            let rows = rows.filter(|(i, _)| wanted(self.gain(*i)));
+            let rows = rows
+                .filter(|(i, row)| row.is_unmeasured && wanted(self.possible_gain(comparison, *i)));
             rows.map(|(_, row)| change(row)).collect::<Vec<_>>()
         };
         let unsure = names(&|gain| gain.is_some_and(|gain| gain.low <= 0.0));
@@ -410,9 +438,13 @@ impl FittedRows {
             0 => "what nobody measured in this gym",
             _ => "ncaa in what nobody measured in this gym (the fit's physics has no air)",
         };
+        let as_far = match comparison.rows.iter().any(PhysicsRow::is_ruled_out) {
+            true => ", as far as the makes leave it",
+            false => "",
+        };
         let mut text = match (&unsure[..], &unknown[..]) {
             ([], []) => format!(
-                "The advice holds under each change of {of}: the 95 % interval of its gain lies above 0.\n"
+                "The advice holds under each change of {of}{as_far}: the 95 % interval of its gain lies above 0.\n"
             ),
             ([], _) => String::new(),
             _ => format!(
@@ -452,9 +484,9 @@ impl FittedRows {
             text += &format!(" gains {} under the first row's physics", points(&own));
         }
         let rows = comparison.rows.iter().enumerate();
-        let unmeasured = rows.filter(|(_, row)| row.is_unmeasured && !row.is_ruled_out());
+        let unmeasured = rows.filter(|(_, row)| row.is_unmeasured);
         let gains: Vec<(String, Interval)> = unmeasured
-            .filter_map(|(i, row)| Some((change(row), self.gain(i)?)))
+            .filter_map(|(i, row)| Some((change(row), self.possible_gain(comparison, i)?)))
             .collect();
         let by_mean =
             |a: &&(String, Interval), b: &&(String, Interval)| a.1.mean.total_cmp(&b.1.mean);
@@ -483,7 +515,7 @@ impl FittedRows {
 const FAR_MAKES: f64 = 3.0;
 
 /// How far towards each row the gym may be, 0 to 1: as far as the makes of the fitted shots, and
-/// the ring that `--free` found, leave it. `own_ring` is the restitution of the first row's.
+/// the ring that `--free` found, leave it. `own_ring` is the restitution of the base row's.
 fn possible_shares(
     comparison: &PhysicsComparison,
     (own_ring, told_ring): (f64, Option<(f64, f64)>),

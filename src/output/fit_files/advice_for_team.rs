@@ -5,7 +5,7 @@ use super::advice_text::{
     scatter_in_words,
 };
 use super::change_in_words::{
-    ChangeWords, FirstChange, first_change, first_change_in_words, landing_in_words,
+    ChangeWords, FirstChange, first_change, first_change_in_words, gains_alone, landing_in_words,
 };
 use super::fit_text::chance;
 use crate::fitting::{Advice, AdviceStep, AdviceSteps};
@@ -60,7 +60,7 @@ pub fn short_advice(
             "nothing yet: no change is surely better.".to_owned() + &more_shots_in_words(advice)
         }
         Some(steps) => {
-            let first = steps.alone.map_or_else(String::new, |alone| {
+            let first = gains_alone(advice, steps).map_or_else(String::new, |alone| {
                 let (name, share) = match alone.speed_is_better {
                     share if share >= 0.5 => ("speed", share),
                     share => ("angle", 1.0 - share),

@@ -2,7 +2,9 @@
 
 use super::fit_text::chance;
 use super::parameters::value_units;
-use crate::fitting::{Advice, AdviceStep, AdviceSteps, Cause, Landing, SAME_SPEED_M_S, Values};
+use crate::fitting::{
+    Advice, AdviceStep, AdviceSteps, AloneGains, Cause, Landing, SAME_SPEED_M_S, Values,
+};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
 /// Words for the change of one value.
@@ -114,8 +116,7 @@ pub fn changes_in_words(advice: &Advice, court_angle_rad: f64, units: UnitSystem
 /// Which of speed and angle to change first, and how sure that is, in a sentence with a space
 /// before it; empty where they do not change together.
 pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> String {
-    let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
-    let Some(alone) = steps.alone.filter(|_| by_m_s >= SAME_SPEED_M_S) else {
+    let Some(alone) = gains_alone(advice, steps) else {
         return String::new();
     };
     let p = advice.usual_probability.mean;
@@ -136,6 +137,12 @@ pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> Str
         FirstChange::Pitch => format!(" Begin with the angle: {both} ({chance})."),
         FirstChange::Either => format!(" Begin with either: {both} ({chance})."),
     }
+}
+
+/// What speed and angle gain alone; `None` where they do not both change.
+pub(super) fn gains_alone(advice: &Advice, steps: &AdviceSteps) -> Option<AloneGains> {
+    let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
+    steps.alone.filter(|_| by_m_s >= SAME_SPEED_M_S)
 }
 
 /// What to change first.
@@ -217,7 +224,7 @@ pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fitting::{AloneGains, Interval};
+    use crate::fitting::Interval;
 
     /// What to begin with: it must be better by a shot in 100 and in 90 of 100 draws.
     #[test]

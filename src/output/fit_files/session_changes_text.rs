@@ -65,11 +65,15 @@ impl SessionChange {
         change.mean.abs() > quantile_among(tested) * change.sd
     }
 
-    /// Whether more or other draws may turn what [`Self::is_certain_among`] says.
+    /// Whether other draws may turn the verdict on a change among `tested` values.
     #[must_use]
     pub fn is_at_the_limit(&self, tested: usize) -> bool {
         let (z, error) = self.comparison.standard_errors();
-        (z - quantile_among(tested)).abs() < 2.0 * error
+        let decides = match self.name.as_str() {
+            "P" => TWO_SIDED_95,
+            _ => quantile_among(tested),
+        };
+        (z - decides).abs() < 2.0 * error
     }
 
     fn is_decided(&self) -> bool {
@@ -258,6 +262,9 @@ fn verdict(changes: &[SessionChange], tested: usize) -> String {
                  {direction} by {points:.0} {unit} ({interval}); the chance that it {direction} at all is {sure:.0} %.\n"
             )
         };
+        if p.is_at_the_limit(tested) {
+            text += "That is at the limit of the 95 % level: other draws (--seed) can turn it.\n";
+        }
     }
     text + &values_in_words(changes, tested)
 }

@@ -115,7 +115,7 @@ fn reserve_in_words(from: &[&DistanceShots], row: usize, units: UnitSystem) -> S
         return String::new();
     }
     format!(
-        " But from {} {} its speed is within one standard deviation of speed_max: there nothing is left to set it higher in the gym, which a flatter angle leaves.",
+        " But from {} {} its speed is within one standard deviation of speed_max: there nothing is left to set it higher in the gym.",
         places.join(", "),
         units.length().0
     )

@@ -115,6 +115,18 @@ fn tracker_named(name: &str, sees: Option<Source>) -> Result<TrackerOfTest, Fail
     Ok(TrackerOfTest { name, noise, sees })
 }
 
+/// Simulated tests of each size: `48`, or `48 (12 of 970 shots)` where large sizes have fewer.
+fn repetitions_in_words(rows: &[DesignRow], usual: u64) -> String {
+    let fewer = rows.iter().filter(|row| row.repetitions != usual);
+    let fewer: Vec<String> = fewer
+        .map(|row| format!("{} of {} shots", row.repetitions, row.shots))
+        .collect();
+    match fewer.is_empty() {
+        true => usual.to_string(),
+        false => format!("{usual} ({})", fewer.join(", ")),
+    }
+}
+
 /// Simulated tests of a size that the answer asked for, at least.
 const LEAST_REPETITIONS: u64 = 12;
 
@@ -160,7 +172,8 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let bars = ProgressBars::new(quiet);
     let simulate_of = |shot: &TestedShot, noise: &Covariance, sizes: &[usize]| {
         // A large test scatters less from one simulation to the next, and takes longer.
-        let largest = options.shots.iter().copied().max().unwrap_or(0) as u64;
+        let asked = options.shots.iter().chain(&options.first);
+        let largest = u64::from(asked.copied().max().unwrap_or(0));
         let of_size = |shots: usize| match options.repetitions * largest / shots as u64 {
             fewer if shots as u64 > largest => {
                 fewer.max(options.repetitions.min(LEAST_REPETITIONS))
@@ -247,7 +260,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
         100.0 * first_shot.probability,
         tracker.name.0,
         tracker.name.1,
-        options.repetitions,
+        repetitions_in_words(&rows, options.repetitions),
         "",
         "scatter is known to",
         "P is known to (points)",
@@ -315,7 +328,7 @@ pub(crate) fn run(options: &DesignOptions, quiet: bool) -> Result<u8, Failure> {
     let sd = |i: usize, size: f64| own_noise[(i, i)].max(0.0).sqrt() / size;
     text += &format!(
         "\nWith {} simulated tests the errors of P are known to {:.0} %, the numbers of shots to {:.0} % (one standard deviation; --repetitions).\nAt this shot the tracker errs by {:.decimals$} {long}/s, {:.2} deg up and {:.2} deg sideways. The physics is taken as known: more shots do not tell it, and `bankshot physics` says what rests on it.\n",
-        options.repetitions,
+        repetitions_in_words(&rows, options.repetitions),
         100.0 * of_error,
         200.0 * of_error,
         sd(0, metre),
@@ -336,6 +349,7 @@ fn json(
         let [speed, pitch, polar] = row.sd_errors.map(number);
         json!({
             "shots": row.shots,
+            "repetitions": row.repetitions,
             "speed_sd_relative_error": speed,
             "pitch_sd_relative_error": pitch,
             "polar_sd_relative_error": polar,

@@ -145,7 +145,7 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
     if !advised.is_empty() {
         let from = one_place(&advised).map_or_else(String::new, |from| format!(", {from}"));
         caption += &format!(
-            " Now: makes with the measured release{from} (95 % interval). Can make: makes after the change, with the same scatter (95 % interval). Change: in brackets the chance that this beginning makes more than the other one. Train: the scatter that costs most."
+            " Now: makes with the measured release{from} (95 % interval). Can make: makes after the change, with the same scatter (95 % interval; ? where no change is surely better). Change: in brackets the chance that this beginning makes more than the other one. Train: the scatter that costs most."
         );
     }
     PageTable {

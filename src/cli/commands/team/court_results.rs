@@ -172,7 +172,9 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
                 place.preference()?.name()
             ))
         });
-        let shares: Vec<String> = shares.chain(sides_in_words(same)).collect();
+        let mut shares: Vec<String> = shares.chain(sides_in_words(same)).collect();
+        // Both sides of a place mostly have one answer.
+        shares.dedup();
         (!shares.is_empty()).then(|| shares.join("; "))
     };
     let surely = place_list(&player.bank_places(), ("  ", &aim), units);
@@ -353,7 +355,7 @@ fn measured_places(players: &[PlayerSweep]) -> String {
         false => "from the places of their fits".to_owned(),
     };
     format!(
-        "The players were measured {from}. At every other place P is computed with the scatter from there, which nobody measured.\n"
+        "Measured players shot {from}. At every other place P is computed with the scatter from there, which nobody measured.\n"
     )
 }
 

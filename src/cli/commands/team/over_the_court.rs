@@ -143,12 +143,12 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
         let (rows, _) = swept.union()?;
         let mut places = PlaceProbabilities::of_sweep(&config, &rows);
         let bars = ProgressBars::new(quiet);
-        find_hoop_dependence(&mut places, &config, ring, &bars)?;
         let mut advice = None;
         if let Some(fit) = &fit {
             find_sureness(&mut places, &config, fit, &bars)?;
             advice = Some(PlayerAdvice::of_fit(fit, &config.settings.output, &bars)?);
         }
+        find_hoop_dependence(&mut places, &config, ring, &bars)?;
         let own = advice.as_ref().map(|advice| advice.poster.as_str());
         posters.extend(write_pictures(
             folder,

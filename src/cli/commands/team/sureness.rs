@@ -51,9 +51,17 @@ pub(super) fn find_sureness(
     for &i in &asked {
         let Some(gain) = &gains[i] else { continue };
         let mirror = mirrors[i].and_then(|mirror| gains[mirror].as_ref());
-        let place = &mut places[i];
-        place.fitted_shots = Some(fit.posterior.shots);
         let told_apart = mirror.and_then(|mirror| told_apart(gain, mirror));
+        let both = mirror.is_some() && told_apart.is_none();
+        let of_mirror = mirrors[i].filter(|_| both);
+        let of_mirror = of_mirror.and_then(|mirror| places[mirror].bank_gain());
+        let own = places[i].bank_gain();
+        let place = &mut places[i];
+        place.gain_of_both_sides = own.zip(of_mirror).map(|(a, b)| Difference {
+            value: 0.5 * (a.value + b.value),
+            standard_error: 0.5 * libm::hypot(a.standard_error, b.standard_error),
+        });
+        place.fitted_shots = Some(fit.posterior.shots);
         place.sides_differ = told_apart;
         place.bank_is_better = Some(match mirror {
             Some(mirror) if told_apart.is_none() => share_of_both(gain, mirror),
