@@ -486,7 +486,7 @@ impl FittedRows {
         let rows = comparison.rows.iter().enumerate();
         let unmeasured = rows.filter(|(_, row)| row.is_unmeasured);
         let gains: Vec<(String, Interval)> = unmeasured
-            .filter_map(|(i, row)| Some((change(row), self.possible_gain(comparison, i)?)))
+            .filter_map(|(i, row)| Some((possible_change(row), self.possible_gain(comparison, i)?)))
             .collect();
         let by_mean =
             |a: &&(String, Interval), b: &&(String, Interval)| a.1.mean.total_cmp(&b.1.mean);
@@ -563,6 +563,18 @@ fn ruled_out_in_words(comparison: &PhysicsComparison, told_ring: Option<(f64, f6
 fn change(row: &PhysicsRow) -> String {
     let words = row.name.split_once(' ');
     words.map_or(row.name.clone(), |(_, change)| change.to_owned())
+}
+
+/// The same as far as the gym may have it: `56 % of the way to drag_coefficient 0.54`.
+fn possible_change(row: &PhysicsRow) -> String {
+    match row.is_ruled_out() {
+        true => format!(
+            "{:.0} % of the way to {}",
+            100.0 * row.possible_share,
+            change(row)
+        ),
+        false => change(row),
+    }
 }
 
 /// A difference of P in makes of 100, rounded. (0 is added: no negative zero.)
@@ -700,12 +712,8 @@ fn changes_text(comparison: &PhysicsComparison) -> String {
     names.sort_by(|a, b| most(b).total_cmp(&most(a)));
     for &name in &names {
         let change = name.split_once(' ').map_or(name, |(_, change)| change);
-        let ruled_out = comparison.rows.iter().find(|row| row.name == name);
-        let share = ruled_out.map_or(1.0, |row| row.possible_share);
-        let change = match share < 1.0 {
-            true => format!("{:.0} % of the way to {change}", 100.0 * share),
-            false => change.to_owned(),
-        };
+        let row = comparison.rows.iter().find(|row| row.name == name);
+        let change = row.map_or_else(|| change.to_owned(), possible_change);
         table.add_row(vec![change, of(&best, name), of(&same, name)]);
     }
     let ring_is_asked = names.iter().any(|name| name.contains("hoop_restitution"));
