@@ -6,8 +6,8 @@ use super::advice_text::{
 };
 use super::change_in_words::{
     ChangeWords, FirstChange, first_change, first_change_in_words, gains_alone, landing_in_words,
+    likelier_beginning,
 };
-use super::fit_text::chance;
 use crate::fitting::{Advice, AdviceStep, AdviceSteps};
 use crate::units::UnitSystem;
 
@@ -61,15 +61,12 @@ pub fn short_advice(
         }
         Some(steps) => {
             let first = gains_alone(advice, steps).map_or_else(String::new, |alone| {
-                let (name, share) = match alone.speed_is_better {
-                    share if share >= 0.5 => ("speed", share),
-                    share => ("angle", 1.0 - share),
-                };
+                let (name, chance) = likelier_beginning(&alone);
                 match first_change(steps) {
-                    FirstChange::Speed => format!("; begin with the speed ({})", chance(share)),
-                    FirstChange::Pitch => format!("; begin with the angle ({})", chance(share)),
+                    FirstChange::Speed => format!("; begin with the speed ({chance})"),
+                    FirstChange::Pitch => format!("; begin with the angle ({chance})"),
                     FirstChange::Either => {
-                        format!("; begin with either, rather the {name} ({})", chance(share))
+                        format!("; begin with either, rather the {name} ({chance})")
                     }
                     FirstChange::Both => "; speed and angle together".to_owned(),
                 }

@@ -123,14 +123,8 @@ pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> Str
     let [of_speed, of_pitch] = [alone.speed, alone.pitch].map(|gain| 100.0 * (p + gain.mean));
     let both =
         format!("the new speed alone makes {of_speed:.0} %, the new angle alone {of_pitch:.0} %");
-    let (name, share) = match alone.speed_is_better {
-        share if share >= 0.5 => ("speed", share),
-        share => ("angle", 1.0 - share),
-    };
-    let chance = format!(
-        "the {name} first is better with a chance of {}",
-        chance(share)
-    );
+    let (name, chance) = likelier_beginning(&alone);
+    let chance = format!("the {name} first is better with a chance of {chance}");
     match first_change(steps) {
         FirstChange::Both => format!(" Change speed and angle together: {both}."),
         FirstChange::Speed => format!(" Begin with the speed: {both} ({chance})."),
@@ -143,6 +137,15 @@ pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> Str
 pub(super) fn gains_alone(advice: &Advice, steps: &AdviceSteps) -> Option<AloneGains> {
     let by_m_s = (steps.advised[0] - advice.usual[0]).abs();
     steps.alone.filter(|_| by_m_s >= SAME_SPEED_M_S)
+}
+
+/// What more of the draws call the better beginning, and the chance that it is.
+pub(super) fn likelier_beginning(alone: &AloneGains) -> (&'static str, String) {
+    let (name, share) = match alone.speed_is_better {
+        share if share >= 0.5 => ("speed", share),
+        share => ("angle", 1.0 - share),
+    };
+    (name, chance(share))
 }
 
 /// What to change first.
