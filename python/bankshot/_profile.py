@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Union
 from . import _engine
 from ._commands import Progress, run, run_json
 from ._engine import InputError
-from ._units import SHOT, flags, in_words, quantities
+from ._units import SHOT, flags, plain, quantities
 
 if TYPE_CHECKING:
     from ._shots import BestShots, Probability, Trace
@@ -52,11 +52,11 @@ class Physics:
     Physics('ncaa', hoop_restitution=0.5, altitude='5280 ft', temperature='20 C')
     """
 
-    def __init__(self, name: str = "paper", **values: Any) -> None:
+    def __init__(self, name: str = "ncaa", **values: Any) -> None:
         self.name = name
         self.values = values
         items = [("physics.preset", name)]
-        items += [(f"physics.{key}", value) for key, value in values.items()]
+        items += [(f"physics.{key}", plain(key, value)) for key, value in values.items()]
         self.toml = _engine.text_with("", items)
         self._check()
 
@@ -116,7 +116,7 @@ class Profile:
         *,
         name: str = "",
         errors: Mapping[str, Any] | None = None,
-        physics: str | Physics = "paper",
+        physics: str | Physics = "ncaa",
         nominal: Mapping[str, Any] | None = None,
         search: Mapping[str, Any] | None = None,
         **values: Any,
@@ -229,7 +229,8 @@ class Profile:
         **shot
             ``speed``, ``pitch``, ``polar`` or ``aim`` (from the line to the hoop's centre), ``backspin``,
             ``rifle_spin``, ``side_spin``, as text, pint quantities, or floats such as ``speed_ft_s``.
-            What is missing comes from the profile's nominal shot.
+            What is missing comes from the profile's nominal shot; a backspin that neither gives is
+            ``max_backspin``, with a warning.
         target : float
             Standard error at which to stop.
         budget : int
@@ -295,7 +296,7 @@ def _items(values: Mapping[str, Any]) -> list[tuple[str, Any]]:
             found = quantities(value, SHOT)
             items += [(f"nominal.{key}", text) for key, text in found.items()]
         elif keyword in ("search", "grid", "output"):
-            items += [(f"{keyword}.{key}", x) for key, x in value.items()]
+            items += [(f"{keyword}.{key}", plain(key, x)) for key, x in value.items()]
         else:
             quantities_given[keyword] = value
     known = {name: dimension for name, (_, dimension) in _KEYS.items()}
@@ -312,7 +313,7 @@ def _physics_items(physics: str | Physics) -> list[tuple[str, Any]]:
     if not physics.values and physics.name == "from TOML":
         raise InputError("physics: give the table in the profile's own TOML")
     items: list[tuple[str, Any]] = [("physics", None), ("physics.preset", physics.name)]
-    return items + [(f"physics.{key}", value) for key, value in physics.values.items()]
+    return items + [(f"physics.{key}", plain(key, value)) for key, value in physics.values.items()]
 
 
 def _error_items(errors: Mapping[str, Any]) -> list[tuple[str, Any]]:
@@ -320,8 +321,7 @@ def _error_items(errors: Mapping[str, Any]) -> list[tuple[str, Any]]:
     paper = {key: value for key, value in errors.items() if key[:1] == "c" and key[1:].isdigit()}
     others = {key: value for key, value in errors.items() if key not in paper}
     items: list[tuple[str, Any]] = [
-        (f"shooter.errors.{key}", value if isinstance(value, (str, float, int)) else in_words(key, value, "length"))
-        for key, value in paper.items()
+        (f"shooter.errors.{key}", plain(key, value)) for key, value in paper.items()
     ]
     found = quantities(others, _ERRORS)
     return items + [(f"shooter.errors.{key}", text) for key, text in found.items()]

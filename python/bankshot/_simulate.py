@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import importlib
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _engine
-from ._commands import Progress, _watch
+from ._commands import BankshotWarning, Progress, _depth, _watch
 from ._engine import InputError
 from ._profile import Physics
+
+#: The place of the backspin among the parameters of a release.
+_BACKSPIN = 6
 
 
 def simulate(
     releases: Any,
     *,
-    physics: str | Physics = "paper",
+    physics: str | Physics = "ncaa",
     integrator: str | None = None,
     details: bool = False,
     carry: Sequence[str] = (),
@@ -70,6 +74,9 @@ def simulate(
     names, carried = table.names, list(carry)
     settings = (toml, integrator, details, threads)
     needed = _engine.simulate(names, carried, None, *settings, None)
+    if needed[_BACKSPIN] is None:
+        words = "the backspin is not given (no column such as backspin_rev_s): no ball spins"
+        warnings.warn(words, BankshotWarning, stacklevel=_depth())
     given = table.columns(needed)
     with _watch(progress) as report:
         outcomes = _engine.simulate(names, carried, given, *settings, report)

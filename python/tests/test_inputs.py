@@ -211,6 +211,89 @@ def test_pint_quantities():
         guard.probability(speed=3 * unit.kg, pitch_deg=50)
 
 
+def test_a_hertz_is_a_turn_in_a_second():
+    """Authority: the same shot as text. (A radian in a second would be a sixth of the spin.)"""
+    unit = pint.UnitRegistry()
+    known = {"name": "a", "release_height": "7 ft", "distance": "13.75 ft"}
+    known["errors"] = {"speed": "0.25 ft/s", "pitch": "1.2 deg", "polar": "1.22 deg", "backspin": "0.3 rev/s"}
+    shot = {"speed": "24.3 ft/s", "pitch": "53 deg", "target": 0.005}
+    text = bankshot.Profile(max_backspin="3 rev/s", **known)
+    expected = text.probability(backspin="3 rev/s", **shot).probability
+    for spin in (3 * unit.Hz, 3 / unit.s, 180 / unit.minute, 0.003 * unit.kHz, 3 * unit.rps, 180 * unit.rpm,
+                 1080 * unit.deg / unit.s, "3 Hz", "3 1/s"):
+        guard = bankshot.Profile(max_backspin=spin, **known)
+        found = guard.probability(backspin=spin, **shot)
+        assert found.nominal["backspin_rev_s"] == pytest.approx(3), spin
+        assert found.probability == pytest.approx(expected, abs=1e-9), spin
+        # Nobody gives the backspin: the profile's, with a warning.
+        with pytest.warns(bankshot.BankshotWarning, match="max_backspin"):
+            assert guard.probability(**shot).nominal["backspin_rev_s"] == pytest.approx(3)
+
+
+def test_every_unit_of_pint():
+    """Authority: pint's own sizes; SI, where a hertz counts cycles."""
+    from bankshot._units import in_words
+
+    unit = pint.UnitRegistry()
+    base = {"length": unit.m, "speed": unit.m / unit.s, "angle": unit.rad, "spin": unit.rad / unit.s}
+    cycles = {"hertz", "Hz", "kilohertz"}
+    # Counts and bits are no angles, though pint says that they have no dimension.
+    counts = {"baud", "Bd", "bps", "counts_per_second", "cps", "becquerel", "Bq", "curie", "Ci", "rutherford", "Rd"}
+    tried = 0
+    for dimension, si in base.items():
+        for name in (name for name in unit._units if name.isidentifier()):
+            one = unit.Quantity(2.0, name)
+            if one.dimensionality != si.dimensionality or not one._is_multiplicative:
+                continue
+            root = one.to_root_units()
+            is_angle = format(root.units, "C") in ("radian", "radian/second")
+            if dimension in ("angle", "spin") and not is_angle and name not in cycles:
+                assert name in counts or dimension == "angle", name
+                try:
+                    written = in_words("x", one, dimension)
+                except bankshot.InputError:
+                    continue
+                # Shares are refused where the program reads them.
+                assert written.endswith("%") and name not in counts, name
+                continue
+            number, text_unit = in_words("x", one, dimension).split()
+            turns = 2 * np.pi if name in cycles else 1.0
+            expected = one.to(si).magnitude * turns
+            size = {"Hz": 2 * np.pi}.get(text_unit, 1.0)
+            assert float(number) * size == pytest.approx(expected, rel=1e-12), name
+            tried += 1
+    assert tried > 60
+
+
+def test_pint_in_every_field():
+    unit = pint.UnitRegistry()
+    errors = {"c10": 0.25 * unit.ft / unit.s, "c12": 0.0 * unit.s / unit.ft, "c20": 1.2 * unit.deg,
+              "polar": 1.22 * unit.deg, "c40": 0.3 * unit.Hz, "c42": 0.0 * unit.s / unit.turn}
+    physics = bankshot.Physics(
+        "ncaa", ball_mass=21 * unit.oz, ball_radius=0.12 * unit.m, board_stiffness=2000 * unit.lbf / unit.ft,
+        gravity=32.2 * unit.ft / unit.s**2, air_density=1.2 * unit.kg / unit.m**3, hoop_restitution=60 * unit.percent,
+        time_limit=9 * unit.s,
+    )
+    text = bankshot.Physics(
+        "ncaa", ball_mass="21 oz", ball_radius="0.12 m", board_stiffness="2000 lb/ft", gravity="32.2 ft/s^2",
+        air_density="1.2 kg/m^3", hoop_restitution="60 %", time_limit="9 s",
+    )
+    given = {"name": "a", "release_height": 7 * unit.ft, "distance": 13.75 * unit.ft, "max_backspin": 3 * unit.Hz}
+    guard = bankshot.Profile(**given, errors=errors, physics=physics, search={"speed_max": 30 * unit.ft / unit.s})
+    plain = bankshot.Profile(
+        name="a", release_height="7 ft", distance="13.75 ft", max_backspin="3 rev/s", physics=text,
+        errors={"speed": "0.25 ft/s", "pitch": "1.2 deg", "polar": "1.22 deg", "backspin": "0.3 rev/s"},
+        search={"speed_max": "30 ft/s"},
+    )
+    shot = {"speed_ft_s": 24.3, "pitch_deg": 53, "backspin_rev_s": 3, "target": 0.005}
+    p, expected = guard.probability(**shot), plain.probability(**shot)
+    assert p.probability == pytest.approx(expected.probability, abs=1e-3)
+    with pytest.raises(bankshot.InputError, match="backspin"):
+        guard.probability(speed_ft_s=24.3, pitch_deg=53, backspin=3 * unit.Bq)
+    with pytest.raises(bankshot.InputError, match="pitch"):
+        guard.probability(speed_ft_s=24.3, pitch=53 * unit.dimensionless, backspin_rev_s=3)
+
+
 def test_faulty_measured_shots(tmp_path):
     with pytest.raises(bankshot.InputError, match="needs the columns"):
         bankshot.fit({"Speed": [24.0, 24.1], "Angle": [50, 51]})

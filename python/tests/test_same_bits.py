@@ -89,8 +89,8 @@ def test_fit_and_advise(command, root, tmp_path):
 
 
 def test_trace(command, guard_file, tmp_path):
-    command("trace", guard_file, "--speed", "24 ft/s", "--pitch", "53 deg", "-o", tmp_path / "path.csv")
-    trace = bankshot.Profile.from_file(guard_file).trace(speed_ft_s=24.0, pitch_deg=53.0)
+    command("trace", guard_file, "--speed", "24 ft/s", "--pitch", "53 deg", "--backspin", "0 rev/s", "-o", tmp_path / "path.csv")
+    trace = bankshot.Profile.from_file(guard_file).trace(speed_ft_s=24.0, pitch_deg=53.0, backspin_rev_s=0)
     with open(tmp_path / "path.csv") as file:
         rows = list(csv.DictReader(file))
     for name, values in trace.path.items():

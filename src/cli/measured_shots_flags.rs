@@ -15,7 +15,7 @@ use crate::measured_shots::read::read;
 use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
-use crate::model::Physics;
+use crate::model::{DEFAULT_PRESET, Physics};
 use crate::output::fit_files::fit_json::FitSource;
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
@@ -111,9 +111,6 @@ pub(crate) struct MeasuredFile {
     /// The sessions that were asked for; empty for all.
     pub(crate) sessions: Vec<String>,
 }
-
-/// The physics of fits where none is named.
-const USUAL_PHYSICS: &str = "ncaa";
 
 fn quantity(
     flag: &str,
@@ -317,7 +314,7 @@ impl MeasuredShotsOptions {
         let physics_name = self
             .physics
             .clone()
-            .unwrap_or_else(|| USUAL_PHYSICS.to_owned());
+            .unwrap_or_else(|| DEFAULT_PRESET.to_owned());
         let (physics, _) = load_physics(&physics_name)?;
         let simulator = Simulator::new(&physics).map_err(Failure::usage)?;
         let (noise, tracker) = self.noise(source)?;

@@ -29,7 +29,7 @@ pub(crate) struct NominalOptions {
     /// '0.3 deg'.
     #[arg(long, allow_hyphen_values = true, conflicts_with = "polar")]
     aim: Option<String>,
-    /// Backspin [default: the profile's, else none].
+    /// Backspin [default: the profile's, else its max_backspin].
     #[arg(long, allow_hyphen_values = true)]
     backspin: Option<String>,
     /// Spin about the horizontal direction of the shot [default: the profile's, else none].
@@ -202,6 +202,28 @@ impl NominalOptions {
         warnings
     }
 
+    /// Warnings about what the flags give and leave out: nobody gave the backspin, though the profile
+    /// allows some; a ball so fast that the board cannot stop it.
+    pub(crate) fn warnings_of_flags(&self, profile: &Profile, nominal: &Nominal) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let spin = nominal.backspin_rad_s;
+        let is_given =
+            self.backspin.is_some() || profile.nominal_overrides().backspin_rad_s.is_some();
+        if !is_given && spin > 0.0 {
+            warnings.push(format!(
+                "warning: the backspin is not given: {:.3} rev/s, the profile's max_backspin, is used; give another with --backspin",
+                spin / REV_RAD
+            ));
+        }
+        let most = profile.physics().max_contact_speed_m_s();
+        if nominal.speed_m_s > most {
+            warnings.push(format!(
+                "warning: above {most:.1} m/s board and ring cannot stop this ball: it may pass through them"
+            ));
+        }
+        warnings
+    }
+
     fn value(&self, variable: NominalVariable, profile: &Profile) -> Result<f64, String> {
         if let (NominalVariable::Polar, Some(aim)) = (variable, &self.aim) {
             let aim_rad = units::parse(aim, variable.dimension())
@@ -220,9 +242,8 @@ impl NominalOptions {
         let default = match variable {
             NominalVariable::Speed | NominalVariable::Pitch => None,
             NominalVariable::Polar => Some(profile.location().angle_rad),
-            NominalVariable::Backspin | NominalVariable::RifleSpin | NominalVariable::SideSpin => {
-                Some(0.0)
-            }
+            NominalVariable::Backspin => Some(profile.shooter().max_backspin_rad_s),
+            NominalVariable::RifleSpin | NominalVariable::SideSpin => Some(0.0),
         };
         profile
             .nominal_overrides()

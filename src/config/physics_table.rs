@@ -3,7 +3,7 @@
 use super::diagnostics::{ConfigError, Diagnostic};
 use super::toml_reader::{TableReader, parse_toml};
 use crate::dynamics::{Integrator, Precision};
-use crate::model::{BoardEdge, PRESETS, Physics, Preset, SolidId};
+use crate::model::{BoardEdge, DEFAULT_PRESET, PRESETS, Physics, Preset, SolidId};
 use crate::units::{Dimension, suggestion};
 
 /// Steps of the paper's integrator that a file can give, s.
@@ -58,14 +58,14 @@ pub(super) fn read_physics(
 ) -> (Physics, Integrator) {
     let mut table = root.table("physics", diagnostics);
     let name = table.text("preset", diagnostics);
-    let preset = Preset::named(name.as_deref().unwrap_or("paper"));
+    let preset = Preset::named(name.as_deref().unwrap_or(DEFAULT_PRESET));
     if preset.is_none() {
         let names: Vec<_> = PRESETS.iter().map(|preset| preset.name).collect();
         let meant = suggestion(name.as_deref().unwrap_or_default(), names.iter().copied());
         let message = format!("must be one of {}{meant}", names.join(", "));
         diagnostics.push(table.diagnostic("preset", message));
     }
-    let mut physics = preset.map_or_else(Physics::paper, Preset::physics);
+    let mut physics = preset.map_or_else(Physics::default, Preset::physics);
     read_constants(&mut table, &mut physics, diagnostics);
     let default = preset.filter(|preset| preset.name != "paper");
     read_contacts(&mut table, &mut physics, default, diagnostics);

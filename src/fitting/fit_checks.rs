@@ -233,9 +233,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 /// The least speed at which a ball reaches the hoop in a vacuum, m/s.
 fn least_speed_m_s(physics: &Physics, place: &Place) -> f64 {
-    let rise = physics.hoop_plane_height_m() - place.release_height_m;
-    let reach = libm::hypot(rise, place.location.distance_m);
-    (physics.gravity_m_s2 * (rise + reach)).max(0.0).sqrt()
+    physics.least_speed_to_hoop_m_s(place.location.distance_m, place.release_height_m)
 }
 
 /// Refuses shots that no fit can make sense of. `speed_unit` is that of the file and its size in

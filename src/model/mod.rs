@@ -13,7 +13,7 @@ pub(crate) use ball_state::StateDerivative;
 mod physics_presets;
 mod physics_values;
 pub use physics::{Air, BoardEdge, ContactLaw, Physics, PhysicsError};
-pub use physics_presets::{PRESETS, Preset};
+pub use physics_presets::{DEFAULT_PRESET, PRESETS, Preset};
 pub use physics_values::PhysicsValue;
 pub use restitution::{contact_time_s, damping_for_restitution_kg_s, restitution_of_damping};
 pub use solids::SolidId;

@@ -196,6 +196,27 @@ impl Physics {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// The speed from which on a head-on ball is pressed in by more than its radius, m/s: undamped,
+    /// `R sqrt(k/m)` at the softer solid. The model of a contact ends there: the ball's centre passes
+    /// the surface and it leaves on the other side.
+    #[must_use]
+    pub fn max_contact_speed_m_s(&self) -> f64 {
+        let softest = SolidId::ALL
+            .map(|solid| self.contact(solid).stiffness_n_m)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min);
+        self.ball_radius_m * (softest / self.ball_mass_kg).sqrt()
+    }
+
+    /// The least speed at which a ball reaches the hoop from a distance and a height above the floor,
+    /// in a vacuum, m/s (Brancazio 1981).
+    #[must_use]
+    pub fn least_speed_to_hoop_m_s(&self, distance_m: f64, height_m: f64) -> f64 {
+        let rise = self.hoop_plane_height_m() - height_m;
+        let reach = libm::hypot(rise, distance_m);
+        (self.gravity_m_s2 * (rise + reach)).max(0.0).sqrt()
+    }
+
     /// Radius of the rod of ring and bracket, m.
     #[must_use]
     pub fn ring_tube_radius_m(&self) -> f64 {
@@ -456,12 +477,6 @@ impl Physics {
                 "such that a head-on bounce, pi/omega, lasts from 0.1 ms to 0.5 s",
             ));
         }
-    }
-}
-
-impl Default for Physics {
-    fn default() -> Self {
-        Self::paper()
     }
 }
 

@@ -19,6 +19,17 @@ pub struct Preset {
     physics: fn() -> Physics,
 }
 
+/// The preset where nobody names one: a ball in play, so that the same release has the same end
+/// in every command.
+pub const DEFAULT_PRESET: &str = "ncaa";
+
+impl Default for Physics {
+    /// The physics of [`DEFAULT_PRESET`].
+    fn default() -> Self {
+        in_play(NCAA_BALL, INCH_BOARD, 0.77)
+    }
+}
+
 impl Preset {
     /// The preset of a name.
     #[must_use]
@@ -43,7 +54,7 @@ pub const PRESETS: [Preset; 8] = [
     Preset {
         name: "ncaa",
         description: "men's college basketball",
-        physics: || in_play(NCAA_BALL, INCH_BOARD, 0.77),
+        physics: Physics::default,
     },
     Preset {
         name: "ncaa_women",

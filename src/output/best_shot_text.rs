@@ -268,13 +268,13 @@ const MOST_ERRORS: usize = 3;
 const ALWAYS_TOLD: usize = 2;
 const LEAST_GAIN_TOLD: f64 = 0.005;
 
-/// That the physics is that of the paper; empty where there is air.
+/// Says that there is no air; empty where there is.
 #[must_use]
 pub fn vacuum_note(profile: &Profile) -> &'static str {
     if profile.physics().air.density_kg_m3 > 0.0 {
         ""
     } else {
-        "The ball flies without air, as in the paper. For a ball in play: --physics ncaa, or preset = \"ncaa\" in [physics].\n"
+        "The ball flies without air. For a ball in play: --physics ncaa, or preset = \"ncaa\" in [physics].\n"
     }
 }
 

@@ -97,13 +97,13 @@ pub enum ProfileError {
 }
 
 impl ProfileSettings {
-    /// The settings of a shooter under the paper's physics, with defaults for the rest.
+    /// The settings of a shooter with defaults for the rest.
     #[must_use]
     pub fn new(shooter: Shooter) -> Self {
         Self {
             shooter,
             nominal: NominalOverrides::default(),
-            physics: Physics::paper(),
+            physics: Physics::default(),
             integrator: Integrator::default(),
             grid: TableGrid::default(),
             search: SearchSettings::default(),
@@ -166,6 +166,7 @@ impl ProfileSettings {
             return Err(ProfileError::Settings(errors));
         }
         location.check(&self.physics)?;
+        self.check_contact_speed(&location)?;
         let height_m = self.shooter.release_height_m - self.physics.hoop_plane_height_m();
         let search = Search::new(&self.search, &self.nominal, location.distance_m, height_m);
         let (low_rad, high_rad) = (search.pitch_min_rad, search.pitch_max_rad);
@@ -181,6 +182,28 @@ impl ProfileSettings {
         };
         profile.hash = identity_hash(&profile)?;
         Ok(profile)
+    }
+}
+
+impl ProfileSettings {
+    /// Refuses a ball that the board cannot stop at the speed of the shots from a place.
+    fn check_contact_speed(&self, location: &Location) -> Result<(), ProfileError> {
+        let physics = &self.physics;
+        let least =
+            physics.least_speed_to_hoop_m_s(location.distance_m, self.shooter.release_height_m);
+        let speed = self.nominal.speed_m_s.unwrap_or(least);
+        let most = physics.max_contact_speed_m_s();
+        if speed <= most {
+            return Ok(());
+        }
+        Err(ProfileError::Settings(vec![SettingError {
+            key: "physics.ball_radius".to_owned(),
+            message: format!(
+                "{:.4} m: board and ring cannot stop this ball: at {speed:.1} m/s they press it in by more than its radius, \
+                 and it passes through (at most {most:.1} m/s); give a larger, lighter or stiffer ball",
+                physics.ball_radius_m
+            ),
+        }]))
     }
 }
 

@@ -110,6 +110,7 @@ impl Dimension {
             Self::Angle => &[("degrees", "deg"), ("degree", "deg"), ("\u{b0}", "deg")],
             Self::Spin => &[
                 ("Hertz", "Hz"),
+                ("1/s", "Hz"),
                 ("rev/min", "rpm"),
                 ("rps", "rev/s"),
                 ("\u{b0}/s", "deg/s"),

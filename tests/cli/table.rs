@@ -250,13 +250,23 @@ fn contract_nodes_are_added_where_interpolation_costs_too_much() {
 
 const CPP_MAIN: &str = r#"
 #include "t.hpp"
+#include "bank-2.hpp"
 #include <cstdio>
 int main() {
     for (double distance : {11.5, 9.0}) {
-        for (double value : shot_table::look_up(distance)) std::printf("%.9g ", value);
+        for (double value : t::look_up(distance)) std::printf("%.9g ", value);
         std::printf("\n");
     }
+    // The bank table in this file and in the other one.
+    double other(double distance);
+    std::printf("%.9g %.9g\n", bank_2::look_up(11.5)[bank_2::IS_BANK], other(11.5));
 }
+"#;
+
+/// Another file of the program, whose header has the name of the first.
+const CPP_OTHER: &str = r#"
+#include "other/t.hpp"
+double other(double distance) { return t::look_up(distance)[t::IS_BANK]; }
 "#;
 
 /// A place of a table has no shot: nothing is known beside it, whichever place comes first.
@@ -300,6 +310,23 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     .exits(2)
     .says("the name of no Java class");
     write_file(&folder, "t.cpp", CPP_MAIN);
+    write_file(&folder, "other.cpp", CPP_OTHER);
+    fs::create_dir(folder.path().join("other")).unwrap();
+    for file in ["bank-2.hpp", "other/t.hpp"] {
+        table(
+            &folder,
+            &[&range[..], &["--kind", "bank", "--output", file]].concat(),
+        )
+        .exits(0);
+    }
+    for file in ["t.py", "Launcher.java", "t.hpp"] {
+        let source = fs::read_to_string(folder.path().join(file)).unwrap();
+        let words = source.replace("\n// ", " ").replace("\n# ", " ");
+        assert!(
+            words.contains("time_s is for a launcher that stands still"),
+            "{file}"
+        );
+    }
     write_file(&folder, "Main.java", JAVA_MAIN);
     let csv = fs::read_to_string(folder.path().join("t.csv")).unwrap();
     let speeds: Vec<f64> = csv
@@ -323,7 +350,14 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
             "python3",
         ),
         ("python3", vec!["-c", PYTHON_WITHOUT_FIRST_SHOT], "python3"),
-        ("sh", vec!["-c", "c++ -std=c++11 -o t t.cpp && ./t"], "c++"),
+        (
+            "sh",
+            vec![
+                "-c",
+                "c++ -std=c++11 -Wall -Werror -o t t.cpp other.cpp && ./t",
+            ],
+            "c++",
+        ),
         (
             "sh",
             vec!["-c", "javac Main.java Launcher.java && java Main"],
@@ -346,6 +380,9 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
         assert!((first[1] - 66.0).abs() < 1e-5);
         assert_eq!((first.len(), first[9]), (10, 0.0), "a direct shot");
         assert!(numbers(lines.next().unwrap()).iter().all(|v| v.is_nan()));
+        if missing == "c++" {
+            assert_eq!(lines.next(), Some("1 1"), "each look-up has its own table");
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::{Integrator, Simulator};
+use crate::model::DEFAULT_PRESET;
 use crate::output::atomic_file::{AtomicFile, same_file};
 use crate::output::simulation_files::csv_records::{CsvRecords, Row};
 use crate::output::simulation_files::outcome_columns::{
@@ -82,7 +83,7 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
     let simulator = simulator(options)?;
     if options.physics.physics.is_none() && !quiet {
         print_remark(
-            "physics: paper (no air, a ring of wire); for a ball in play give --physics ncaa, or a profile that has it, such as --physics robot.toml",
+            "physics: ncaa (the men's college ball, in air); give another with --physics nba, or a profile that has one, such as --physics robot.toml",
         );
     }
     if options.releases != Path::new("-") {
@@ -92,6 +93,11 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
     let header = source.header(options)?;
     let columns = ReleaseColumns::new(&header, &options.carry)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
+    if !columns.has_backspin() && !quiet {
+        print_remark(
+            "warning: the backspin is not given (no column such as backspin_rev_s): no ball spins",
+        );
+    }
     // A bar between the rows on a terminal would stay there.
     let shows_rows = options.output == Path::new("-") && io::stdout().is_terminal();
     let bars = ProgressBars::new(quiet || shows_rows);
@@ -136,7 +142,7 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
 }
 
 fn simulator(options: &SimulateOptions) -> Result<Simulator, Failure> {
-    let name = options.physics.physics.as_deref().unwrap_or("paper");
+    let name = options.physics.physics.as_deref().unwrap_or(DEFAULT_PRESET);
     let (physics, from_file) = load_physics(name)?;
     let integrator = match options.integrator {
         None => from_file,

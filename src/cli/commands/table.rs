@@ -15,7 +15,7 @@ use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::output::atomic_file;
 use crate::output::shot_table_files::csv_json::{table_csv, table_json};
 use crate::output::shot_table_files::notes;
-use crate::output::shot_table_files::source_code::{Language, source_code};
+use crate::output::shot_table_files::source_code::{Language, namespace_of, source_code};
 use crate::output::shot_table_files::table_text::table_text;
 use crate::output::shot_table_files::unfinished::UnfinishedTable;
 use crate::shooter::{Location, NominalVariable, Profile};
@@ -386,7 +386,7 @@ struct Output<'a> {
     /// None for standard output.
     file: Option<&'a Path>,
     format: TableFormat,
-    /// The name of the class in a source.
+    /// The name of the class or namespace in a source.
     class: String,
 }
 
@@ -395,7 +395,7 @@ fn outputs(options: &TableOptions) -> Result<Vec<Output<'_>>, Failure> {
         return Ok(vec![Output {
             file: None,
             format: options.format.unwrap_or(TableFormat::Text),
-            class: "ShotTable".to_owned(),
+            class: source_name(None, options.format.unwrap_or(TableFormat::Text))?,
         }]);
     }
     if options.format.is_some() && options.output.len() > 1 {
@@ -407,9 +407,7 @@ fn outputs(options: &TableOptions) -> Result<Vec<Output<'_>>, Failure> {
         .output
         .iter()
         .map(|file| {
-            Ok(Output {
-                file: Some(file.as_path()),
-                format: match (options.format, TableFormat::of_output(file)) {
+            let format = match (options.format, TableFormat::of_output(file)) {
                     (Some(format), Ok(of_name))
                         if format != of_name && file.extension().is_some() =>
                     {
@@ -420,19 +418,34 @@ fn outputs(options: &TableOptions) -> Result<Vec<Output<'_>>, Failure> {
                     }
                     (Some(format), _) => format,
                     (None, of_name) => of_name?,
-                },
-                class: class_name(file)?,
+                };
+            Ok(Output {
+                file: Some(file.as_path()),
+                format,
+                class: source_name(Some(file.as_path()), format)?,
             })
         })
         .collect()
 }
 
-/// The name of a Java class: that of its file, or `ShotTable`.
-fn class_name(path: &Path) -> Result<String, Failure> {
+/// The name of a Java class or of a C++ namespace: that of the file, where it has one.
+fn source_name(path: Option<&Path>, format: TableFormat) -> Result<String, Failure> {
+    let stem = path.and_then(Path::file_stem);
+    let (Some(path), Some(stem)) = (path, stem) else {
+        let name = if format == TableFormat::Cpp {
+            "shot_table"
+        } else {
+            "ShotTable"
+        };
+        return Ok(name.to_owned());
+    };
+    let name = stem.to_string_lossy();
+    if format == TableFormat::Cpp {
+        return Ok(namespace_of(&name));
+    }
     if path.extension().is_none_or(|end| end != "java") {
         return Ok("ShotTable".to_owned());
     }
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut letters = name.chars();
     let is_name = letters
         .next()

@@ -67,6 +67,11 @@ pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
     }
     let units = profile.output().units;
     let nominal = options.nominal.resolve(&profile)?;
+    if !quiet {
+        for warning in options.nominal.warnings_of_flags(&profile, &nominal) {
+            print_remark(&warning);
+        }
+    }
     let trace = trace_of(&profile, &profile.release(&nominal))?;
     if let Some(path) = &options.output {
         let bytes = trace_csv(&trace, units);

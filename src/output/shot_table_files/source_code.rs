@@ -61,7 +61,29 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 10] {
 /// of a cell have the same kind.)
 const NOT_INTERPOLATED: usize = 3;
 
-/// The source in a language (Java: with the name of the class).
+/// The namespace of a C++ header with this file name: letters, digits and single underscores, and no
+/// word of the language. Headers of other names then stand side by side in one program.
+#[must_use]
+pub fn namespace_of(file_stem: &str) -> String {
+    /// Words that can be the name of a file and not of a namespace.
+    const TAKEN: [&str; 31] = [
+        "and", "auto", "bool", "break", "case", "char", "class", "const", "continue", "default",
+        "delete", "do", "double", "else", "export", "float", "for", "if", "int", "long", "new",
+        "not", "or", "private", "public", "short", "std", "this", "try", "while", "xor",
+    ];
+    let words = file_stem.split(|c: char| !c.is_ascii_alphanumeric());
+    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    let name = words.join("_");
+    let is_free =
+        name.starts_with(|c: char| c.is_ascii_alphabetic()) && !TAKEN.contains(&name.as_str());
+    if is_free {
+        name
+    } else {
+        format!("table_{name}").trim_end_matches('_').to_owned()
+    }
+}
+
+/// The source in a language, with the name of the class (Java) or of the namespace (C++).
 #[must_use]
 pub fn source_code(
     table: &ShotTable,
@@ -127,6 +149,7 @@ pub fn source_code(
                 .join(", ")
         ),
         "The aim is the angle from the line to the hoop's centre, positive to the left.".to_owned(),
+        format!("time_s {TIME_IS_NO_LEAD}"),
         "Time and entry angle are those where the ball first falls to the height of the hoop, as if \
          there were no ring; NaN for a shot that meets the ring on its way up. A tolerance is how far speed or pitch can be off, up or down, alone, \
          until the shot first misses; near the ring more shots may go in beyond it. Between two nodes \
@@ -173,6 +196,10 @@ pub fn source_code(
         .replace("@LINEAR@", &(values.len() - NOT_INTERPOLATED).to_string())
 }
 
+/// What the time of a shot is not: a robot that moved and led by it missed.
+pub const TIME_IS_NO_LEAD: &str = "is for a launcher that stands still. It is not the lead of one that moves: the air slows the \
+     speed that the ball takes over from the launcher too, so speed times time_s leads too far.";
+
 /// A distance inside the table, with few digits.
 fn example_distance(distances_m: &[f64], metre: f64) -> String {
     let [first, .., last] = distances_m else {
@@ -190,8 +217,8 @@ fn example(language: Language, class: &str, (first, at): (&str, &str)) -> String
              if (!Double.isNaN(speed)) ..."
         ),
         Language::Cpp => format!(
-            "Example: const auto shot = shot_table::look_up({at}); const double speed = \
-             shot[shot_table::{index}]; if (!std::isnan(speed)) ..."
+            "Example: const auto shot = {class}::look_up({at}); const double speed = \
+             shot[{class}::{index}]; if (!std::isnan(speed)) ..."
         ),
         Language::Python => format!(
             "Example: shot = look_up({at}); speed = shot[{index}]; if not math.isnan(speed): ..."
@@ -289,7 +316,7 @@ const CPP: &str = "\
 #include <cstddef>
 #include <limits>
 
-namespace shot_table {
+namespace @CLASS@ {
 
 @NAMES@
 constexpr double distances[] = {@DISTANCES@};
@@ -298,7 +325,7 @@ constexpr double shots[][@VALUES@] = {
 @ROWS@};
 
 template <std::size_t N>
-int cell(const double (&values)[N], double value) {
+static int cell(const double (&values)[N], double value) {
     if (!(value >= values[0] && value <= values[N - 1])) return -1;
     int i = static_cast<int>(N) - 1;
     while (values[i] > value) --i;
@@ -306,11 +333,11 @@ int cell(const double (&values)[N], double value) {
 }
 
 template <std::size_t N>
-double part(const double (&values)[N], int i, double value) {
+static double part(const double (&values)[N], int i, double value) {
     return i + 1 < static_cast<int>(N) ? (value - values[i]) / (values[i + 1] - values[i]) : 0.0;
 }
 
-inline std::array<double, @VALUES@> look_up(double distance, double angle = angles[0]) {
+static inline std::array<double, @VALUES@> look_up(double distance, double angle = angles[0]) {
     std::array<double, @VALUES@> result{};
     constexpr int count = sizeof(distances) / sizeof(distances[0]);
     const int d = cell(distances, distance), a = cell(angles, angle);
@@ -337,7 +364,7 @@ inline std::array<double, @VALUES@> look_up(double distance, double angle = angl
     return result;
 }
 
-}  // namespace shot_table
+}  // namespace @CLASS@
 ";
 
 const PYTHON: &str = "\

@@ -52,6 +52,9 @@ const PARAMETERS: [Parameter; 9] = [
     },
 ];
 
+/// The place of the backspin among the parameters.
+const BACKSPIN: usize = 6;
+
 /// The columns of the parameters in one file.
 #[derive(Clone, Debug)]
 pub struct ReleaseColumns {
@@ -160,6 +163,12 @@ impl ReleaseColumns {
                 .to_owned(),
             reason: reason.to_owned(),
         })
+    }
+
+    /// Whether there is a column of the backspin.
+    #[must_use]
+    pub fn has_backspin(&self) -> bool {
+        self.columns[BACKSPIN].is_some()
     }
 
     /// The index, the name and the unit (in SI units) of the column of each parameter, in the order

@@ -47,7 +47,12 @@ impl TestedShot {
             }
             let profile = load_profile(path, physics, quiet)?;
             let nominal = if named.is_given(&profile) {
-                named.resolve(&profile)?
+                let nominal = named.resolve(&profile)?;
+                let warnings = named.warnings_of_flags(&profile, &nominal);
+                for warning in warnings.iter().filter(|_| !quiet) {
+                    print_remark(warning);
+                }
+                nominal
             } else {
                 best_nominal(&profile, quiet)?
             };

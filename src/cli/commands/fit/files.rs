@@ -18,6 +18,12 @@ use crate::plots::measured_shots;
 use crate::report::fit_page::fit_page;
 use std::path::Path;
 
+/// The files of every fit, beside a profile for each place and the plots.
+pub(super) const FIT: &str = "fit.json";
+const DRAWS: &str = "draws.parquet";
+pub(super) const SHOTS: &str = "shots.csv";
+const PAGE: &str = "report.html";
+
 /// Writes the files of a fit.
 pub(super) fn write(
     folder: &Path,
@@ -35,15 +41,15 @@ pub(super) fn write(
         .collect();
     let mut contents: Vec<(String, Vec<u8>)> = vec![
         (
-            "fit.json".to_owned(),
+            FIT.to_owned(),
             format!("{:#}\n", with_free(fit_json(fit, &source, units), free)).into_bytes(),
         ),
         (
-            "draws.parquet".to_owned(),
+            DRAWS.to_owned(),
             draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?,
         ),
         (
-            "shots.csv".to_owned(),
+            SHOTS.to_owned(),
             shots_csv(fit, &labels, &shots.rejected, units),
         ),
     ];
@@ -60,8 +66,35 @@ pub(super) fn write(
     plot_files::write(&folder.join("plots"), &plots)?;
     let page = fit_page(fit, &source, plots, units);
     let html = page.html()?;
-    let path = folder.join("report.html");
+    let path = folder.join(PAGE);
     atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
+}
+
+/// Removes everything that [`write`] wrote into a folder, and the folder if nothing else is in it:
+/// whoever reads the folder later must not find an older answer.
+pub(super) fn remove(folder: &Path) -> Result<(), Failure> {
+    let drawn = std::fs::read_dir(folder.join("plots"))
+        .into_iter()
+        .flatten();
+    let drawn = drawn.flatten().map(|entry| entry.path()).filter(|path| {
+        let end = path.extension();
+        end.is_some_and(|end| end == "svg" || end == "png")
+    });
+    let fixed = [FIT, DRAWS, SHOTS, PAGE].map(|name| folder.join(name));
+    let profiles = (0..).map(|place| folder.join(profile_file(place)));
+    let profiles = profiles.take_while(|path| path.exists());
+    for path in fixed.into_iter().chain(profiles).chain(drawn) {
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Failure::io(path.display(), &error));
+            }
+            _ => {}
+        }
+    }
+    // A folder with anything else in it stays.
+    let _ = std::fs::remove_dir(folder.join("plots"));
+    let _ = std::fs::remove_dir(folder);
+    Ok(())
 }
 
 /// Removes the profiles and plots of places that an earlier fit had beyond these.

@@ -11,6 +11,7 @@ mod unmeasured_parameters;
 
 use crate::cli::failure::{Failure, code};
 use crate::cli::run_folder;
+use crate::output::atomic_file::same_file;
 use remarks::{print_sessions, print_sides};
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,13 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
             None => folder,
         }
     });
+    if same_file(&options.shots, &out.join(files::SHOTS)) {
+        return Err(Failure::usage(format!(
+            "--out {}: the fit would write its own {} over your file; name another folder",
+            out.display(),
+            files::SHOTS
+        )));
+    }
     for shots in &file.shooters {
         report_rejected(&file, shots, file.shooters.len() == 1);
     }

@@ -1,6 +1,6 @@
 //! The fits of several shooters: a folder for each, and one table over all.
 
-use super::files::write;
+use super::files::{self, remove, write};
 use super::options::FitOptions;
 use super::remarks::print_unused;
 use super::shooters_table::{Record, TABLE_FILE, records, table_header, write_table};
@@ -9,6 +9,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
+use crate::cli::shooter_folders;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{FitWarning, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
@@ -57,6 +58,15 @@ pub(super) fn fit(
             "{}: no shooter could be fitted",
             options.shots.display()
         )));
+    }
+    // An older fit of all shots together, or of shooters who are no longer in the file.
+    for older in shooter_folders::of_shooters(out) {
+        if !folders.contains(&older) {
+            remove(&older)?;
+        }
+    }
+    if out.join(files::FIT).exists() {
+        remove(out)?;
     }
     let mut records = Vec::new();
     // Places are only named where there are several.

@@ -95,6 +95,10 @@ pub(super) fn run(
             .iter()
             .flat_map(|nominal| NominalOptions::warnings(profile, nominal))
             .collect();
+        if variable != NominalVariable::Backspin {
+            let of_flags = |nominal| options.nominal.warnings_of_flags(profile, nominal);
+            warnings.extend(nominals.iter().flat_map(of_flags));
+        }
         warnings.sort();
         warnings.dedup();
         for warning in &warnings {

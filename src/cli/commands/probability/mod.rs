@@ -56,8 +56,10 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         return trace::show(&profile, &release, options.json);
     }
     if !quiet {
-        for warning in NominalOptions::warnings(&profile, &nominal) {
-            print_remark(&warning);
+        let of_flags = options.nominal.warnings_of_flags(&profile, &nominal);
+        let of_shot = NominalOptions::warnings(&profile, &nominal);
+        for warning in of_flags.iter().chain(&of_shot) {
+            print_remark(warning);
         }
     }
     let precision = Precision {
