@@ -5,13 +5,14 @@ use super::failure::{Failure, refuse_missing};
 use super::value_parsers::UnitsArg;
 use crate::dynamics::Simulator;
 use crate::fitting::{
-    FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest, Tails, Tracker,
-    TrackerNoise, fit_shooter, tails_of,
+    DragEstimate, FitOptions, FitWarning, PopulationPrior, ShooterFit, ShooterFitError,
+    ShooterTest, Tails, TrackedPoint, Tracker, TrackerNoise, fit_drag_coefficient, fit_shooter,
+    tails_of,
 };
 use crate::measured_shots::column_map_proposal::map_proposal;
 use crate::measured_shots::columns::{Columns, Label};
 use crate::measured_shots::court_frame::{CourtFrame, OntoCourt};
-use crate::measured_shots::read::read;
+use crate::measured_shots::read::{read, tracker_by_flights};
 use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
@@ -317,9 +318,9 @@ impl MeasuredShotsOptions {
             .unwrap_or_else(|| DEFAULT_PRESET.to_owned());
         let (physics, _) = load_physics(&physics_name)?;
         let simulator = Simulator::new(&physics).map_err(Failure::usage)?;
-        let (noise, tracker) = self.noise(source)?;
+        let (mut noise, mut tracker) = self.noise(source)?;
         let backspin_rad_s = quantity("backspin", self.backspin.as_ref(), Dimension::Spin)?;
-        let options = ReadOptions {
+        let mut options = ReadOptions {
             frame: self.frame()?,
             distance_m: quantity("distance", self.distance.as_ref(), Dimension::Length)?,
             court_angle_rad: quantity("angle", self.angle.as_ref(), Dimension::Angle)?,
@@ -327,6 +328,15 @@ impl MeasuredShotsOptions {
             backspin_rad_s,
             noise,
         };
+        if self.tracker.is_none()
+            && let Some(found) = tracker_by_flights(&table, &columns, &options, &simulator)
+        {
+            (options.noise, noise) = (found, found);
+            tracker = (
+                found.name_by_tracks(),
+                "estimated from the flights".to_owned(),
+            );
+        }
         let shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
         let bytes = std::fs::read(path).map_err(|error| Failure::io(path.display(), &error))?;
         Ok(MeasuredFile {
@@ -415,6 +425,12 @@ pub(crate) fn tracker_noise(
 ) -> Result<(TrackerNoise, (String, String)), Failure> {
     if let Some(tracker) = Tracker::named(name) {
         return Ok((tracker.noise, (name.to_owned(), tracker.source.to_owned())));
+    }
+    if let Some(noise) = TrackerNoise::named_by_tracks(name) {
+        return Ok((
+            noise,
+            (name.to_owned(), "estimated from the flights".to_owned()),
+        ));
     }
     let path = Path::new(name);
     if !path.exists() {
@@ -571,12 +587,35 @@ impl MeasuredFile {
         let test = ShooterTest {
             name: &name,
             places: &shots.places,
+            place_scatter: &shots.place_scatter,
             shots: &shots.shots,
             sessions: &shots.sessions,
             speed_unit: shots.speed_unit,
             chi_squares: &shots.chi_squares,
         };
-        fit_shooter(&test, physics, &self.fit_options(shots))
+        let mut fit = fit_shooter(&test, physics, &self.fit_options(shots))?;
+        // Under another physics it is known that the drag is another one.
+        if *physics == self.physics {
+            fit.warnings.extend(self.drag_warning(shots));
+        }
+        Ok(fit)
+    }
+
+    /// The drag coefficient that the flights of shooters fit best; `None` where they do not tell it.
+    pub(crate) fn drag_of_flights(&self, shooters: &[&ShooterShots]) -> Option<DragEstimate> {
+        let tracks = shooters.iter().flat_map(|shots| &shots.tracks);
+        let tracks: Vec<&[TrackedPoint]> = tracks.map(Vec::as_slice).collect();
+        let backspin = self.backspin_rad_s.unwrap_or(0.0);
+        fit_drag_coefficient(&self.physics, &tracks, &self.noise, backspin)
+    }
+
+    fn drag_warning(&self, shots: &ShooterShots) -> Option<FitWarning> {
+        /// So many standard errors are worth a warning: 3 in 1000 of right drags.
+        const FAR: f64 = 3.0;
+        let found = self.drag_of_flights(&[shots])?;
+        let own = self.physics.air.drag_coefficient;
+        let is_far = (found.best - own).abs() > FAR * found.standard_error;
+        is_far.then_some(FitWarning::OtherDrag(found, own))
     }
 
     /// The name of a shooter, or that of the file.

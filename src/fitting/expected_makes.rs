@@ -275,7 +275,7 @@ pub fn expected_makes(
             let (mut made, mut swishes) = (0, 0);
             for z in &normals {
                 let values = nalgebra::Vector4::from(mean) + factor * nalgebra::Vector4::from(*z);
-                let release = profile.release(&nominal_of(&values.into()));
+                let release = shot.release(profile, &values.into());
                 if let Ok(outcome) = profile.simulator().simulate(&release) {
                     made += u32::from(outcome.verdict.made);
                     swishes += u32::from(outcome.kind == OutcomeKind::Swish);

@@ -1,6 +1,7 @@
 //! Checks of measured shots: before a fit, whether it makes sense; after it, whether the model
 //! holds.
 
+use super::flight_fit::DragEstimate;
 use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
 use super::posterior::{Draw, SpinSource, Tails};
 use super::session_trends::SessionTrend;
@@ -82,6 +83,8 @@ pub enum FitWarning {
     MostlyPopulation(&'static str, f64),
     /// The tracker seems to err more, or less, than stated: the ratio of seen to stated variance.
     OtherNoise(f64),
+    /// The flights reject the drag coefficient of the physics: theirs, and that of the physics.
+    OtherDrag(DragEstimate, f64),
     /// The shots are not normal: the p-values of Mardia's skewness and kurtosis, and whether the
     /// means of the sessions differ, which alone can cause it.
     NotNormal([f64; 2], bool),
@@ -121,6 +124,11 @@ impl std::fmt::Display for FitWarning {
                 out,
                 "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE: the error of a position is about so many times what the tracker says",
                 ratio.sqrt()
+            ),
+            Self::OtherDrag(found, own) => write!(
+                out,
+                "the flights fit a drag coefficient of {:.3} (95 % interval {:.3} to {:.3}), the physics has {own:.3}: speeds and angles rest on it; `bankshot fit --free drag_coefficient` shows how to use another",
+                found.best, found.interval[0], found.interval[1]
             ),
             Self::NotNormal([skewness, kurtosis], sessions_differ) => write!(
                 out,

@@ -1,6 +1,6 @@
 //! Where a shot falls through the height of the hoop, and the release that leads there.
 
-use super::measured_release::{Covariance, Place, Values, nominal_of};
+use super::measured_release::{Covariance, OwnPath, Place, Values, nominal_of};
 use crate::dynamics::Simulator;
 use crate::model::BallState;
 use crate::shooter::Nominal;
@@ -60,9 +60,19 @@ pub(super) fn start_of(simulator: &Simulator, place: &Place, values: &Values) ->
 /// The landing of a release; `None` if it does not rise to the hoop.
 #[must_use]
 pub fn landing_of(simulator: &Simulator, place: &Place, values: &Values) -> Option<Landing> {
-    let (end, _) = simulator.undisturbed_fall_to_hoop(&start_of(simulator, place, values))?;
+    let start = start_of(simulator, place, values);
+    landing_of_state(simulator, &start, place.location.angle_rad)
+}
+
+/// The landing of a flight, seen along the line from a place at this court angle to the hoop.
+pub(super) fn landing_of_state(
+    simulator: &Simulator,
+    state: &BallState,
+    court_angle_rad: f64,
+) -> Option<Landing> {
+    let (end, _) = simulator.undisturbed_fall_to_hoop(state)?;
     let (p, v) = (end.position_m, end.velocity_m_s);
-    let (sin, cos) = libm::sincos(place.location.angle_rad);
+    let (sin, cos) = libm::sincos(court_angle_rad);
     Some(Landing {
         depth_m: CENTRE_DEPTH_M - (p.x * cos + p.y * sin),
         right_m: p.y * cos - p.x * sin,
@@ -70,7 +80,7 @@ pub fn landing_of(simulator: &Simulator, place: &Place, values: &Values) -> Opti
     })
 }
 
-fn vector(landing: &Landing) -> Vector3<f64> {
+pub(super) fn vector(landing: &Landing) -> Vector3<f64> {
     Vector3::new(landing.depth_m, landing.right_m, landing.entry_angle_rad)
 }
 
@@ -104,6 +114,22 @@ pub fn release_of_landing(
     noise: &[f64; 3],
     backspin_rad_s: f64,
 ) -> Result<(Values, Covariance), LandingError> {
+    let variances = Vector3::from_fn(|i, _| noise[i] * noise[i]);
+    let covariance = Matrix3::from_diagonal(&variances);
+    release_of_uncertain_landing(simulator, place, (landing, &covariance), backspin_rad_s)
+}
+
+/// The release from a place, with this backspin, that has a landing, and the covariance of its
+/// values where the landing (depth, right, entry angle) has this covariance.
+///
+/// # Errors
+/// No release lands like this.
+pub(crate) fn release_of_uncertain_landing(
+    simulator: &Simulator,
+    place: &Place,
+    (landing, landing_covariance): (&Landing, &Matrix3<f64>),
+    backspin_rad_s: f64,
+) -> Result<(Values, Covariance), LandingError> {
     let target = vector(landing);
     let mut values = first_guess(simulator, place, landing, backspin_rad_s);
     let mut missed = difference(simulator, place, &values, &target).ok_or(LandingError)?;
@@ -111,8 +137,7 @@ pub fn release_of_landing(
         let derivatives = jacobian(simulator, place, &values).ok_or(LandingError)?;
         let inverse = derivatives.try_inverse().ok_or(LandingError)?;
         if missed.norm() < TOLERANCE {
-            let variances = Vector3::from_fn(|i, _| noise[i] * noise[i]);
-            let small = inverse * Matrix3::from_diagonal(&variances) * inverse.transpose();
+            let small = inverse * landing_covariance * inverse.transpose();
             let mut covariance = Covariance::zeros();
             covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&small);
             return Ok((values, covariance));
@@ -138,6 +163,23 @@ pub fn release_of_landing(
         }
     }
     Err(LandingError)
+}
+
+/// The path of a shot that belongs to a group of shots at another place: how its own speed, pitch and
+/// polar angle change with those that land alike from the place of the group.
+///
+/// `None` where one of the two does not rise to the hoop.
+pub(crate) fn own_path(
+    simulator: &Simulator,
+    (own_place, own_values): (&Place, &Values),
+    (place, values): (&Place, &Values),
+) -> Option<OwnPath> {
+    let own = jacobian(simulator, own_place, own_values)?.try_inverse()?;
+    Some(OwnPath {
+        place: *own_place,
+        values: *own_values,
+        change: own * jacobian(simulator, place, values)?,
+    })
 }
 
 /// The landing of a release less the target.

@@ -23,6 +23,7 @@ mod flight_fit;
 mod interval;
 mod landing;
 mod measured_release;
+mod noise_of_tracks;
 mod other_release_height;
 mod posterior;
 mod prior;
@@ -51,12 +52,17 @@ pub use fit_checks::{
     check_releases, check_speed_unit, far_shots, p_value, shape_test, tails_of, warnings,
 };
 pub use fitted_profile::fitted_profile;
-pub use flight_fit::{FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight};
+pub use flight_fit::{
+    DragEstimate, FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight,
+};
 pub use interval::Interval;
 pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_landing};
+pub(crate) use landing::{own_path, release_of_uncertain_landing};
 pub use measured_release::{
-    Covariance, MeasuredRelease, Place, VALUE_NAMES, Values, nominal_of, values_of,
+    Covariance, MeasuredRelease, OwnPath, Place, PlaceScatter, VALUE_NAMES, Values, nominal_of,
+    values_of,
 };
+pub use noise_of_tracks::noise_of_tracks;
 pub use other_release_height::values_at_height;
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
 pub use prior::{PopulationPrior, Spread};

@@ -213,6 +213,7 @@ mod tests {
                     values: [value(session, number, noise), 0.0, 0.0, 0.0],
                     noise: Covariance::zeros(),
                     made: None,
+                    own: None,
                 });
                 sessions.push(session.to_string());
             }

@@ -7,7 +7,7 @@ use super::fit_checks::{
     FitWarning, FlightResiduals, ShapeTest, TestError, check_releases, shape_test, warnings,
 };
 use super::fitted_profile::{fitted_profile, with_backspin_kept};
-use super::measured_release::{MeasuredRelease, Place, Values};
+use super::measured_release::{MeasuredRelease, Place, PlaceScatter, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
 use super::session_trends::{SessionTrend, trends};
 use crate::model::Physics;
@@ -25,6 +25,8 @@ pub struct ShooterFit {
     pub name: String,
     /// Where they shot from.
     pub places: Vec<Place>,
+    /// How far the releases of each place lie apart.
+    pub place_scatter: Vec<PlaceScatter>,
     /// The posterior.
     pub posterior: Posterior,
     /// Its middle.
@@ -66,6 +68,8 @@ pub struct ShooterTest<'a> {
     pub name: &'a str,
     /// Where they shot from.
     pub places: &'a [Place],
+    /// How far the releases of each place lie apart.
+    pub place_scatter: &'a [PlaceScatter],
     /// The shots.
     pub shots: &'a [MeasuredRelease],
     /// The session of each shot; empty if the file does not say.
@@ -143,6 +147,7 @@ pub fn fit_shooter(
     Ok(ShooterFit {
         name: test.name.to_owned(),
         places: test.places.to_vec(),
+        place_scatter: test.place_scatter.to_vec(),
         posterior,
         typical,
         profiles,

@@ -116,6 +116,7 @@ pub fn simulated_test(
                 values: Values::from(truth + error),
                 noise: *noise,
                 made: Some(made),
+                own: None,
             }
         })
         .collect()

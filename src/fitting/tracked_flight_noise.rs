@@ -1,7 +1,7 @@
 //! The error of a release that a tracker of positions will measure, before anyone shoots.
 
 use super::flight_fit::{FlightFitError, TrackedPoint, fit_flight};
-use super::landing::start_of;
+use super::landing::{release_of_uncertain_landing, start_of};
 use super::measured_release::{Covariance, Place, Values};
 use super::tracker_noise::TrackerNoise;
 use crate::dynamics::Simulator;
@@ -9,8 +9,8 @@ use crate::dynamics::Simulator;
 /// The hand pushes the ball from rest for so long, s.
 const PUSH_S: f64 = 0.35;
 
-/// The covariance of the fit of a flight without errors, sampled by the tracker from the hand to
-/// the height of the hoop: that of a measured flight, but for its outliers.
+/// The covariance of the release that lands as a fitted flight without errors, sampled by the tracker
+/// from the hand to the height of the hoop: that of a measured flight, but for its outliers.
 ///
 /// # Errors
 /// The release does not reach the hoop, or has too few frames.
@@ -44,7 +44,10 @@ pub fn tracked_flight_noise(
         })
         .collect();
     let fit = fit_flight(simulator, &points, noise, place.release_height_m, values[3])?;
-    Ok(fit.aim_covariance)
+    let landing = (&fit.landing, &fit.landing_covariance);
+    release_of_uncertain_landing(simulator, place, landing, values[3])
+        .map(|(_, covariance)| covariance)
+        .map_err(|_| FlightFitError::StaysLow)
 }
 
 #[cfg(test)]
@@ -98,7 +101,10 @@ mod tests {
                 })
                 .collect();
             let fit = fit_flight(&simulator, &points, &noise, 2.1, values[3]).unwrap();
-            for (square, (found, exact)) in squares.iter_mut().zip(fit.values.iter().zip(values)) {
+            let landing = (&fit.landing, &fit.landing_covariance);
+            let (released, _) =
+                release_of_uncertain_landing(&simulator, &place, landing, values[3]).unwrap();
+            for (square, (found, exact)) in squares.iter_mut().zip(released.iter().zip(values)) {
                 *square += (found - exact) * (found - exact) / FLIGHTS as f64;
             }
         }

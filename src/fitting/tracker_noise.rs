@@ -100,6 +100,33 @@ impl Tracker {
 }
 
 impl TrackerNoise {
+    /// The name of a tracker that is known by its tracks alone.
+    #[must_use]
+    pub fn name_by_tracks(&self) -> String {
+        format!(
+            "{:.4} frames/s, {:.2} mm, correlation {:.3}",
+            self.frames_per_s,
+            1000.0 * self.position_m,
+            self.frame_correlation
+        )
+    }
+
+    /// The tracker of such a name.
+    #[must_use]
+    pub fn named_by_tracks(name: &str) -> Option<Self> {
+        let parts: Vec<&str> = name.split(", ").collect();
+        let [rate, noise, correlation] = parts[..] else {
+            return None;
+        };
+        let number = |text: Option<&str>| text.and_then(|text| text.trim().parse::<f64>().ok());
+        Some(Self {
+            frames_per_s: number(rate.strip_suffix("frames/s"))?,
+            position_m: number(noise.strip_suffix("mm"))? / 1000.0,
+            frame_correlation: number(correlation.strip_prefix("correlation"))?,
+            ..Tracker::named("optical_25hz")?.noise
+        })
+    }
+
     /// The covariance of a measured release.
     #[must_use]
     pub fn release_covariance(&self) -> Covariance {

@@ -1,7 +1,7 @@
 //! A parameter that no sensor sees, by made and missed shots alone.
 
 use super::expected_makes::{common_normals, factor_of, release_given};
-use super::measured_release::{MeasuredRelease, nominal_of};
+use super::measured_release::MeasuredRelease;
 use super::posterior::Draw;
 use crate::dynamics::BatchWorkspace;
 use crate::model::SolidId;
@@ -136,7 +136,7 @@ pub fn likelihood_curve(
                     .map(|z| {
                         let values =
                             nalgebra::Vector4::from(mean) + factor * nalgebra::Vector4::from(*z);
-                        profile.release(&nominal_of(&values.into())).state()
+                        shot.release(profile, &values.into()).state()
                     })
                     .collect();
                 let verdicts = profile.simulator().finite_verdicts(&starts, workspace);

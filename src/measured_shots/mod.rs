@@ -5,6 +5,7 @@ pub mod column_map_proposal;
 pub mod columns;
 pub mod court_frame;
 mod implausible_columns;
+mod places;
 pub mod read;
 mod rejected_shots;
 mod row_reader;

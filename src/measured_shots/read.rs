@@ -9,9 +9,11 @@ use super::shooter_shots::{ReadOptions, ShooterShots};
 use super::shots_by_place::group_by_place;
 use super::source::Source;
 use super::table::Table;
-use super::tracked_shots::tracked_shots;
+use super::tracked_shots::{noise_of_file, tracked_shots};
 use crate::dynamics::Simulator;
-use crate::fitting::{Interval, MeasuredRelease, ReleaseDifference, SpinSource, check_speed_unit};
+use crate::fitting::{
+    Interval, MeasuredRelease, ReleaseDifference, SpinSource, TrackerNoise, check_speed_unit,
+};
 use crate::units::FOOT_M;
 use std::collections::BTreeMap;
 
@@ -71,6 +73,30 @@ pub fn read(
         shooters.push(shooter);
     }
     Ok(shooters)
+}
+
+/// The frame rate and the noise of the tracker of a file of trajectories, from its flights; `None` of
+/// other files, and where the flights do not tell it.
+#[must_use]
+pub fn tracker_by_flights(
+    table: &Table,
+    columns: &Columns,
+    options: &ReadOptions,
+    simulator: &Simulator,
+) -> Option<TrackerNoise> {
+    let source = Source::of(columns).ok()?;
+    let reader = RowReader {
+        columns,
+        options,
+        simulator,
+        source,
+    };
+    let rows = table
+        .rows
+        .iter()
+        .map(|(row, cells)| (*row, cells.as_slice()));
+    let rows: Vec<(u64, &[String])> = rows.collect();
+    (source == Source::Trajectories).then(|| noise_of_file(&reader, &rows))?
 }
 
 /// What is given as an option must not be in the file too.
@@ -197,7 +223,7 @@ fn shooter(
         source: reader.source,
         places: Vec::new(),
         place_names: Vec::new(),
-        merged_heights_m: None,
+        place_scatter: Vec::new(),
         shots: Vec::new(),
         sessions: Vec::new(),
         shot_names: Vec::new(),

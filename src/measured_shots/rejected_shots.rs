@@ -83,6 +83,10 @@ pub(super) fn reject_shots(simulator: &Simulator, shooter: &mut ShooterShots) {
             .position(|place| *place == shot.place)
             .unwrap_or(0);
     }
+    shooter.place_scatter = used
+        .iter()
+        .map(|&place| shooter.place_scatter[place])
+        .collect();
     shooter.places = used.iter().map(|&place| shooter.places[place]).collect();
 }
 

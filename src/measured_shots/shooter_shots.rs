@@ -3,8 +3,8 @@
 use super::court_frame::CourtFrame;
 use super::source::Source;
 use crate::fitting::{
-    FlightFit, Landing, MeasuredRelease, Place, ReleaseDifference, SpinSource, TrackedPoint,
-    TrackerNoise, Values,
+    FlightFit, Landing, MeasuredRelease, Place, PlaceScatter, ReleaseDifference, SpinSource,
+    TrackedPoint, TrackerNoise, Values,
 };
 
 /// What the file does not say.
@@ -47,9 +47,8 @@ pub struct ShooterShots {
     pub places: Vec<Place>,
     /// The name of each place; empty where the file does not say.
     pub place_names: Vec<String>,
-    /// The least and the greatest height of the releases of one place, m, where they differ: the
-    /// place has their mean.
-    pub merged_heights_m: Option<[f64; 2]>,
+    /// How far the releases of each place lie apart.
+    pub place_scatter: Vec<PlaceScatter>,
     /// The shots, in the order of the file.
     pub shots: Vec<MeasuredRelease>,
     /// The session of each; empty if the file does not say.

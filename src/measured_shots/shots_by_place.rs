@@ -1,125 +1,165 @@
-//! Shots by place, as releases from these places.
+//! Shots by place, as the releases from these places that land as the shots did.
 
+use super::places::{middle, shots_of_places};
 use super::row_reader::RowReader;
 use super::shooter_shots::{Raw, RawShot, ShooterShots};
 use super::source::Source;
-use crate::fitting::{Covariance, Landing, MeasuredRelease, Place, release_of_landing};
-use crate::shooter::Location;
+use crate::fitting::{
+    Covariance, FlightFit, Landing, LandingError, MeasuredRelease, OwnPath, Place, PlaceScatter,
+    Values, landing_of, own_path, release_of_landing, release_of_uncertain_landing,
+};
 
-/// Tracked releases nearer than this are from one place, m.
-const SAME_PLACE_M: f64 = 0.75;
-/// Releases whose heights differ by no more than this from the first belong to one place, m.
-const SAME_HEIGHT_M: f64 = 0.15;
+/// What became of a shot, as a release from the place of its group.
+struct AtPlace {
+    values: Values,
+    noise: Covariance,
+    own: Option<OwnPath>,
+}
 
-/// Sorts shots by place, and turns them into releases from these places.
+/// Sorts shots by place. A shot keeps its landing: its release is the one from the place of its group
+/// that lands alike, and it remembers its own path.
 pub(super) fn group_by_place(
     reader: &RowReader<'_>,
     raw: Vec<RawShot>,
     shooter: &mut ShooterShots,
 ) {
-    let tolerance = if reader.source == Source::Trajectories {
-        SAME_PLACE_M
-    } else {
-        0.005
-    };
-    let point = |place: &Place| {
-        let (sin, cos) = libm::sincos(place.location.angle_rad);
-        (
-            place.location.distance_m * cos,
-            place.location.distance_m * sin,
-            place.release_height_m,
-        )
-    };
-    let mut firsts: Vec<(f64, f64, f64)> = Vec::new();
-    let mut members: Vec<Vec<usize>> = Vec::new();
-    let mut of_shot = Vec::with_capacity(raw.len());
-    for (i, shot) in raw.iter().enumerate() {
-        let (x, y, z) = point(&shot.place);
-        let near = |first: &(f64, f64, f64)| {
-            libm::hypot(first.0 - x, first.1 - y) <= tolerance
-                && (first.2 - z).abs() <= SAME_HEIGHT_M
-        };
-        let place = firsts.iter().position(near).unwrap_or_else(|| {
-            firsts.push((x, y, z));
-            members.push(Vec::new());
-            firsts.len() - 1
-        });
-        members[place].push(i);
-        of_shot.push(place);
+    let own_places: Vec<Place> = raw.iter().map(|shot| shot.place).collect();
+    let groups = shots_of_places(&own_places, reader.source != Source::Trajectories);
+    let mut group_of_shot = vec![0; raw.len()];
+    for (group, shots) in groups.iter().enumerate() {
+        for &shot in shots {
+            group_of_shot[shot] = group;
+        }
     }
-    shooter.places = members
+    shooter.places = groups
         .iter()
-        .map(|members| {
-            let count = members.len() as f64;
-            let mean = |axis: &dyn Fn((f64, f64, f64)) -> f64| {
-                members
-                    .iter()
-                    .map(|&i| axis(point(&raw[i].place)))
-                    .sum::<f64>()
-                    / count
-            };
-            let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
-            let heights = || members.iter().map(|&i| raw[i].place.release_height_m);
-            let least = heights().fold(f64::INFINITY, f64::min);
-            let greatest = heights().fold(f64::NEG_INFINITY, f64::max);
-            if greatest > least {
-                let merged = shooter.merged_heights_m.get_or_insert([least, greatest]);
-                *merged = [merged[0].min(least), merged[1].max(greatest)];
-            }
-            // Of rows that state their place, exactly that.
-            if reader.source == Source::Trajectories {
-                Place {
-                    location: Location {
-                        distance_m: libm::hypot(x, y),
-                        angle_rad: libm::atan2(y, x),
-                    },
-                    release_height_m: mean(&|p| p.2),
-                }
-            } else if greatest > least {
-                Place {
-                    release_height_m: mean(&|p| p.2),
-                    ..raw[members[0]].place
-                }
-            } else {
-                raw[members[0]].place
-            }
-        })
+        .map(|shots| middle(&own_places, shots))
         .collect();
-    let noise = noise_of_landings(reader, &raw, &of_shot, shooter);
-    for (shot, place) in raw.into_iter().zip(of_shot) {
-        let own = &shooter.places[place];
-        let (values, noise) = match shot.measured {
-            Raw::Release(values) => (values, reader.options.noise.release_covariance()),
+    shooter.place_scatter = groups.iter().map(|shots| scatter(&raw, shots)).collect();
+    let noise = noise_of_landings(reader, &raw, &groups, shooter);
+    for (shot, group) in raw.into_iter().zip(group_of_shot) {
+        let place = shooter.places[group];
+        let from = shot.place;
+        let found = match shot.measured {
+            Raw::Release(values) => of_release(reader, (&from, &values), &place),
             Raw::Landing(landing, backspin) => {
-                let zero = [0.0; 3];
-                // The ball left from its own height.
-                match release_of_landing(reader.simulator, &shot.place, &landing, &zero, backspin) {
-                    Ok((values, _)) => (values, noise[place]),
-                    Err(error) => {
-                        shooter.rejected.push((shot.row, error.to_string()));
-                        continue;
-                    }
-                }
+                of_landing(reader, (&from, &landing), &place, (&noise[group], backspin))
             }
-            Raw::Flight(fit, points) => {
-                // The aim counts, not the direction on the floor: shots are not from one point.
-                let aim = fit.values[2] - fit.place.location.angle_rad;
-                let mut values = fit.values;
-                values[2] = own.location.angle_rad + aim;
+            Raw::Flight(fit, points) => of_flight(reader, &fit, &place).inspect(|_| {
                 shooter.tracks.push(points);
                 shooter.chi_squares.push(fit.chi_square);
-                (values, fit.aim_covariance)
+            }),
+        };
+        let found = match found {
+            Ok(found) => found,
+            Err(error) => {
+                shooter.rejected.push((shot.row, error.to_string()));
+                continue;
             }
         };
         shooter.sessions.push(shot.session);
         shooter.shot_names.push(shot.name);
         shooter.shots.push(MeasuredRelease {
             row: shot.row,
-            place,
-            values,
-            noise,
+            place: group,
+            values: found.values,
+            noise: found.noise,
             made: shot.made,
+            own: found.own,
         });
+    }
+}
+
+fn of_release(
+    reader: &RowReader<'_>,
+    (from, values): (&Place, &Values),
+    place: &Place,
+) -> Result<AtPlace, LandingError> {
+    let noise = reader.options.noise.release_covariance();
+    if from == place {
+        return Ok(AtPlace {
+            values: *values,
+            noise,
+            own: None,
+        });
+    }
+    let landing = landing_of(reader.simulator, from, values).ok_or(LandingError)?;
+    let (there, _) = release_of_landing(reader.simulator, place, &landing, &[0.0; 3], values[3])?;
+    let own = own_path(reader.simulator, (from, values), (place, &there)).ok_or(LandingError)?;
+    // The errors of the release, carried to the place.
+    let back = own.change.try_inverse().ok_or(LandingError)?;
+    let mut carried = noise;
+    let small = back * noise.fixed_view::<3, 3>(0, 0) * back.transpose();
+    carried.fixed_view_mut::<3, 3>(0, 0).copy_from(&small);
+    Ok(AtPlace {
+        values: there,
+        noise: carried,
+        own: Some(own),
+    })
+}
+
+fn of_landing(
+    reader: &RowReader<'_>,
+    (from, landing): (&Place, &Landing),
+    place: &Place,
+    (noise, backspin): (&Covariance, f64),
+) -> Result<AtPlace, LandingError> {
+    let release = |place| release_of_landing(reader.simulator, place, landing, &[0.0; 3], backspin);
+    let (values, _) = release(place)?;
+    let own = if from == place {
+        None
+    } else {
+        let (there, _) = release(from)?;
+        own_path(reader.simulator, (from, &there), (place, &values))
+    };
+    Ok(AtPlace {
+        values,
+        noise: *noise,
+        own,
+    })
+}
+
+fn of_flight(
+    reader: &RowReader<'_>,
+    fit: &FlightFit,
+    place: &Place,
+) -> Result<AtPlace, LandingError> {
+    let landing = (&fit.landing, &fit.landing_covariance);
+    let (values, noise) =
+        release_of_uncertain_landing(reader.simulator, place, landing, fit.values[3])?;
+    Ok(AtPlace {
+        values,
+        noise,
+        own: own_path(
+            reader.simulator,
+            (&fit.place, &fit.values),
+            (place, &values),
+        ),
+    })
+}
+
+/// How far the releases of a group lie apart, less what the tracker's errors give.
+fn scatter(raw: &[RawShot], shots: &[usize]) -> PlaceScatter {
+    let sd = |value: &dyn Fn(&Place) -> f64, noise: &dyn Fn(&FlightFit) -> f64| {
+        let count = shots.len() as f64;
+        let mean = shots.iter().map(|&i| value(&raw[i].place)).sum::<f64>() / count;
+        let square: f64 = shots
+            .iter()
+            .map(|&i| {
+                let off = value(&raw[i].place) - mean;
+                let noise = match &raw[i].measured {
+                    Raw::Flight(fit, _) => noise(fit),
+                    _ => 0.0,
+                };
+                off * off * count / (count - 1.0).max(1.0) - noise
+            })
+            .sum();
+        (square / count).max(0.0).sqrt()
+    };
+    PlaceScatter {
+        distance_m: sd(&|p| p.location.distance_m, &|fit| fit.place_variances[0]),
+        court_angle_rad: sd(&|p| p.location.angle_rad, &|fit| fit.place_variances[1]),
+        height_m: sd(&|p| p.release_height_m, &|_| 0.0),
     }
 }
 
@@ -128,16 +168,17 @@ pub(super) fn group_by_place(
 fn noise_of_landings(
     reader: &RowReader<'_>,
     raw: &[RawShot],
-    of_shot: &[usize],
+    groups: &[Vec<usize>],
     shooter: &ShooterShots,
 ) -> Vec<Covariance> {
-    (0..shooter.places.len())
-        .map(|place| {
-            let landings: Vec<(&Landing, f64)> = raw
+    let noise = &reader.options.noise;
+    groups
+        .iter()
+        .zip(&shooter.places)
+        .map(|(shots, place)| {
+            let landings: Vec<(&Landing, f64)> = shots
                 .iter()
-                .zip(of_shot)
-                .filter(|(_, of)| **of == place)
-                .filter_map(|(shot, _)| match &shot.measured {
+                .filter_map(|&shot| match &raw[shot].measured {
                     Raw::Landing(landing, spin) => Some((landing, *spin)),
                     _ => None,
                 })
@@ -156,19 +197,12 @@ fn noise_of_landings(
                 entry_angle_rad: mean(&|l| l.entry_angle_rad),
             };
             let spin = landings.iter().map(|(_, spin)| spin).sum::<f64>() / count;
-            let noise = &reader.options.noise;
-            release_of_landing(
-                reader.simulator,
-                &shooter.places[place],
-                &middle,
-                &noise.landing,
-                spin,
-            )
-            .map(|(_, mut covariance)| {
-                covariance[(3, 3)] = noise.release[3] * noise.release[3];
-                covariance
-            })
-            .unwrap_or_else(|_| noise.release_covariance())
+            release_of_landing(reader.simulator, place, &middle, &noise.landing, spin)
+                .map(|(_, mut covariance)| {
+                    covariance[(3, 3)] = noise.release[3] * noise.release[3];
+                    covariance
+                })
+                .unwrap_or_else(|_| noise.release_covariance())
         })
         .collect()
 }

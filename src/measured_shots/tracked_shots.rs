@@ -3,7 +3,7 @@
 use super::columns::{Label, Quantity, parse_made};
 use super::row_reader::{FARTHEST_LANDING_M, RowReader};
 use super::shooter_shots::{Raw, RawShot};
-use crate::fitting::{TrackedPoint, fit_flight};
+use crate::fitting::{TrackedPoint, TrackerNoise, fit_flight, noise_of_tracks};
 use crate::units::FOOT_M;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -15,6 +15,57 @@ const LOW_RELEASE_M: f64 = 1.5;
 /// m.
 const BEHIND_BOARD_M: f64 = 0.5;
 
+/// A tracked shot: its first row, session and name, and its points and result.
+struct TrackedShot {
+    row: u64,
+    session: String,
+    name: String,
+    track: Result<(Vec<TrackedPoint>, Option<bool>), String>,
+}
+
+/// The tracked shots of some rows.
+fn tracks(reader: &RowReader<'_>, rows: &[(u64, &[String])]) -> Vec<TrackedShot> {
+    let mut by_shot: Vec<(String, Vec<(u64, &[String])>)> = Vec::new();
+    let mut index = BTreeMap::new();
+    for &(row, cells) in rows {
+        let part = |label| reader.label(cells, label).unwrap_or_default();
+        let shot = [Label::Shooter, Label::Session, Label::Shot]
+            .map(part)
+            .join("\n");
+        let at = *index.entry(shot.clone()).or_insert_with(|| {
+            by_shot.push((shot, Vec::new()));
+            by_shot.len() - 1
+        });
+        by_shot[at].1.push((row, cells));
+    }
+    let z0 = reader.simulator.physics().hoop_plane_height_m();
+    let shots = by_shot.iter().map(|(_, rows)| {
+        let (row, cells) = rows[0];
+        let label = |label| reader.label(cells, label).unwrap_or_default().to_owned();
+        TrackedShot {
+            row,
+            session: label(Label::Session),
+            name: label(Label::Shot),
+            track: track(reader, rows, z0),
+        }
+    });
+    shots.collect()
+}
+
+/// The frame rate and the noise of the tracker, from all flights of a file; `None` where they do not
+/// tell it.
+pub(super) fn noise_of_file(
+    reader: &RowReader<'_>,
+    rows: &[(u64, &[String])],
+) -> Option<TrackerNoise> {
+    let shots = tracks(reader, rows);
+    let points: Vec<&[TrackedPoint]> = shots
+        .iter()
+        .filter_map(|shot| Some(shot.track.as_ref().ok()?.0.as_slice()))
+        .collect();
+    noise_of_tracks(&points)
+}
+
 /// The flights of the tracked shots, each at its own place.
 ///
 /// # Errors
@@ -24,35 +75,7 @@ pub(super) fn tracked_shots(
     rows: &[(u64, &[String])],
     rejected: &mut Vec<(u64, String)>,
 ) -> Result<Vec<RawShot>, String> {
-    let mut by_shot: Vec<(String, Vec<(u64, &[String])>)> = Vec::new();
-    let mut index = BTreeMap::new();
-    for &(row, cells) in rows {
-        let session = reader.label(cells, Label::Session).unwrap_or_default();
-        let shot = format!(
-            "{session}\n{}",
-            reader.label(cells, Label::Shot).unwrap_or_default()
-        );
-        let at = *index.entry(shot.clone()).or_insert_with(|| {
-            by_shot.push((shot, Vec::new()));
-            by_shot.len() - 1
-        });
-        by_shot[at].1.push((row, cells));
-    }
-    let z0 = reader.simulator.physics().hoop_plane_height_m();
-    let tracks: Vec<(
-        u64,
-        String,
-        String,
-        Result<(Vec<TrackedPoint>, Option<bool>), String>,
-    )> = by_shot
-        .iter()
-        .map(|(_, rows)| {
-            let (first, cells) = rows[0];
-            let label = |label| reader.label(cells, label).unwrap_or_default().to_owned();
-            let (session, name) = (label(Label::Session), label(Label::Shot));
-            (first, session, name, track(reader, rows, z0))
-        })
-        .collect();
+    let tracks = tracks(reader, rows);
     let noise = &reader.options.noise;
     let backspin = reader.options.backspin_rad_s.unwrap_or(0.0);
     let shooter = rows
@@ -60,8 +83,8 @@ pub(super) fn tracked_shots(
         .and_then(|(_, cells)| reader.label(cells, Label::Shooter))
         .unwrap_or_default();
     let height = reader.options.release_height_m(shooter).unwrap_or_else(|| {
-        let begins = tracks.par_iter().filter_map(|(_, _, _, track)| {
-            let (points, _) = track.as_ref().ok()?;
+        let begins = tracks.par_iter().filter_map(|shot| {
+            let (points, _) = shot.track.as_ref().ok()?;
             let fit = fit_flight(reader.simulator, points, noise, LOW_RELEASE_M, backspin).ok()?;
             Some(fit.begins_at_m)
         });
@@ -73,7 +96,13 @@ pub(super) fn tracked_shots(
     });
     let fits: Vec<Result<RawShot, (u64, String)>> = tracks
         .into_par_iter()
-        .map(|(row, session, name, track)| {
+        .map(|shot| {
+            let TrackedShot {
+                row,
+                session,
+                name,
+                track,
+            } = shot;
             let (points, made) = track.map_err(|reason| (row, reason))?;
             let fit = fit_flight(reader.simulator, &points, noise, height, backspin)
                 .map_err(|error| (row, format!("trajectory: {error}")))?;

@@ -216,6 +216,7 @@ fn shots(
                 values: std::array::from_fn(|i| truth.means[place][i] + sds[i] * z[i] + errors[i]),
                 noise,
                 made: None,
+                own: None,
             }
         })
         .collect()

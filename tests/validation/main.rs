@@ -15,3 +15,4 @@ mod published;
 mod real_hoop;
 mod search;
 mod sensitivity;
+mod tracked_shots;

@@ -3,8 +3,8 @@
 use super::assumptions_json::{prior_json, tracker_errors_json};
 use super::parameters::{parameters, value_units};
 use crate::fitting::{
-    ConstantError, DrawProbabilities, Interval, PopulationPrior, ReleaseDifference, ShooterFit,
-    TrackerNoise, VALUE_NAMES, Wilson, constant_errors,
+    ConstantError, DrawProbabilities, Interval, PlaceScatter, PopulationPrior, ReleaseDifference,
+    ShooterFit, TrackerNoise, VALUE_NAMES, Wilson, constant_errors,
 };
 use crate::output::json_object::{Record, number, object, provenance};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -52,6 +52,22 @@ pub fn interval_json(interval: &Interval) -> Record {
         named("low", number(interval.low)),
         named("high", number(interval.high)),
     ]
+}
+
+/// How far the releases of a place lie apart, for programs.
+fn place_scatter_json(scatter: &PlaceScatter, units: UnitSystem) -> Value {
+    let (long, metre) = units.length();
+    object(vec![
+        named(
+            &format!("distance_{long}"),
+            number(scatter.distance_m / metre),
+        ),
+        named(
+            "court_angle_deg",
+            number(scatter.court_angle_rad / DEGREE_RAD),
+        ),
+        named(&format!("height_{long}"), number(scatter.height_m / metre)),
+    ])
 }
 
 /// P over the draws.
@@ -107,6 +123,10 @@ pub fn fit_json(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             named(
                 &format!("release_height_{long}"),
                 number(place.release_height_m / metre),
+            ),
+            named(
+                "place_scatter",
+                place_scatter_json(&fit.place_scatter[index], units),
             ),
             named("probability", probability_json(p)),
         ])

@@ -2,7 +2,7 @@
 
 use super::fit_json::FitSource;
 use super::parameters::{mean_name, parameters, value_units};
-use crate::fitting::{ShooterFit, SpinSource, VALUE_NAMES};
+use crate::fitting::{PlaceScatter, ShooterFit, SpinSource, VALUE_NAMES};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// The text of the profile at a place, by its index. `physics` is the text of its `[physics]`
@@ -112,6 +112,17 @@ pub fn fitted_profile_toml(
         errors.c40_rad_s / REV_RAD,
         comment("backspin_sd")
     ));
+    let scatter = &fit.place_scatter[place_index];
+    if *scatter != PlaceScatter::default() {
+        line(format!(
+            "# The places of release scatter by {:.4} {long} in distance, {:.3} deg in court angle and {:.4} {long}",
+            scatter.distance_m / metre,
+            scatter.court_angle_rad / DEGREE_RAD,
+            scatter.height_m / metre
+        ));
+        line("# in height. What that does to the landing is in the errors above, since each shot keeps its landing; as".to_owned());
+        line("# errors of distance, court_angle and height it would count twice.".to_owned());
+    }
     line(String::new());
     line("[shooter.correlation]".to_owned());
     let values = if fit.posterior.spin == SpinSource::Measured {

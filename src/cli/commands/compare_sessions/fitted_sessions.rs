@@ -259,6 +259,10 @@ fn only_session(shots: &ShooterShots, session: &str, other: &str) -> ShooterShot
         shots: kept.collect(),
         sessions: Vec::new(),
         places: places.iter().map(|place| shots.places[*place]).collect(),
+        place_scatter: places
+            .iter()
+            .map(|place| shots.place_scatter[*place])
+            .collect(),
         place_names: places
             .iter()
             .map(|place| shots.place_names[*place].clone())

@@ -52,8 +52,7 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
         code::INCOMPLETE
     };
     if let [shots] = &file.shooters[..] {
-        one_shooter::fit(&file, shots, &out, options, quiet)?;
-        return Ok(code);
+        return Ok(one_shooter::fit(&file, shots, &out, options, quiet)?.max(code));
     }
     // A ring and the air are the same for all, a backspin is not.
     if options.free.iter().any(|name| name == "backspin") {

@@ -3,10 +3,12 @@
 use super::failure::failure;
 use super::files::write;
 use super::options::FitOptions;
-use super::remarks::{print_merged_heights, print_unused};
+use super::remarks::{print_place_scatter, print_unused};
 use super::shooters_table::{TABLE_FILE, renew_table};
-use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, estimate, with_free};
-use crate::cli::failure::Failure;
+use super::unmeasured_parameters::{
+    UnmeasuredParameter, check_shots, drag, estimate, is_drag, with_free,
+};
+use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
@@ -15,7 +17,7 @@ use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::output::fit_files::fit_json::fit_json;
 use crate::output::fit_files::fit_text::fit_text;
 use crate::shooter::implausible_values;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Fits the only shooter of a file into a folder.
@@ -25,7 +27,7 @@ pub(super) fn fit(
     folder: &Path,
     options: &FitOptions,
     quiet: bool,
-) -> Result<(), Failure> {
+) -> Result<u8, Failure> {
     run_folder::refuse_other_results(folder, RunKind::Fit)?;
     if folder.join(TABLE_FILE).exists() {
         return Err(Failure::usage(format!(
@@ -39,9 +41,15 @@ pub(super) fn fit(
     if options.out.is_none() && options.measured.shooter.is_some() {
         refuse_other_shooter(folder, &shots.name)?;
     }
-    let fit = file
-        .fit(shots, &file.physics)
-        .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
+    let fit = match file.fit(shots, &file.physics) {
+        Ok(fit) => fit,
+        // The drag needs no profile, and flights from many places make none.
+        Err(error) if options.free.iter().any(|name| is_drag(name)) && !shots.tracks.is_empty() => {
+            answer_drag(file, &[shots], &error.to_string(), options)?;
+            return Ok(code::INCOMPLETE);
+        }
+        Err(error) => return Err(failure(&options.shots.display().to_string(), &error)),
+    };
     check_shots(&options.free, shots, &fit)?;
     let free = options
         .free
@@ -50,7 +58,25 @@ pub(super) fn fit(
         .collect::<Result<Vec<_>, _>>()?;
     write(folder, file, (shots, &fit, &free), options)?;
     renew_table(file, (shots, &fit), folder, options)?;
-    answer(file, (shots, &fit, &free), options, folder, quiet)
+    answer(file, (shots, &fit, &free), options, folder, quiet)?;
+    Ok(code::DONE)
+}
+
+/// Prints the drag by flights that make no profile, and why they make none.
+pub(super) fn answer_drag(
+    file: &MeasuredFile,
+    shooters: &[&ShooterShots],
+    why: &str,
+    options: &FitOptions,
+) -> Result<(), Failure> {
+    let found = drag(file, shooters);
+    if options.json {
+        print_answer(&format!("{:#}\n", json!({ "free": [found.json] })))?;
+    } else {
+        print_prose(&found.text)?;
+    }
+    print_remark(&format!("no profile was fitted: {why}"));
+    Ok(())
 }
 
 /// Refuses the folder of another shooter, whose name is the same as that of a folder.
@@ -89,7 +115,7 @@ fn answer(
         for words in warnings.filter(|words| words.starts_with("location")) {
             print_remark(&format!("warning: {words}"));
         }
-        print_merged_heights(shots, units);
+        print_place_scatter(shots, units);
         if fit.places.len() > 1 {
             print_remark(
                 "profile.toml is that of place 1; each other place has its own, profile_place_2.toml and so on",

@@ -113,14 +113,36 @@ pub(super) fn print_unused(file: &MeasuredFile) {
     }
 }
 
-/// Says that the heights of the releases differ, and what is taken for P.
-pub(super) fn print_merged_heights(shots: &ShooterShots, units: UnitSystem) {
-    if let Some([least, greatest]) = shots.merged_heights_m {
-        let (long, metre) = units.length();
+/// Says how far the releases of a place lie apart, and what is made of that.
+pub(super) fn print_place_scatter(shots: &ShooterShots, units: UnitSystem) {
+    /// Less than this is not worth a word, m.
+    const LEAST_M: f64 = 0.02;
+    let (long, metre) = units.length();
+    let mut texts = Vec::new();
+    for (number, (place, scatter)) in shots.places.iter().zip(&shots.place_scatter).enumerate() {
+        let sideways_m = scatter.court_angle_rad * place.location.distance_m;
+        let parts = [
+            (scatter.distance_m, "towards the hoop"),
+            (sideways_m, "sideways"),
+            (scatter.height_m, "in height"),
+        ];
+        let parts: Vec<String> = parts
+            .iter()
+            .filter(|(size_m, _)| *size_m >= LEAST_M)
+            .map(|(size_m, way)| format!("{:.2} {long} {way}", size_m / metre))
+            .collect();
+        if !parts.is_empty() {
+            let name = match shots.places.len() {
+                1 => String::new(),
+                _ => format!("place {}: ", number + 1),
+            };
+            texts.push(format!("{name}{}", parts.join(", ")));
+        }
+    }
+    if !texts.is_empty() {
         print_remark(&format!(
-            "the releases are {:.2} to {:.2} {long} high; P is that of their mean height",
-            least / metre,
-            greatest / metre
+            "the places of release scatter (standard deviation): {}; each shot keeps its landing, and P is that from their middle",
+            texts.join("; ")
         ));
     }
 }

@@ -1,10 +1,11 @@
 //! The fits of several shooters: a folder for each, and one table over all.
 
 use super::files::{self, remove, write};
+use super::one_shooter::answer_drag;
 use super::options::FitOptions;
 use super::remarks::print_unused;
 use super::shooters_table::{Record, TABLE_FILE, records, table_header, write_table};
-use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, estimate};
+use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, drag, estimate, is_drag};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
@@ -54,6 +55,20 @@ pub(super) fn fit(
         .collect::<Result<Vec<_>, Failure>>()?;
     bars.end();
     if rows.iter().all(|row| row.result.is_err()) {
+        let tracked: Vec<&ShooterShots> = file
+            .shooters
+            .iter()
+            .filter(|shots| !shots.tracks.is_empty())
+            .collect();
+        if !tracked.is_empty() && options.free.iter().any(|name| is_drag(name)) {
+            answer_drag(
+                file,
+                &tracked,
+                "each shooter has too few shots from a place",
+                options,
+            )?;
+            return Ok(code::INCOMPLETE);
+        }
         return Err(Failure::usage(format!(
             "{}: no shooter could be fitted",
             options.shots.display()
@@ -184,6 +199,14 @@ fn estimate_together(
     let names = options.free.iter();
     names
         .map(|name| {
+            let tracked = file
+                .shooters
+                .iter()
+                .filter(|shots| !shots.tracks.is_empty());
+            let tracked: Vec<&ShooterShots> = tracked.collect();
+            if is_drag(name) && !tracked.is_empty() {
+                return Ok(drag(file, &tracked));
+            }
             let telling = fitted.iter().copied();
             let telling = telling
                 .filter(|(shots, fit)| check_shots(std::slice::from_ref(name), shots, fit).is_ok());

@@ -2,9 +2,7 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::measured_shots_flags::MeasuredFile;
-use crate::fitting::{
-    FittedShooter, ShooterFit, SpinSource, UnseenParameter, fit_drag_coefficient, likelihood_curve,
-};
+use crate::fitting::{FittedShooter, ShooterFit, SpinSource, UnseenParameter, likelihood_curve};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::{Preset, SolidId};
 use crate::units::{REV_RAD, rounded};
@@ -13,7 +11,7 @@ use serde_json::{Value, json};
 /// Refuses names that `--free` does not know.
 pub(super) fn check_names(free: &[String]) -> Result<(), Failure> {
     for name in free {
-        if name != "drag_coefficient" && UnseenParameter::named(name).is_none() {
+        if !is_drag(name) && UnseenParameter::named(name).is_none() {
             return Err(Failure::usage(format!(
                 "--free {name}: must be backspin, hoop_restitution or drag_coefficient"
             )));
@@ -30,7 +28,7 @@ pub(super) fn check_shots(
 ) -> Result<(), Failure> {
     let (made, labelled) = (fit.makes.made, fit.makes.labelled);
     for name in free {
-        if name == "drag_coefficient" {
+        if is_drag(name) {
             if shots.tracks.is_empty() {
                 return Err(Failure::usage(
                     "--free drag_coefficient: only trajectories tell it",
@@ -70,34 +68,8 @@ pub(super) fn estimate(
     shooters: &[(&ShooterShots, &ShooterFit)],
 ) -> Result<UnmeasuredParameter, Failure> {
     let Some(parameter) = UnseenParameter::named(name) else {
-        let tracks = shooters.iter().flat_map(|(shots, _)| &shots.tracks);
-        let tracks: Vec<_> = tracks.map(Vec::as_slice).collect();
-        let backspin = file.backspin_rad_s.unwrap_or(0.0);
-        let found = fit_drag_coefficient(&file.physics, &tracks, &file.noise, backspin);
-        let own = file.physics.air.drag_coefficient;
-        let agrees = |low: f64, high: f64| {
-            if (low..=high).contains(&own) {
-                "which these flights do not contradict"
-            } else {
-                "outside of that"
-            }
-        };
-        return Ok(match found {
-            Some((best, [low, high])) => UnmeasuredParameter {
-                text: format!(
-                    "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {own:.3}, {}\n{}",
-                    tracks.len(),
-                    file.physics_name,
-                    agrees(low, high),
-                    physics_with(file, &format!("drag_coefficient = {best:.3}"))
-                ),
-                json: json!({ "name": name, "unit": "", "best": best, "low": low, "high": high, "is_decided": true }),
-            },
-            None => UnmeasuredParameter {
-                text: "drag_coefficient  these flights cannot tell\n".to_owned(),
-                json: json!({ "name": name, "unit": "", "is_decided": false }),
-            },
-        });
+        let shots: Vec<&ShooterShots> = shooters.iter().map(|(shots, _)| *shots).collect();
+        return Ok(drag(file, &shots));
     };
     let labelled: usize = shooters.iter().map(|(_, fit)| fit.makes.labelled).sum();
     let is_measured = |shots: &ShooterShots| shots.spin == SpinSource::Measured;
@@ -202,6 +174,39 @@ pub(super) fn estimate(
         "curve": curve_json.collect::<Value>(),
     });
     Ok(UnmeasuredParameter { text, json })
+}
+
+/// Whether a name is that of the drag, which flights tell without a profile.
+pub(super) fn is_drag(name: &str) -> bool {
+    name == DRAG
+}
+
+const DRAG: &str = "drag_coefficient";
+
+/// The drag coefficient by the flights of shooters.
+pub(super) fn drag(file: &MeasuredFile, shooters: &[&ShooterShots]) -> UnmeasuredParameter {
+    let own = file.physics.air.drag_coefficient;
+    let Some(found) = file.drag_of_flights(shooters) else {
+        return UnmeasuredParameter {
+            text: "drag_coefficient  these flights cannot tell\n".to_owned(),
+            json: json!({ "name": DRAG, "unit": "", "is_decided": false }),
+        };
+    };
+    let (best, [low, high]) = (found.best, found.interval);
+    let agreement = if (low..=high).contains(&own) {
+        "which these flights do not contradict"
+    } else {
+        "outside of that"
+    };
+    UnmeasuredParameter {
+        text: format!(
+            "drag_coefficient  {best:.3} (95 %: {low:.3} to {high:.3}) from {} flights; the physics {} has {own:.3}, {agreement}\n{}",
+            found.flights,
+            file.physics_name,
+            physics_with(file, &format!("drag_coefficient = {best:.3}"))
+        ),
+        json: json!({ "name": DRAG, "unit": "", "best": best, "low": low, "high": high, "is_decided": true }),
+    }
 }
 
 /// How the fit is made with another constant of the physics.
