@@ -9,10 +9,12 @@ use crate::fitting::{
     ShooterTest, Tails, TrackedPoint, Tracker, TrackerNoise, fit_drag_coefficient, fit_shooter,
     tails_of,
 };
-use crate::measured_shots::column_map_proposal::map_proposal;
+use crate::measured_shots::column_map_proposal::{map_proposal, names_sessions};
 use crate::measured_shots::columns::{Columns, Label};
 use crate::measured_shots::court_frame::{CourtFrame, OntoCourt};
+use crate::measured_shots::decisions::{Decisions, can_be_sessions, decide, session_name};
 use crate::measured_shots::read::{read, tracker_by_flights};
+use crate::measured_shots::session_days::DateOrder;
 use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
@@ -49,6 +51,13 @@ pub(crate) struct MeasuredShotsOptions {
     /// `compare-sessions` takes two, and compares them.
     #[arg(long, value_name = "NAME")]
     pub(crate) session: Vec<String>,
+    /// Order of day and month in dates of sessions such as 03/04/2025, which do not say it.
+    #[arg(long, value_name = "ORDER")]
+    pub(crate) dates: Option<DatesArg>,
+    /// The value of a make in the column of the results, such as 1: all other rows, blanks too, are
+    /// misses.
+    #[arg(long, value_name = "VALUE")]
+    pub(crate) made: Option<String>,
     /// Coordinates of trajectories: hoop (x along the court from the hoop's centre, y to the right
     /// of who faces the hoop) or court_94x50 (from a corner). z is upwards.
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
@@ -93,6 +102,24 @@ pub(crate) enum TailsArg {
     Student,
 }
 
+/// The values of `--dates`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum DatesArg {
+    /// The day first: 14/10/2025.
+    Dmy,
+    /// The month first: 10/14/2025.
+    Mdy,
+}
+
+impl From<DatesArg> for DateOrder {
+    fn from(order: DatesArg) -> Self {
+        match order {
+            DatesArg::Dmy => Self::DayFirst,
+            DatesArg::Mdy => Self::MonthFirst,
+        }
+    }
+}
+
 /// A file of measured shots, read.
 pub(crate) struct MeasuredFile {
     pub(crate) shooters: Vec<ShooterShots>,
@@ -106,6 +133,10 @@ pub(crate) struct MeasuredFile {
     pub(crate) blake3: String,
     pub(crate) row_name: &'static str,
     pub(crate) unused: Vec<String>,
+    /// In which order the sessions are, where they are days.
+    pub(crate) session_order: Option<String>,
+    /// A column that nothing was taken from and that can tell sessions apart.
+    pub(crate) sessions_column: Option<String>,
     pub(crate) seed: u64,
     pub(crate) tails: TailsArg,
     pub(crate) backspin_rad_s: Option<f64>,
@@ -257,6 +288,8 @@ impl MeasuredShotsOptions {
             ("--map", !self.map.is_empty()),
             ("--shooter", self.shooter.is_some()),
             ("--session", !self.session.is_empty()),
+            ("--dates", self.dates.is_some()),
+            ("--made", self.made.is_some()),
             ("--hoop", self.hoop.is_some()),
             ("--distance", self.distance.is_some()),
             ("--angle", self.angle.is_some()),
@@ -290,12 +323,6 @@ impl MeasuredShotsOptions {
         let mut table = Table::read(path).map_err(refuse)?;
         let columns = Columns::new(&table.header, &self.maps()?)
             .map_err(|errors| refuse(errors.join("\n")))?;
-        // Of tracked shots the session is a part of the name of each.
-        if let Some(column) = columns.label(Label::Session)
-            && Source::of(&columns).is_ok_and(|source| source != Source::Trajectories)
-        {
-            table.keep_days(column);
-        }
         let release_heights_m = self.release_heights_m()?;
         let named = release_heights_m.iter().filter_map(|(name, _)| {
             let name = name.as_deref()?;
@@ -310,8 +337,24 @@ impl MeasuredShotsOptions {
                 .rows
                 .retain(|(_, cells)| shooter_of(&columns, cells) == *name);
         }
-        keep_sessions(&mut table, &columns, sessions).map_err(refuse)?;
         let source = Source::of(&columns).map_err(refuse)?;
+        let decisions = Decisions {
+            dates: self.dates.map(DateOrder::from),
+            made: self.made.clone(),
+            has_one_distance: self.distance.is_some(),
+        };
+        let session_order = decide(&mut table, &columns, source, &decisions).map_err(refuse)?;
+        let wanted = sessions
+            .iter()
+            .map(|name| session_name(name, decisions.dates));
+        keep_sessions(&mut table, &columns, &wanted.collect::<Vec<_>>()).map_err(refuse)?;
+        let can_tell_sessions = |name: &&str| {
+            let index = columns.names().iter().position(|column| column == name);
+            names_sessions(name) && index.is_some_and(|index| can_be_sessions(&table, index))
+        };
+        let sessions_column = columns.unused().into_iter().find(can_tell_sessions);
+        let sessions_column = sessions_column.filter(|_| source != Source::Trajectories);
+        let sessions_column = sessions_column.map(str::to_owned);
         let physics_name = self
             .physics
             .clone()
@@ -349,6 +392,8 @@ impl MeasuredShotsOptions {
             file: path.to_owned(),
             blake3: blake3::hash(&bytes).to_hex().to_string(),
             row_name: table.row_name,
+            session_order,
+            sessions_column,
             unused: columns.unused().into_iter().map(str::to_owned).collect(),
             seed: self.seed,
             tails: self.tails,

@@ -13,7 +13,7 @@ use crate::probability::Progress;
 use crate::shooter::{Profile, ShotKind};
 
 /// Draws that advice is computed for, at most.
-pub(super) const DRAWS: usize = 400;
+pub(super) const DRAWS: usize = 1000;
 /// The factor on a standard deviation for "10 % less scatter".
 const TRAINED: f64 = 0.9;
 

@@ -31,8 +31,18 @@ pub const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 const SAME_AIM_RAD: f64 = 0.05 * DEGREE_RAD;
 /// The same for the release angle, rad.
 const SAME_PITCH_RAD: f64 = 0.1 * DEGREE_RAD;
-/// The side of a change is sure from this share of the draws on.
-const SURE_SIDE: f64 = 0.975;
+/// A change is supported from this share of the draws on: in so many it gains, and goes to one side.
+const SUPPORTED: f64 = 0.975;
+/// The density of the standard normal distribution where it has [`SUPPORTED`] below it.
+const DENSITY_AT_SUPPORTED: f64 = 0.058_45;
+/// So many standard errors of the computation to both sides of a limit are at the limit: another
+/// seed could decide otherwise.
+const GUARD: f64 = 2.5;
+/// A search with another seed finds a release whose P differs by about this.
+const SEARCH_ERROR: f64 = 0.0003;
+/// By how much such a release differs from the one of another seed: speed (m/s), pitch, direction
+/// (rad), backspin (rad/s).
+const SEARCH_ERRORS: Values = [0.003, 0.0015, 0.0002, 0.1];
 /// The least gain in P that is worth a change.
 const WORTH_A_CHANGE: f64 = 0.005;
 
@@ -64,19 +74,55 @@ pub struct AdviceStep {
     pub cause: Cause,
     /// The release after this step and those before it.
     pub release: Values,
-    /// What it adds to P.
+    /// What it adds to P, on top of the supported steps before it.
     pub gain: Interval,
     /// The share of the draws in which the change goes to the same side: a shooter whose usual aim
     /// is hardly known cannot be told to which side to change it.
     pub same_side: f64,
+    /// Whether the shots support it.
+    pub support: Support,
+}
+
+/// Whether shots support a change: it gains at least half a make in 100, its interval lies above 0,
+/// and the side of the change is as clear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Support {
+    /// They do not.
+    NotSupported,
+    /// Within the errors of the computation: another seed could decide otherwise.
+    AtTheLimit,
+    /// They do.
+    Supported,
+}
+
+impl Support {
+    /// Its name for programs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NotSupported => "not_supported",
+            Self::AtTheLimit => "at_the_limit",
+            Self::Supported => "supported",
+        }
+    }
+
+    /// Of a value that must lie above a limit; `error` is its standard error.
+    fn of(value: f64, limit: f64, error: f64) -> Self {
+        if value >= limit + GUARD * error {
+            Self::Supported
+        } else if value <= limit - GUARD * error {
+            Self::NotSupported
+        } else {
+            Self::AtTheLimit
+        }
+    }
 }
 
 impl AdviceStep {
-    /// Whether the step gains at least half a point, its interval lies above 0, and the side of
-    /// the change is as sure.
+    /// Whether the shots support the step.
     #[must_use]
     pub fn is_sure(&self) -> bool {
-        self.gain.low > 0.0 && self.gain.mean > WORTH_A_CHANGE && self.same_side >= SURE_SIDE
+        self.support == Support::Supported
     }
 
     /// How many shots in place of `shots` would make the step sure, if it gains what it seems to;
@@ -87,7 +133,7 @@ impl AdviceStep {
         let is_open = !self.is_sure() && mean > WORTH_A_CHANGE;
         // The interval narrows with the root of the number of shots.
         let narrower = (mean - low) / mean;
-        let of_side = quantile(SURE_SIDE) / quantile(self.same_side.clamp(0.51, 0.999)).max(0.025);
+        let of_side = quantile(SUPPORTED) / quantile(self.same_side.clamp(0.51, 0.999)).max(0.025);
         is_open.then(|| {
             let factor = narrower.max(of_side).max(1.0);
             shots as f64 * factor * factor
@@ -133,6 +179,15 @@ impl Change {
 
     fn with(mut self, i: usize, value: f64) -> Self {
         self.0[i] = Some(value);
+        self
+    }
+
+    /// This change with a step of another one: the angle comes with its speed.
+    fn and(mut self, cause: Cause, other: &Self) -> Self {
+        if cause == Cause::PITCH {
+            self.0[0] = other.0[0];
+        }
+        self.0[cause.0] = other.0[cause.0];
         self
     }
 
@@ -316,19 +371,37 @@ impl<'a> Shooting<'a> {
         if changes_spin {
             order.push((Cause::BACKSPIN, change.with(3, best[3])));
         }
-        let mut before = none;
-        let mut steps = Vec::new();
+        let mut advised = none;
+        let mut steps: Vec<AdviceStep> = Vec::new();
         for (cause, change) in order {
-            let release = change.of_draw(self.typical, self.place);
+            // On top of what is supported so far: what is dropped must not carry a later step.
+            let with = advised.and(cause, &change);
+            let difference = self.difference(with, advised);
+            let release = with.of_draw(self.typical, self.place);
+            let (from, to) = (usual[cause.0], release[cause.0]);
             steps.push(AdviceStep {
                 cause,
                 release,
-                gain: self.gain(change, before),
-                same_side: self.same_side(usual[cause.0], release[cause.0], cause),
+                gain: difference.interval(),
+                same_side: self.same_side(from, to, cause),
+                support: self
+                    .support(&difference)
+                    .min(self.support_of_side(from, to, cause)),
             });
-            before = change;
+            if steps.last().is_some_and(AdviceStep::is_sure) {
+                advised = with;
+            }
         }
-        let advised = sure_steps_together(&steps);
+        // Together they must gain too.
+        while advised != none && self.gain(advised, none).low <= 0.0 {
+            if let Some(last) = steps.iter_mut().rfind(|step| step.is_sure()) {
+                last.support = Support::AtTheLimit;
+            }
+            let kept = steps.iter().filter(|step| step.is_sure());
+            advised = kept.fold(none, |change, step| {
+                change.and(step.cause, &Change(step.release.map(Some)))
+            });
+        }
         let speed_and_pitch = advised.0[0].zip(advised.0[1]);
         let steps = AdviceSteps {
             advised: advised.of_draw(self.typical, self.place),
@@ -349,7 +422,43 @@ impl<'a> Shooting<'a> {
     }
 }
 
+/// The standard error of a share of so many draws.
+fn error_of_share(share: f64, draws: usize) -> f64 {
+    let count = draws as f64;
+    // None or all of the draws may be one of them.
+    let share = share.clamp(1.0 / count, 1.0 - 1.0 / count);
+    (share * (1.0 - share) / count).sqrt()
+}
+
 impl Shooting<'_> {
+    /// Whether the draws support a difference: worth a change, and above 0.
+    fn support(&self, difference: &DrawProbabilities) -> Support {
+        let interval = difference.interval();
+        let simulation = libm::hypot(difference.simulation_standard_error(), SEARCH_ERROR);
+        let count = self.draws.len() as f64;
+        let of_mean = libm::hypot(simulation, interval.sd / count.sqrt());
+        let share = difference.share_positive();
+        let of_share = libm::hypot(
+            error_of_share(share, self.draws.len()),
+            DENSITY_AT_SUPPORTED * simulation / interval.sd.max(1e-9),
+        );
+        let worth = Support::of(interval.mean, WORTH_A_CHANGE, of_mean);
+        worth.min(Support::of(share, SUPPORTED, of_share))
+    }
+
+    /// Whether the draws support the side of a change.
+    fn support_of_side(&self, usual: f64, advised: f64, cause: Cause) -> Support {
+        let shift = SEARCH_ERRORS[cause.0].copysign(advised - usual);
+        let at = |advised: f64| {
+            let share = self.same_side(usual, advised, cause);
+            Support::of(share, SUPPORTED, error_of_share(share, self.draws.len()))
+        };
+        match (at(advised - shift), at(advised + shift)) {
+            (least, most) if least == most => least,
+            _ => Support::AtTheLimit,
+        }
+    }
+
     /// The share of the draws whose usual value lies on the same side of the advised one as the
     /// typical `usual` value.
     fn same_side(&self, usual: f64, advised: f64, cause: Cause) -> f64 {
@@ -360,15 +469,4 @@ impl Shooting<'_> {
         let same = of_draws.filter(|mean| (advised - mean) * (advised - usual) > 0.0);
         same.count() as f64 / self.draws.len() as f64
     }
-}
-
-fn sure_steps_together(steps: &[AdviceStep]) -> Change {
-    let mut change = Change::default();
-    for step in steps.iter().filter(|step| step.is_sure()) {
-        if step.cause == Cause::PITCH {
-            change = change.with(0, step.release[0]);
-        }
-        change = change.with(step.cause.0, step.release[step.cause.0]);
-    }
-    change
 }

@@ -111,6 +111,13 @@ impl DrawProbabilities {
         (variance_of_mean(&self.replicate_means) + variance_of_mean(&self.of_draws)).sqrt()
     }
 
+    /// The standard error of the mean that the simulated shots give.
+    #[must_use]
+    pub fn simulation_standard_error(&self) -> f64 {
+        let spread = Interval::of(self.replicate_means.clone());
+        spread.sd / (self.replicate_means.len() as f64).sqrt()
+    }
+
     /// The share of the draws in which this, a difference, is positive.
     #[must_use]
     pub fn share_positive(&self) -> f64 {

@@ -466,7 +466,7 @@ pub fn warnings(
         }
     }
     if typical.tail_weight > 0.0 {
-        let is_seen = shape.kurtosis_p < WARNING_LEVEL;
+        let is_seen = tails_of(shots, typical.means.len()) == Tails::Student;
         warnings.push(FitWarning::HeavyTails(typical.tail_weight, is_seen));
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
         let sessions_differ = |trend: &SessionTrend| {

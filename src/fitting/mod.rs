@@ -38,7 +38,7 @@ mod tracker_noise;
 mod unmeasured_parameter_likelihood;
 
 pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabilities};
-pub use advice_steps::{AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S};
+pub use advice_steps::{AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S, Support};
 pub use angle_over_draws::{AngleOverDraws, best_angles_of_draws};
 pub use constant_error::{ConstantError, constant_errors};
 pub use dispersion_posterior::is_speed_scatter_possible;

@@ -68,7 +68,22 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
     ),
     (
         "shooter",
-        &["shooter", "player", "athlete", "subject", "participant"],
+        &[
+            "shooter",
+            "player",
+            "athlete",
+            "subject",
+            "participant",
+            "spieler",
+            "joueur",
+            "jugador",
+            "giocatore",
+            "schuetze",
+            "schütze",
+            "firstname",
+            "lastname",
+            "fullname",
+        ],
     ),
     (
         "session",
@@ -88,7 +103,9 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
 ];
 
 /// Names that are too short to be looked for within others.
-const SHORT_NAMES: [(&str, &str); 10] = [
+const SHORT_NAMES: [(&str, &str); 12] = [
+    ("shooter", "name"),
+    ("shooter", "who"),
     ("release_height", "height"),
     ("aim", "phi"),
     ("pitch", "angle"),
@@ -333,6 +350,12 @@ fn first_word(name: &str) -> &str {
 #[must_use]
 pub fn names_sessions(name: &str) -> bool {
     target_of(name, false, &[]) == Some("session")
+}
+
+/// Whether the name of a column says that it names players.
+#[must_use]
+pub fn names_players(name: &str) -> bool {
+    target_of(name, false, &[]) == Some("shooter")
 }
 
 /// What a column may hold, if nothing else is taken as that. In a file of landings an arc is that

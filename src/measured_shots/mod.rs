@@ -4,11 +4,13 @@
 pub mod column_map_proposal;
 pub mod columns;
 pub mod court_frame;
+pub mod decisions;
 mod implausible_columns;
 mod places;
 pub mod read;
 mod rejected_shots;
 mod row_reader;
+pub mod session_days;
 pub mod shooter_shots;
 mod shots_by_place;
 pub mod source;

@@ -68,7 +68,9 @@ impl RowReader<'_> {
         }
         let shown: String = cell.chars().take(30).collect();
         match cell.parse::<f64>() {
-            Ok(value) if value.is_finite() && value.abs() < 1e9 => Ok(Some(column.value(value))),
+            Ok(value) if value.is_finite() && (value.abs() < 1e9 || quantity == Quantity::Time) => {
+                Ok(Some(column.value(value)))
+            }
             Ok(_) => Err(format!("{name}: \"{shown}\" is not a finite number")),
             // `6 ft 11 in` in a column of heights.
             Err(_) => match quantity

@@ -22,33 +22,7 @@ pub struct Table {
     pub row_name: &'static str,
 }
 
-/// The day of a date with a time of day, such as `2026-11-26 17:05` or `11/26/2026T17:05:30`;
-/// `None` of anything else.
-fn day_of(cell: &str) -> Option<&str> {
-    let (day, time) = cell.trim().split_once([' ', 'T'])?;
-    let (hours, minutes) = time.trim().split_once(':')?;
-    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let parts: Vec<&str> = day.split(['-', '/', '.']).collect();
-    let numbers = parts.iter().filter(|part| is_number(part)).count();
-    // A month may have a name.
-    let is_word = |part: &&str| part.chars().all(char::is_alphanumeric);
-    let is_date = parts.len() == 3 && numbers >= 2 && parts.iter().all(is_word);
-    let is_time = is_number(hours) && minutes.starts_with(|c: char| c.is_ascii_digit());
-    (is_date && is_time).then_some(day)
-}
-
 impl Table {
-    /// Leaves the times of day out of a column of dates: a session is a day.
-    pub fn keep_days(&mut self, column: usize) {
-        for (_, cells) in &mut self.rows {
-            if let Some(cell) = cells.get_mut(column)
-                && let Some(day) = day_of(cell)
-            {
-                *cell = day.to_owned();
-            }
-        }
-    }
-
     /// Reads a file.
     ///
     /// # Errors
@@ -144,25 +118,4 @@ fn is_number_with_comma(cell: &str) -> bool {
     digits
         .split_once(',')
         .is_some_and(|(whole, part)| are_digits(whole) && are_digits(part) && !part.is_empty())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn contract_dates_with_a_time_are_days() {
-        for (cell, day) in [
-            ("2026-11-26 17:05", Some("2026-11-26")),
-            (" 11/26/2026 5:05:10 PM", Some("11/26/2026")),
-            ("2026-11-26T17:05:30Z", Some("2026-11-26")),
-            ("2026-11-26", None),
-            ("after Tuesday 12:00", None),
-            ("3 4", None),
-            ("26-Nov-2026 17:05", Some("26-Nov-2026")),
-            ("2026-11-26-x 17:05", None),
-        ] {
-            assert_eq!(day_of(cell), day, "{cell}");
-        }
-    }
 }

@@ -139,7 +139,7 @@ fn track(
     z0: f64,
 ) -> Result<(Vec<TrackedPoint>, Option<bool>), String> {
     let mut points = Vec::with_capacity(rows.len());
-    let mut made = None;
+    let (mut made, mut start_s) = (None, None);
     for &(row, cells) in rows {
         let need = |quantity: Quantity| {
             let value = reader
@@ -150,8 +150,11 @@ fn track(
         made = made.or(parse_made(
             reader.label(cells, Label::Made).unwrap_or_default(),
         )?);
+        // From the first frame on: a clock may count from 1970.
+        let time_s = need(Quantity::Time)?;
+        let start_s = *start_s.get_or_insert(time_s);
         points.push(TrackedPoint {
-            time_s: need(Quantity::Time)?,
+            time_s: time_s - start_s,
             position_m: [
                 need(Quantity::X)?,
                 need(Quantity::Y)?,

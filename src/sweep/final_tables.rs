@@ -39,6 +39,21 @@ pub struct ResultTables {
 }
 
 impl ResultTables {
+    /// The files of the tables in the folder of a sweep, with their contents.
+    ///
+    /// # Errors
+    /// The Parquet table cannot be encoded.
+    pub fn files(
+        &self,
+        config: &SweepConfig,
+    ) -> Result<[(&'static str, Vec<u8>); 3], ParquetError> {
+        Ok([
+            ("best_shots.csv", self.csv()),
+            ("best_shots.parquet", self.parquet()?),
+            ("provenance.json", self.provenance(config)),
+        ])
+    }
+
     /// From every result, by job.
     #[must_use]
     pub fn new(

@@ -189,14 +189,10 @@ fn write_tables(
         return Ok(code::INCOMPLETE);
     }
     let tables = ResultTables::new(config, folder.hash(), jobs, &rows);
-    let parquet = tables
-        .parquet()
+    let files = tables
+        .files(config)
         .map_err(|error| Failure::bug(format!("the Parquet table: {error}")))?;
-    for (name, bytes) in [
-        ("best_shots.csv", tables.csv()),
-        ("best_shots.parquet", parquet),
-        ("provenance.json", tables.provenance(config)),
-    ] {
+    for (name, bytes) in files {
         let path = folder.path().join(name);
         atomic_file::write_unlinked(&path, &bytes)
             .map_err(|error| Failure::io(path.display(), &error))?;

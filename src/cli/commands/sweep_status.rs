@@ -6,6 +6,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose};
 use crate::cli::value_parsers::fraction;
 use crate::probability::Progress;
+use crate::sweep::final_tables::ResultTables;
 use crate::sweep::job_list::Jobs;
 use crate::sweep::result_row::{JobStatus, ResultRow};
 use crate::sweep::run::compute_jobs;
@@ -111,6 +112,13 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
     for remark in &remarks {
         text.push_str(&format!("damaged: {}\n", one_line(remark)));
     }
+    let wrong_tables = match rows.len() == jobs.count() {
+        true => wrong_tables(&folder, &config, &jobs, &rows)?,
+        false => Vec::new(),
+    };
+    for words in &wrong_tables {
+        text.push_str(&format!("damaged: {words}\n"));
+    }
     let mut differing = Vec::new();
     let mut recomputed = 0;
     if let Some(fraction) = options.recompute {
@@ -137,17 +145,41 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
     if options.json {
         let mut answer = jobs_json(&jobs, &rows);
         answer["damaged"] = texts(&remarks);
+        answer["damaged_tables"] = texts(&wrong_tables);
         answer["recomputed"] = recomputed.into();
         answer["differing_jobs"] = differing.clone().into();
         print_answer(&format!("{answer:#}\n"))?;
     } else {
         print_prose(&text)?;
     }
-    Ok(if !remarks.is_empty() || !differing.is_empty() {
+    let is_damaged = !remarks.is_empty() || !wrong_tables.is_empty() || !differing.is_empty();
+    Ok(if is_damaged {
         code::DAMAGED
     } else {
         exit_code(&jobs, &rows)
     })
+}
+
+/// The tables of a finished sweep that are not what its results give.
+fn wrong_tables(
+    folder: &SweepFolder,
+    config: &SweepConfig,
+    jobs: &Jobs,
+    rows: &BTreeMap<u64, ResultRow>,
+) -> Result<Vec<String>, Failure> {
+    let tables = ResultTables::new(config, folder.hash(), jobs, rows);
+    let files = tables.files(config).map_err(Failure::bug)?;
+    let wrong = files.iter().filter_map(|(name, bytes)| {
+        let what = match std::fs::read(folder.path().join(name)) {
+            Ok(own) if own == *bytes => return None,
+            Ok(_) => "is not what the results of the sweep give",
+            Err(_) => "cannot be read",
+        };
+        Some(format!(
+            "{name} {what}; the sweep's command writes it again"
+        ))
+    });
+    Ok(wrong.collect())
 }
 
 /// How many jobs there are, and how many ended how.

@@ -1,8 +1,8 @@
 //! Advice in the few words of a poster and of a row of a table.
 
 use super::advice_text::{
-    MOST_DISAGREEMENT, Observed, disagreement, more_shots_in_words, most_worth_training,
-    scatter_in_words,
+    MOST_DISAGREEMENT, Observed, at_the_limit_in_words, disagreement, more_shots_in_words,
+    most_worth_training, scatter_in_words,
 };
 use super::change_in_words::{
     ChangeWords, FirstChange, first_change, first_change_in_words, gains_alone, landing_in_words,
@@ -57,7 +57,11 @@ pub fn short_advice(
             "nothing yet: the makes and the measured shots do not belong together".to_owned()
         }
         None => {
-            "nothing yet: no change is surely better.".to_owned() + &more_shots_in_words(advice)
+            let limit = at_the_limit_in_words(&words, advice);
+            let more = more_shots_in_words(advice);
+            format!("nothing yet: no change is surely better. {limit}{more}")
+                .trim_end()
+                .to_owned()
         }
         Some(steps) => {
             let first = gains_alone(advice, steps).map_or_else(String::new, |alone| {

@@ -51,6 +51,7 @@ pub fn advice_json(
     let causes = causes.map(|step| {
         let mut record = vec![named("cause", step.cause.name().into())];
         record.extend(interval_json(&step.gain));
+        record.push(named("support", step.support.name().into()));
         record.push(named("release", values(step.release)));
         object(record)
     });

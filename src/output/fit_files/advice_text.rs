@@ -5,7 +5,7 @@ use super::fit_text::{chance, percent};
 use super::parameters::value_units;
 use crate::best_shot::{BestShot, Limit};
 use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, Cause, Interval, SpinSource, TrainingGain, values_of,
+    Advice, AdviceStep, AdviceSteps, Cause, Interval, SpinSource, Support, TrainingGain, values_of,
     wilson_interval,
 };
 use crate::shooter::ShotKind;
@@ -49,6 +49,33 @@ pub(super) fn more_shots_in_words(advice: &Advice) -> String {
     format!(
         " About {:.0} more shots would make a step sure, if it gains what it seems to.",
         libm::ceil(more / 10.0) * 10.0
+    )
+}
+
+/// The changes at the limit of what the shots show, in a sentence; empty where there is none.
+pub(super) fn at_the_limit_in_words(words: &ChangeWords, advice: &Advice) -> String {
+    let Some(steps) = &advice.steps else {
+        return String::new();
+    };
+    let mut from = advice.usual;
+    let mut changes = Vec::new();
+    for step in &steps.steps {
+        if step.support == Support::AtTheLimit {
+            changes.push(format!(
+                "{} ({:+.1})",
+                words.of_step(step, &from),
+                100.0 * step.gain.mean
+            ));
+        } else if step.is_sure() {
+            from = step.release;
+        }
+    }
+    if changes.is_empty() {
+        return String::new();
+    }
+    format!(
+        "At the limit of what these shots show: {}.",
+        changes.join("; ")
     )
 }
 
@@ -220,6 +247,11 @@ pub fn advice_text(
         (Some(_), None) => text += "Keep your release: no other one is worth a change.\n",
         (None, None) => text += "No clean shot of this kind was found from here.\n",
     }
+    let at_the_limit = at_the_limit_in_words(&words, advice);
+    if !at_the_limit.is_empty() {
+        text += &at_the_limit;
+        text.push('\n');
+    }
     text += &other_kind_in_words(advice);
     text += &training_in_words(&advice.training);
     text += &format!(
@@ -265,7 +297,7 @@ pub fn advice_text(
         }
     }
     if let Some(steps) = &advice.steps {
-        text += "\nstep by step: speed, angle with a speed of its own, aim, backspin; each on top of those before";
+        text += "\nstep by step: speed, angle with a speed of its own, aim, backspin; each on top of the supported ones before";
         if !steps.steps.iter().all(AdviceStep::is_sure) {
             text += " (in brackets: less than half a point, not surely above 0, or to a side that is not sure, so not advised";
             let speed_then_angle = steps.steps.windows(2).any(|pair| {
@@ -287,7 +319,9 @@ pub fn advice_text(
                 format!("({what})")
             };
             text += &format!("  {what:<42} {}\n", points(&step.gain));
-            from = step.release;
+            if step.is_sure() {
+                from = step.release;
+            }
         }
     }
     if uses_all_backspin(advice) {

@@ -43,7 +43,7 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     if !quiet {
         // Before the fit: a wrong side makes it worthless.
         print_sides(&file.shooters);
-        print_sessions(&file.shooters);
+        print_sessions(&file);
     }
     let is_complete = file.shooters.iter().all(|shots| shots.rejected.is_empty());
     let code = if is_complete {

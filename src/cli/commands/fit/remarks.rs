@@ -2,7 +2,6 @@
 
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::terminal::print_remark;
-use crate::measured_shots::column_map_proposal::names_sessions;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::units::UnitSystem;
 
@@ -48,7 +47,11 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
 }
 
 /// Says that sessions were fitted as one.
-pub(super) fn print_sessions(shooters: &[ShooterShots]) {
+pub(super) fn print_sessions(file: &MeasuredFile) {
+    if let Some(order) = &file.session_order {
+        print_remark(order);
+    }
+    let shooters = &file.shooters;
     let mut names: Vec<&str> = Vec::new();
     for name in shooters.iter().flat_map(|shots| &shots.sessions) {
         if !names.contains(&name.as_str()) {
@@ -94,12 +97,11 @@ pub(super) fn print_unused(file: &MeasuredFile) {
             file.unused.join(", ")
         ));
         let mut sessions = file.shooters.iter().flat_map(|shots| &shots.sessions);
-        // In a file of tracked points a time is that of a point.
-        let first = file.shooters.first();
-        let is_tracked = first.is_some_and(|shots| file.source(shots).kind == "trajectories");
-        let mut unused = file.unused.iter().filter(|_| !is_tracked);
-        let of_sessions = unused.find(|name| names_sessions(name));
-        if let Some(name) = of_sessions.filter(|_| sessions.all(String::is_empty)) {
+        if let Some(name) = file
+            .sessions_column
+            .as_ref()
+            .filter(|_| sessions.all(String::is_empty))
+        {
             print_remark(&format!(
                 "if {name} tells the sessions apart: --map 'session={name}'; the fit then tests whether they differ"
             ));

@@ -1,8 +1,8 @@
 //! The content of `team.html`.
 
 use super::court_results::{
-    PLAYER_COLUMNS, bank_texts, by_mean, least_to_most, notes, place_header, place_in_words,
-    place_rows, player_rows, remarks, sure_in_words,
+    PLAYER_COLUMNS, bank_texts, least_to_most, mean_over_places, notes, place_header,
+    place_in_words, place_rows, player_rows, ranking, remarks, sure_in_words,
 };
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
@@ -28,9 +28,10 @@ pub(super) fn team_page(
     let best = best_players(players);
     let (of_level, of_profiles) = remarks(players, &best, ring);
     let mut tables = vec![PageTable {
-        caption:
-            "Makes in 100 of each one's best shot (not of the usual one), the best player first"
-                .to_owned(),
+        caption: format!(
+            "Makes in 100 of each one's best shot (not of the usual one), {}",
+            ranking(players).in_words()
+        ),
         columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
         rows: player_rows(players, &best),
     }];
@@ -83,8 +84,8 @@ pub(super) fn team_page(
 
 /// The advice of the players who were measured, the best player first.
 fn advised(players: &[PlayerSweep]) -> impl Iterator<Item = &PlayerAdvice> {
-    let order = by_mean(players).into_iter();
-    order.filter_map(|(number, _)| players[number].advice.as_ref())
+    let order = ranking(players).order.into_iter();
+    order.filter_map(|number| players[number].advice.as_ref())
 }
 
 /// Where all measured shots are from, if that is one place.
@@ -101,7 +102,8 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
     if !advised.is_empty() {
         columns.extend(["now", "can make", "change", "train"]);
     }
-    let rows = by_mean(players).into_iter().map(|(number, mean)| {
+    let rows = ranking(players).order.into_iter().map(|number| {
+        let mean = mean_over_places(&players[number]).value;
         let player = &players[number];
         let mut row = vec![
             shortened(&player.name, LONGEST_NAME),

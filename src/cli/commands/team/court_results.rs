@@ -2,6 +2,7 @@
 
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
+use super::ranking::{Ranking, Standing};
 use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::Difference;
 use crate::fitting::UnseenParameter;
@@ -56,28 +57,45 @@ pub(super) fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<
     std::iter::once("from".to_owned()).chain(names).collect()
 }
 
-/// The numbers of the players by the mean of P over all places, the greatest first, with that mean.
-pub(super) fn by_mean(players: &[PlayerSweep]) -> Vec<(usize, f64)> {
-    let mean = |player: &PlayerSweep| {
-        let found = player.places.iter().filter_map(PlaceProbabilities::best);
-        let found: Vec<f64> = found.map(|p| p.value).collect();
-        found.iter().sum::<f64>() / found.len().max(1) as f64
-    };
-    let mut order: Vec<(usize, f64)> = players.iter().map(mean).enumerate().collect();
-    order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    order
+/// The mean of P over all places of a player's best shots, with the error that the measured shots
+/// leave.
+pub(super) fn mean_over_places(player: &PlayerSweep) -> Standing {
+    let found = player.places.iter().filter_map(PlaceProbabilities::best);
+    let found: Vec<f64> = found.map(|p| p.value).collect();
+    Standing {
+        value: found.iter().sum::<f64>() / found.len().max(1) as f64,
+        // The simulation's own error is far less.
+        standard_error: player.probability_sd.max(1e-4),
+    }
+}
+
+/// Who is best over all places.
+pub(super) fn ranking(players: &[PlayerSweep]) -> Ranking {
+    let standings: Vec<Standing> = players.iter().map(mean_over_places).collect();
+    Ranking::of(&standings)
 }
 
 /// A row for each player: name, mean, places to bank from, places where nobody is as good.
 pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>> {
-    let row = |(number, mean): (usize, f64)| {
+    let ranking = ranking(players);
+    let row = |&number: &usize| {
         let player = &players[number];
+        let mean = mean_over_places(player);
         let own = best.iter().filter(|of| of[..] == [number]).count();
         let (banks, unsure) = (player.bank_places().len(), player.unsure_places().len());
         let places = player.places.len();
         vec![
             shortened(&player.name, LONGEST_NAME),
-            in_hundred(mean),
+            match player.probability_sd {
+                0.0 => in_hundred(mean.value),
+                sd => format!(
+                    "{:.0} ({:.0} to {:.0})",
+                    100.0 * mean.value,
+                    100.0 * (mean.value - 1.96 * sd).max(0.0),
+                    100.0 * (mean.value + 1.96 * sd).min(1.0)
+                ),
+            },
+            format!("{} %", whole_percent(ranking.is_best[number])),
             match unsure {
                 0 => format!("{banks} of {places} places"),
                 unsure => format!("{banks} of {places}, perhaps {unsure} more"),
@@ -85,13 +103,14 @@ pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<V
             format!("{own} of {} places", best.len()),
         ]
     };
-    by_mean(players).into_iter().map(row).collect()
+    ranking.order.iter().map(row).collect()
 }
 
 /// The columns of [`player_rows`].
-pub(super) const PLAYER_COLUMNS: [&str; 4] = [
+pub(super) const PLAYER_COLUMNS: [&str; 5] = [
     "player",
     "mean of\nall places,\nbest kind",
+    "is best",
     "banks at",
     "alone the\nbest at",
 ];
@@ -105,7 +124,7 @@ pub(super) fn remarks(
     let level = best.iter().filter(|of| of.len() > 1).count();
     let of_level = if level > 0 {
         format!(
-            "At {level} of {} places two or more are level: within 1 in 100 (team.csv names them).\n",
+            "At {level} of {} places two or more are level: within 1 in 100, or within what their shots leave open (team.csv names them).\n",
             best.len()
         )
     } else {
@@ -305,9 +324,9 @@ pub(super) fn least_to_most(
 
 /// The same of all players, the surest first.
 pub(super) fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<String> {
-    let order = by_mean(players).into_iter();
+    let order = ranking(players).order.into_iter();
     order
-        .map(|(number, _)| bank_text(&players[number], units))
+        .map(|number| bank_text(&players[number], units))
         .collect()
 }
 
@@ -320,7 +339,8 @@ pub(super) fn team_text(players: &[PlayerSweep], ring: (f64, f64), units: UnitSy
     }
     let (of_level, of_profiles) = remarks(players, &best, ring);
     let mut text = format!(
-        "makes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n{of_level}",
+        "makes in 100 of each one's best shot (not of the usual one), {}\n{}\n{of_level}",
+        ranking(players).in_words(),
         table.trim_fmt()
     );
     if players.len() <= MOST_COLUMNS && best.len() <= MOST_ROWS {

@@ -6,6 +6,7 @@ mod one_place;
 mod over_the_court;
 mod player_advice;
 mod player_sweep;
+mod ranking;
 mod sureness;
 mod team_csv;
 mod team_profiles;

@@ -1,5 +1,6 @@
 //! A table of the players, each from one place.
 
+use super::ranking::{Ranking, Standing};
 use super::team_profiles::load_players;
 use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
@@ -9,6 +10,7 @@ use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_prose, print_remark};
+use crate::fitting::Interval;
 use crate::plots::svg::shortened;
 use crate::shooter::Profile;
 use crate::sweep::probability_by_place::{Preference, SURE};
@@ -66,10 +68,15 @@ pub(super) fn run(
         );
     }
     let header = ["player", "place", "direct", "bank", "shoot it"];
-    let mut table = table_of(header.map(str::to_owned).to_vec());
+    let names_best = profiles.len() > 1;
+    let best_column = names_best.then_some("is best");
+    let header = header.into_iter().chain(best_column).map(str::to_owned);
+    let mut table = table_of(header.collect());
     let bars = ProgressBars::new(quiet);
     let (mut any_either, mut any_draws, mut any_nearly_other) = (false, false, false);
-    let mut rows: Vec<(f64, Vec<String>)> = Vec::new();
+    let (mut any_fit, mut any_exact) = (false, false);
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut standings: Vec<Standing> = Vec::new();
     let mut verdicts: Vec<(Verdict, String)> = Vec::new();
     for (path, profile) in profiles {
         let profile = &from.moved(profile)?;
@@ -84,19 +91,40 @@ pub(super) fn run(
                 })
             })
             .collect();
+        let fit = fit_folder::of_profile(&path)?;
+        any_fit |= fit.is_some();
+        any_exact |= fit.is_none();
+        // What the measured shots leave open is many times the error of the simulation.
+        let over_draws: Vec<Option<Interval>> = shots
+            .iter()
+            .map(|shot| match (&fit, shot) {
+                (Some(fit), Ok(shot)) => {
+                    let p = fit_folder::shot_over_draws(fit, profile, &shot.nominal)?;
+                    Ok(Some(p.interval()))
+                }
+                _ => Ok(None),
+            })
+            .collect::<Result<_, Failure>>()?;
         let mut text = |kind: ShotKind| {
             let is_nearly_other = shots[kind.index()]
                 .as_ref()
                 .is_ok_and(|shot| shot.share_of_other_kind(kind) > 0.5);
             any_nearly_other |= is_nearly_other;
-            p[kind.index()].map_or("-".to_owned(), |p| {
-                format!(
-                    "{} \u{b1} {}{}",
+            let mark = if is_nearly_other { " *" } else { "" };
+            match (p[kind.index()], over_draws[kind.index()]) {
+                (_, Some(p)) => format!(
+                    "{:.0} ({:.0} to {:.0}){mark}",
+                    100.0 * p.mean,
+                    100.0 * p.low,
+                    100.0 * p.high
+                ),
+                (Some(p), None) => format!(
+                    "{} \u{b1} {}{mark}",
                     in_hundred(p.value),
-                    in_hundred(p.standard_error),
-                    if is_nearly_other { " *" } else { "" }
-                )
-            })
+                    in_hundred(p.standard_error)
+                ),
+                (None, None) => "-".to_owned(),
+            }
         };
         let preference = Preference::of(p[0], p[1]);
         any_either |= preference == Some(Preference::Either);
@@ -106,11 +134,11 @@ pub(super) fn run(
         let mut share_of_draws = 1.0;
         if let [Ok(direct), Ok(bank)] = &shots[..]
             && preference != Some(Preference::Either)
-            && let Some(fit) = fit_folder::of_profile(&path)?
+            && let Some(fit) = &fit
         {
             let nominals = [&direct.nominal, &bank.nominal];
             let bank_is_better =
-                fit_folder::bank_gain_over_draws(&fit, profile, nominals)?.share_positive();
+                fit_folder::bank_gain_over_draws(fit, profile, nominals)?.share_positive();
             let share = match preference {
                 Some(Preference::Bank) => bank_is_better,
                 _ => 1.0 - bank_is_better,
@@ -130,7 +158,20 @@ pub(super) fn run(
             };
             (verdict, name.clone())
         }));
-        let best = p.iter().flatten().map(|p| p.value).fold(0.0, f64::max);
+        let of_kinds = p.iter().zip(&over_draws).filter_map(|(p, draws)| {
+            let p = (*p)?;
+            Some(draws.map_or(
+                Standing {
+                    value: p.value,
+                    standard_error: p.standard_error,
+                },
+                |draws| Standing {
+                    value: draws.mean,
+                    standard_error: draws.sd,
+                },
+            ))
+        });
+        let best = of_kinds.max_by(|a, b| a.value.total_cmp(&b.value));
         let row = vec![
             name,
             format!(
@@ -146,10 +187,18 @@ pub(super) fn run(
             text(ShotKind::Bank),
             advice,
         ];
-        rows.push((best, row));
+        standings.push(best.unwrap_or(Standing {
+            value: 0.0,
+            standard_error: 0.0,
+        }));
+        rows.push(row);
     }
-    rows.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (_, row) in rows {
+    let ranking = Ranking::of(&standings);
+    for &number in &ranking.order {
+        let mut row = std::mem::take(&mut rows[number]);
+        if names_best {
+            row.push(format!("{} %", whole_percent(ranking.is_best[number])));
+        }
         table.add_row(row);
     }
     let mut text = String::new();
@@ -161,7 +210,8 @@ pub(super) fn run(
         }
     }
     text += &format!(
-        "\nmakes in 100 of each one's best shot (not of the usual one), the best player first\n{}\n",
+        "\nmakes in 100 of each one's best shot (not of the usual one), {}\n{}\n",
+        ranking.in_words(),
         table.trim_fmt()
     );
     if any_either {
@@ -170,7 +220,15 @@ pub(super) fn run(
     if any_nearly_other {
         text += "*: nearly the other kind: more than half of the makes of this bank shot do not touch the board first, or of this direct one do\n";
     }
-    text += "\u{b1}: numerical; each profile is taken as exact (`bankshot advise` says how sure the P of a measured player is)\n";
+    if any_exact {
+        text += "\u{b1}: numerical; the profile is taken as exact\n";
+    }
+    if any_fit {
+        text += "(low to high): 95 % interval of the player's measured shots\n";
+    }
+    if names_best {
+        text += "is best: the probability that nobody's best shot makes more\n";
+    }
     if any_draws {
         text += "in brackets: in how many of 100 draws of the fit this kind is the better one; from 90 on it is sure\n";
     }

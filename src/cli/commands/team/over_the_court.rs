@@ -148,6 +148,9 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
             find_sureness(&mut places, &config, fit, &bars)?;
             advice = Some(PlayerAdvice::of_fit(fit, &config.settings.output, &bars)?);
         }
+        let probability_sd = fit
+            .as_ref()
+            .map_or(0.0, |fit| fit.usual_probabilities(0).interval().sd);
         find_hoop_dependence(&mut places, &config, ring, &bars)?;
         let own = advice.as_ref().map(|advice| advice.poster.as_str());
         posters.extend(write_pictures(
@@ -159,6 +162,7 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
         players.push(PlayerSweep {
             name,
             places,
+            probability_sd,
             advice,
         });
         finished.push((config, rows));

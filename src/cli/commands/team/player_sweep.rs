@@ -8,6 +8,8 @@ use crate::sweep::probability_by_place::{PlaceProbabilities, Preference};
 pub(super) struct PlayerSweep {
     pub(super) name: String,
     pub(super) places: Vec<PlaceProbabilities>,
+    /// The standard deviation of P that a fitted player's shots leave; 0 for an exact profile.
+    pub(super) probability_sd: f64,
     /// What a fitted player's own shots say.
     pub(super) advice: Option<PlayerAdvice>,
 }
@@ -44,7 +46,11 @@ pub(super) fn best_players(players: &[PlayerSweep]) -> Vec<Vec<usize>> {
             let found: Vec<(usize, Difference)> = players
                 .iter()
                 .enumerate()
-                .filter_map(|(i, player)| Some((i, player.places[place].best()?)))
+                .filter_map(|(i, player)| {
+                    let mut p = player.places[place].best()?;
+                    p.standard_error = libm::hypot(p.standard_error, player.probability_sd);
+                    Some((i, p))
+                })
                 .collect();
             let best = found.iter().map(|(_, p)| *p);
             let Some(best) = best.reduce(|a, b| if b.value > a.value { b } else { a }) else {
