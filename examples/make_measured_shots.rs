@@ -5,7 +5,9 @@
 //! The player's true profile stands here and in `docs/fitting.md`.
 
 use bankshot::dynamics::{Release, Simulator};
-use bankshot::fitting::{Place, Tracker, TrackerNoise, Values, landing_of, nominal_of};
+use bankshot::fitting::{
+    Place, Tracker, TrackerNoise, Values, landing_of, nominal_of, release_of_landing,
+};
 use bankshot::math::normal_distribution::quantile;
 use bankshot::model::Preset;
 use bankshot::shooter::Location;
@@ -22,6 +24,12 @@ const SCATTER: [f64; 4] = [0.25, 1.3, 1.2, 0.35];
 const SPEED_PITCH: f64 = 0.2;
 const UNITS: [f64; 4] = [FOOT_M, DEGREE_RAD, DEGREE_RAD, REV_RAD];
 
+/// Where the player stands.
+const MIDDLE: Location = Location {
+    distance_m: 13.75 * FOOT_M,
+    angle_rad: 0.0,
+};
+
 struct Player {
     simulator: Simulator,
     place: Place,
@@ -34,10 +42,7 @@ impl Player {
         Self {
             simulator: Simulator::new(&physics).expect("a preset can be simulated"),
             place: Place {
-                location: Location {
-                    distance_m: 13.75 * FOOT_M,
-                    angle_rad: 0.0,
-                },
+                location: MIDDLE,
                 release_height_m: 7.0 * FOOT_M,
             },
             random: ChaCha12Rng::seed_from_u64(seed),
@@ -52,7 +57,7 @@ impl Player {
         let nominal = nominal_of(values);
         Release {
             distance_m: self.place.location.distance_m,
-            court_angle_rad: 0.0,
+            court_angle_rad: self.place.location.angle_rad,
             height_above_hoop_m: self.place.release_height_m
                 - self.simulator.physics().hoop_plane_height_m(),
             speed_m_s: nominal.speed_m_s,
@@ -74,6 +79,31 @@ impl Player {
             .simulate(&self.release(&values))
             .expect("finite values");
         (values, outcome.verdict.made)
+    }
+}
+
+/// The places of tracked shots scatter by this, m.
+const PLACES_M: f64 = 0.35 * FOOT_M;
+
+impl Player {
+    /// A shot from a place that is off by [`PLACES_M`], where the player then stands. The player
+    /// sees it: the shot lands as the same one from the middle does.
+    fn shoot_from_about_here(&mut self) -> (Values, bool) {
+        self.place.location = MIDDLE;
+        let (values, _) = self.shoot();
+        let landing =
+            landing_of(&self.simulator, &self.place, &values).expect("it reaches the hoop");
+        let x = MIDDLE.distance_m + PLACES_M * self.normal();
+        let y = PLACES_M * self.normal();
+        self.place.location = Location {
+            distance_m: libm::hypot(x, y),
+            angle_rad: libm::atan2(y, x),
+        };
+        let (values, _) =
+            release_of_landing(&self.simulator, &self.place, &landing, &[0.0; 3], values[3])
+                .expect("it lands there from here too");
+        let outcome = self.simulator.simulate(&self.release(&values));
+        (values, outcome.expect("finite values").verdict.made)
     }
 }
 
@@ -133,7 +163,7 @@ fn tracking() -> String {
     let (frame_s, rho) = (1.0 / noise.frames_per_s, noise.frame_correlation);
     let height = player.simulator.physics().hoop_plane_height_m();
     for shot in 1..=60 {
-        let (values, made) = player.shoot();
+        let (values, made) = player.shoot_from_about_here();
         let start = player.release(&values).state();
         let (_, fall_s) = player
             .simulator

@@ -71,3 +71,11 @@ def test_pictures(root, guard_file, tmp_path):
         ax.figure.savefig(file)
         assert file.stat().st_size > 5000
         assert ax.get_xlabel()
+
+
+def test_the_example_of_the_docs(capsys, root):
+    """The page says what its example prints."""
+    page = (root / "docs" / "python.md").read_text(encoding="utf-8")
+    code = page.split("```python\n")[1].split("```")[0]
+    exec(code, {})
+    assert f"It prints `{capsys.readouterr().out.strip()}`" in page

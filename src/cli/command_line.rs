@@ -43,7 +43,8 @@ Examples:
   bankshot probability configs/errors_in_all_nine_variables.toml
   bankshot plan configs/three_pointer.toml
   bankshot sweep configs/quick_sweep.toml
-  bankshot trace configs/free_throw.toml --speed '23.5 ft/s' --pitch '52 deg'
+  bankshot trace configs/free_throw.toml --speed '24.3 ft/s' --pitch '52 deg' \
+    --backspin '3 rev/s'
   bankshot simulate releases.csv --output outcomes.csv";
 
 /// How to shoot a basketball, given your own errors: a parallel batch probability engine.

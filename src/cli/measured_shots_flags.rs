@@ -646,7 +646,8 @@ impl MeasuredFile {
         Ok(fit)
     }
 
-    /// The drag coefficient that the flights of shooters fit best; `None` where they do not tell it.
+    /// The drag coefficient that the flights of shooters fit best; `None` where they do not tell
+    /// it.
     pub(crate) fn drag_of_flights(&self, shooters: &[&ShooterShots]) -> Option<DragEstimate> {
         let tracks = shooters.iter().flat_map(|shots| &shots.tracks);
         let tracks: Vec<&[TrackedPoint]> = tracks.map(Vec::as_slice).collect();

@@ -228,7 +228,15 @@ mod tests {
         let unknown = answer_of(&arguments(&["bankshot", "chek"]), silent());
         assert_eq!(unknown.exit_code, 2);
         let command = ["bankshot", "probability", profile, "--speed", "24 ft/s"];
-        let command = [&command[..], &["--pitch", "53 deg", "--target", "1e-5"]].concat();
+        let shot = [
+            "--pitch",
+            "53 deg",
+            "--backspin",
+            "3 rev/s",
+            "--target",
+            "1e-5",
+        ];
+        let command = [&command[..], &shot].concat();
         let stopped = answer_of(&arguments(&command), Arc::new(StopAtOnce));
         assert_eq!(stopped.exit_code, code::INTERRUPTED);
         assert_eq!(stopped.remarks, "stopped\n");

@@ -202,8 +202,8 @@ impl NominalOptions {
         warnings
     }
 
-    /// Warnings about what the flags give and leave out: nobody gave the backspin, though the profile
-    /// allows some; a ball so fast that the board cannot stop it.
+    /// Warnings about what the flags give and leave out: nobody gave the backspin, though the
+    /// profile allows some; a ball so fast that the board cannot stop it.
     pub(crate) fn warnings_of_flags(&self, profile: &Profile, nominal: &Nominal) -> Vec<String> {
         let mut warnings = Vec::new();
         let spin = nominal.backspin_rad_s;

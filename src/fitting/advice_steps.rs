@@ -31,7 +31,8 @@ pub const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 const SAME_AIM_RAD: f64 = 0.05 * DEGREE_RAD;
 /// The same for the release angle, rad.
 const SAME_PITCH_RAD: f64 = 0.1 * DEGREE_RAD;
-/// A change is supported from this share of the draws on: in so many it gains, and goes to one side.
+/// A change is supported from this share of the draws on: in so many it gains, and goes to one
+/// side.
 const SUPPORTED: f64 = 0.975;
 /// The density of the standard normal distribution where it has [`SUPPORTED`] below it.
 const DENSITY_AT_SUPPORTED: f64 = 0.058_45;

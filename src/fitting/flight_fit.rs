@@ -540,17 +540,17 @@ pub struct DragEstimate {
     pub flights: usize,
 }
 
-/// So long after its first frame in the air a flight counts for the drag, s. A hand that still leads
-/// the ball, unseen beside the tracker's noise, makes the drag too small: with 2 to 4 frames of a
-/// 25 Hz tracker less, measured three-point shots give 0.39 to 0.41 in place of 0.35.
+/// So long after its first frame in the air a flight counts for the drag, s. A hand that still
+/// leads the ball, unseen beside the tracker's noise, makes the drag too small: with 2 to 4 frames
+/// of a 25 Hz tracker less, measured three-point shots give 0.39 to 0.41 in place of 0.35.
 const HAND_S: f64 = 0.12;
 
-/// The drag coefficient that fits tracked flights best. `tracks` are the points in free flight of each
-/// shot, which may be from anywhere.
+/// The drag coefficient that fits tracked flights best. `tracks` are the points in free flight of
+/// each shot, which may be from anywhere.
 ///
-/// Its error is that of a sum of independent flights (White, Econometrica 48 (1980) 817): what differs
-/// from flight to flight, such as the spin, is in it. `None` where fewer than three flights, or none
-/// with air, tell it.
+/// Its error is that of a sum of independent flights (White, Econometrica 48 (1980) 817): what
+/// differs from flight to flight, such as the spin, is in it. `None` where fewer than three
+/// flights, or none with air, tell it.
 #[must_use]
 pub fn fit_drag_coefficient(
     physics: &Physics,
@@ -634,8 +634,8 @@ pub fn fit_drag_coefficient(
     })
 }
 
-/// The 0.975 quantile of Student's t (Abramowitz and Stegun 26.7.5), to 1 % from 4 degrees of freedom
-/// on.
+/// The 0.975 quantile of Student's t (Abramowitz and Stegun 26.7.5), to 1 % from 4 degrees of
+/// freedom on.
 fn student_975(freedom: f64) -> f64 {
     const Z: f64 = 1.959_963_984_540_054;
     let square = Z * Z;

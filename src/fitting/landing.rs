@@ -165,8 +165,8 @@ pub(crate) fn release_of_uncertain_landing(
     Err(LandingError)
 }
 
-/// The path of a shot that belongs to a group of shots at another place: how its own speed, pitch and
-/// polar angle change with those that land alike from the place of the group.
+/// The path of a shot that belongs to a group of shots at another place: how its own speed, pitch
+/// and polar angle change with those that land alike from the place of the group.
 ///
 /// `None` where one of the two does not rise to the hoop.
 pub(crate) fn own_path(

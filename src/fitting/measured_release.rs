@@ -64,8 +64,8 @@ pub struct MeasuredRelease {
 }
 
 impl MeasuredRelease {
-    /// The release on the shot's own path where that at its place has these values; `profile` is that
-    /// of the place.
+    /// The release on the shot's own path where that at its place has these values; `profile` is
+    /// that of the place.
     #[must_use]
     pub fn release(&self, profile: &Profile, values: &Values) -> Release {
         let Some(own) = &self.own else {

@@ -1,8 +1,8 @@
 //! The frame rate and the noise of a tracker, from the flights that it saw.
 //!
-//! About its highest point a flight is a cubic of the time, but for a tenth of a millimetre. What is
-//! left of each coordinate is the tracker's error less the part that a cubic takes: for errors that
-//! repeat from frame to frame (of first order) the expected sums of squares and of products of
+//! About its highest point a flight is a cubic of the time, but for a tenth of a millimetre. What
+//! is left of each coordinate is the tracker's error less the part that a cubic takes: for errors
+//! that repeat from frame to frame (of first order) the expected sums of squares and of products of
 //! neighbours are known exactly, and the two that were seen give the standard deviation and the
 //! correlation.
 
@@ -19,15 +19,16 @@ const COEFFICIENTS: usize = 4;
 const FEWEST_WINDOWS: usize = 6;
 /// Flights that are looked at.
 const MOST_FLIGHTS: usize = 80;
-/// A residual of so many standard deviations is a mistake of the tracker, and its window is left out.
+/// A residual of so many standard deviations is a mistake of the tracker, and its window is left
+/// out.
 const MISTAKE: f64 = 5.0;
 /// Correlations that are looked for.
 const MOST_CORRELATION: f64 = 0.95;
 /// No tracker is better than this, m.
 const LEAST_NOISE_M: f64 = 1e-4;
 
-/// The noise of the tracker; what does not show in tracks is that of the usual one. `None` where too
-/// few flights tell it.
+/// The noise of the tracker; what does not show in tracks is that of the usual one. `None` where
+/// too few flights tell it.
 #[must_use]
 pub fn noise_of_tracks(tracks: &[&[TrackedPoint]]) -> Option<TrackerNoise> {
     let every = tracks.len().div_ceil(MOST_FLIGHTS).max(1);
@@ -213,8 +214,8 @@ mod tests {
     use rand::rngs::ChaCha12Rng;
     use rand::{RngExt, SeedableRng};
 
-    /// Authority: the errors that were put in, on parabolas. The estimates of 60 flights are known to
-    /// 3 % and 0.04 (400 frames and more); the bounds are three times that.
+    /// Authority: the errors that were put in, on parabolas. The estimates of 60 flights are known
+    /// to 3 % and 0.04 (400 frames and more); the bounds are three times that.
     #[test]
     fn val_noise_and_rate_come_out_of_flights() {
         for (rate, sd, rho) in [(25.0, 0.037, 0.3), (100.0, 0.01, 0.0), (60.0, 0.006, 0.6)] {

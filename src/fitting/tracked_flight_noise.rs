@@ -9,11 +9,11 @@ use crate::dynamics::Simulator;
 /// The hand pushes the ball from rest for so long, s.
 const PUSH_S: f64 = 0.35;
 
-/// The covariance of the release that lands as a fitted flight without errors, sampled by the tracker
-/// from the hand to the height of the hoop: that of a measured flight, but for its outliers.
+/// The covariance of the release that lands as a fitted flight without errors, sampled by the
+/// tracker from the hand to the height of the hoop: that of a measured flight, but for its
+/// outliers.
 ///
-/// # Errors
-/// The release does not reach the hoop, or has too few frames.
+/// # Errors The release does not reach the hoop, or has too few frames.
 pub fn tracked_flight_noise(
     simulator: &Simulator,
     place: &Place,

@@ -1,5 +1,5 @@
-//! What a file leaves open, and a wrong guess would answer silently: who shot, from where, when, and
-//! what a blank result means.
+//! What a file leaves open, and a wrong guess would answer silently: who shot, from where, when,
+//! and what a blank result means.
 
 use super::column_map_proposal::names_players;
 use super::columns::{Columns, Label, Quantity, parse_made};

@@ -75,8 +75,8 @@ pub fn read(
     Ok(shooters)
 }
 
-/// The frame rate and the noise of the tracker of a file of trajectories, from its flights; `None` of
-/// other files, and where the flights do not tell it.
+/// The frame rate and the noise of the tracker of a file of trajectories, from its flights; `None`
+/// of other files, and where the flights do not tell it.
 #[must_use]
 pub fn tracker_by_flights(
     table: &Table,

@@ -222,8 +222,8 @@ fn month_of(part: &str) -> Option<u32> {
     })
 }
 
-/// The moment that is so many days after 1970-01-01 (Hinnant's algorithm for the proleptic Gregorian
-/// calendar).
+/// The moment that is so many days after 1970-01-01 (Hinnant's algorithm for the proleptic
+/// Gregorian calendar).
 fn of_days(days: f64) -> Moment {
     let whole = days.floor();
     let shifted = whole as i64 + 719_468;

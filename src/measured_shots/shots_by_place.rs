@@ -16,8 +16,8 @@ struct AtPlace {
     own: Option<OwnPath>,
 }
 
-/// Sorts shots by place. A shot keeps its landing: its release is the one from the place of its group
-/// that lands alike, and it remembers its own path.
+/// Sorts shots by place. A shot keeps its landing: its release is the one from the place of its
+/// group that lands alike, and it remembers its own path.
 pub(super) fn group_by_place(
     reader: &RowReader<'_>,
     raw: Vec<RawShot>,

@@ -52,8 +52,8 @@ fn tracks(reader: &RowReader<'_>, rows: &[(u64, &[String])]) -> Vec<TrackedShot>
     shots.collect()
 }
 
-/// The frame rate and the noise of the tracker, from all flights of a file; `None` where they do not
-/// tell it.
+/// The frame rate and the noise of the tracker, from all flights of a file; `None` where they do
+/// not tell it.
 pub(super) fn noise_of_file(
     reader: &RowReader<'_>,
     rows: &[(u64, &[String])],

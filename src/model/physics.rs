@@ -197,8 +197,8 @@ impl Physics {
     }
 
     /// The speed from which on a head-on ball is pressed in by more than its radius, m/s: undamped,
-    /// `R sqrt(k/m)` at the softer solid. The model of a contact ends there: the ball's centre passes
-    /// the surface and it leaves on the other side.
+    /// `R sqrt(k/m)` at the softer solid. The model of a contact ends there: the ball's centre
+    /// passes the surface and it leaves on the other side.
     #[must_use]
     pub fn max_contact_speed_m_s(&self) -> f64 {
         let softest = SolidId::ALL
@@ -208,8 +208,8 @@ impl Physics {
         self.ball_radius_m * (softest / self.ball_mass_kg).sqrt()
     }
 
-    /// The least speed at which a ball reaches the hoop from a distance and a height above the floor,
-    /// in a vacuum, m/s (Brancazio 1981).
+    /// The least speed at which a ball reaches the hoop from a distance and a height above the
+    /// floor, in a vacuum, m/s (Brancazio 1981).
     #[must_use]
     pub fn least_speed_to_hoop_m_s(&self, distance_m: f64, height_m: f64) -> f64 {
         let rise = self.hoop_plane_height_m() - height_m;

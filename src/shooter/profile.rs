@@ -88,6 +88,16 @@ pub enum ProfileError {
         /// Largest pitch angle, rad.
         high_rad: f64,
     },
+    /// The ball is pressed in by more than its radius at the speed of the shots.
+    #[error(
+        "board and ring cannot stop this ball: at {speed_m_s:.1} m/s, the speed of the shots from here, they press it in by more than its radius, and it passes through (at most {most_m_s:.1} m/s); give a larger, lighter or stiffer ball in [physics]"
+    )]
+    PassesThrough {
+        /// The speed of the shots, m/s.
+        speed_m_s: f64,
+        /// The greatest speed that the ball bears, m/s.
+        most_m_s: f64,
+    },
     /// The physics or the integrator cannot be simulated.
     #[error(transparent)]
     Simulator(#[from] SimulatorError),
@@ -196,14 +206,10 @@ impl ProfileSettings {
         if speed <= most {
             return Ok(());
         }
-        Err(ProfileError::Settings(vec![SettingError {
-            key: "physics.ball_radius".to_owned(),
-            message: format!(
-                "{:.4} m: board and ring cannot stop this ball: at {speed:.1} m/s they press it in by more than its radius, \
-                 and it passes through (at most {most:.1} m/s); give a larger, lighter or stiffer ball",
-                physics.ball_radius_m
-            ),
-        }]))
+        Err(ProfileError::PassesThrough {
+            speed_m_s: speed,
+            most_m_s: most,
+        })
     }
 }
 

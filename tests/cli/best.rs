@@ -230,6 +230,8 @@ choose = ["speed"]
 [location]
 distance = "12 ft"
 angle = "0 deg"
+[physics]
+preset = "paper"
 "#;
 
 #[test]

@@ -411,7 +411,7 @@ fn contract_heights_of_one_place_are_one_place() {
     assert_eq!(found.len(), 1);
     assert!((found[0]["release_height_ft"].as_f64().unwrap() - 7.0).abs() < 0.01);
     assert!(
-        told.contains("the releases are 6.80 to 7.20 ft high; P is that of their mean height"),
+        told.contains("the places of release scatter (standard deviation): 0.14 ft in height"),
         "{told}"
     );
     let (found, _) = places("feet.csv", with_heights(&|i| 7.0 + 2.0 * (i % 2) as f64));
@@ -748,7 +748,7 @@ fn contract_the_advice_is_told_under_each_physics() {
     // The backspin was not measured, and is kept.
     let choice = "choose = [\"speed\", \"pitch\", \"polar\"]\n";
     assert!(text.contains(choice), "{text}");
-    let quick = "standard_error = 0.01\nchoose = [\"speed\"]\n";
+    let quick = "standard_error = 0.01\nchoose = [\"speed\", \"pitch\"]\n";
     fs::write(&profile, text.replace(choice, quick)).unwrap();
     let physics = |extra: &[&str]| {
         let mut command = bankshot();

@@ -15,6 +15,9 @@ fn simulate(
     let _ = fs::remove_file(&out);
     let mut command = bankshot();
     command.arg("simulate").arg(&releases);
+    if !options.contains(&"--physics") {
+        command.args(["--physics", "paper"]);
+    }
     let answer = Answer::of(command.arg("--output").arg(&out).args(options));
     let text = fs::read(&out).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     (answer.code, text.unwrap_or_default(), answer.stderr)
@@ -122,7 +125,15 @@ fn contract_simulate_streams_standard_input_and_output() {
     let (header, row) = (lines.next().unwrap(), lines.next().unwrap());
     let input = format!("{header}{}", format!("\n{row}").repeat(40_000));
     let mut command = bankshot();
-    command.args(["simulate", "-", "--output", "-", "--quiet"]);
+    command.args([
+        "simulate",
+        "-",
+        "--output",
+        "-",
+        "--quiet",
+        "--physics",
+        "paper",
+    ]);
     let answer = Answer::with_input(&mut command, input).exits(0);
     let lines = answer.stdout.iter().filter(|&&byte| byte == b'\n').count();
     assert_eq!(lines, 40_001);
@@ -161,7 +172,11 @@ fn contract_the_input_is_never_overwritten() {
     fs::hard_link(&releases, &link).unwrap();
     for output in [&releases, &link] {
         let mut command = bankshot();
-        command.arg("simulate").arg(&releases).arg("-o").arg(output);
+        command
+            .args(["simulate", "--physics", "paper"])
+            .arg(&releases)
+            .arg("-o")
+            .arg(output);
         let answer = Answer::of(&mut command).exits(2);
         assert!(answer.stderr.contains("this is the input"), "{answer:?}");
         assert_eq!(fs::read_to_string(&releases).unwrap(), RELEASES);
@@ -177,7 +192,7 @@ fn contract_parquet_goes_in_and_out_with_the_same_values() {
     let run = |from: &str, to: &str| {
         let mut command = bankshot();
         command
-            .arg("simulate")
+            .args(["simulate", "--physics", "paper"])
             .arg(path(from))
             .arg("-o")
             .arg(path(to));
@@ -194,7 +209,7 @@ fn contract_parquet_goes_in_and_out_with_the_same_values() {
             .starts_with(b"PAR1")
     );
     let again = bankshot()
-        .arg("simulate")
+        .args(["simulate", "--physics", "paper"])
         .arg(path("first.parquet"))
         .arg("-o")
         .arg(path("x.csv"))
@@ -224,7 +239,7 @@ fn contract_parquet_goes_in_and_out_with_the_same_values() {
     fs::write(path("broken.parquet"), "PAR1 and no more").unwrap();
     let mut command = bankshot();
     command
-        .arg("simulate")
+        .args(["simulate", "--physics", "paper"])
         .arg(path("broken.parquet"))
         .arg("-o")
         .arg(path("x.csv"));

@@ -26,11 +26,17 @@ pub(crate) fn bankshot() -> Command {
 }
 
 /// What a command printed, and its exit code.
-#[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) code: Option<i32>,
     pub(crate) stdout: Vec<u8>,
     pub(crate) stderr: String,
+}
+
+impl std::fmt::Debug for Answer {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let printed = String::from_utf8_lossy(&self.stdout);
+        write!(out, "exit code {:?}\n{printed}\n{}", self.code, self.stderr)
+    }
 }
 
 impl From<Output> for Answer {

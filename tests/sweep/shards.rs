@@ -133,6 +133,6 @@ fn contract_a_sweep_under_ncaa_resumes_and_verifies_to_the_same_bytes() {
             .args(["--recompute", "100%"]);
         assert_code(&verify.output().unwrap(), 0);
     }
-    let paper = TestFolder::new();
+    let paper = TestFolder::with(&format!("{SWEEP}\n[physics]\npreset = \"paper\"\n"));
     assert_ne!(paper.undisturbed().1, bytes);
 }

@@ -1,8 +1,8 @@
 //! Trajectories against the landings of the same shots, and the drag of flights.
 //!
-//! Authority: a small simulator of its own, Newton's equations with gravity, buoyancy and drag in steps
-//! of a millisecond (Runge-Kutta, fourth order), and the places of release, releases and drags that were
-//! put into it. It shares no code with the engine.
+//! Authority: a small simulator of its own, Newton's equations with gravity, buoyancy and drag in
+//! steps of a millisecond (Runge-Kutta, fourth order), and the places of release, releases and
+//! drags that were put into it. It shares no code with the engine.
 
 use bankshot::dynamics::Simulator;
 use bankshot::fitting::{

@@ -22,12 +22,12 @@ use std::path::{Path, PathBuf};
 Every quantity carries its unit.
 
 Examples:
-  bankshot trace configs/free_throw.toml --speed '23.5 ft/s' \\
+  bankshot trace configs/free_throw.toml --speed '24.3 ft/s' \\
     --pitch '52 deg' --backspin '3 rev/s'
-  bankshot trace configs/free_throw.toml --speed '23.6 ft/s' \\
+  bankshot trace configs/free_throw.toml --speed '24.4 ft/s' \\
     --pitch '53.5 deg' --backspin '3 rev/s' --plot shot.png --swarm 60
-  bankshot trace configs/bank_wing.toml --speed '7.4 m/s' --pitch '52 deg' \\
-    --polar '40 deg' --output shot.csv")]
+  bankshot trace configs/bank_wing.toml --speed '7.36 m/s' --pitch '54.2 deg' \\
+    --polar '53.85 deg' --backspin '3 rev/s' --output shot.csv")]
 pub(crate) struct TraceOptions {
     /// The shooter's profile (for location, height and physics).
     pub(crate) profile: PathBuf,

@@ -59,8 +59,12 @@ pub(super) fn at_the_limit_in_words(words: &ChangeWords, advice: &Advice) -> Str
     };
     let mut from = advice.usual;
     let mut changes = Vec::new();
+    // A suggested angle comes with a speed of its own.
+    let mut all = steps.steps.iter();
+    let has_angle = all.any(|step| step.cause == Cause::PITCH && step.is_sure());
     for step in &steps.steps {
-        if step.support == Support::AtTheLimit {
+        let is_told = has_angle && step.cause == Cause::SPEED;
+        if step.support == Support::AtTheLimit && !is_told {
             changes.push(format!(
                 "{} ({:+.1})",
                 words.of_step(step, &from),

@@ -61,8 +61,8 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 10] {
 /// of a cell have the same kind.)
 const NOT_INTERPOLATED: usize = 3;
 
-/// The namespace of a C++ header with this file name: letters, digits and single underscores, and no
-/// word of the language. Headers of other names then stand side by side in one program.
+/// The namespace of a C++ header with this file name: letters, digits and single underscores, and
+/// no word of the language. Headers of other names then stand side by side in one program.
 #[must_use]
 pub fn namespace_of(file_stem: &str) -> String {
     /// Words that can be the name of a file and not of a namespace.

@@ -41,7 +41,7 @@ The shot comes from the flags, then from the profile's [nominal] table. The erro
 deviations; [shooter.correlation] gives their correlations.
 
 Examples:
-  bankshot probability configs/free_throw.toml --speed '23.6 ft/s' \\
+  bankshot probability configs/free_throw.toml --speed '24.4 ft/s' \\
     --pitch '53.5 deg' --backspin '3 rev/s'
   bankshot probability configs/errors_in_all_nine_variables.toml \\
     --target 0.0003 --json
