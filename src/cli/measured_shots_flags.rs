@@ -35,7 +35,7 @@ pub(crate) struct MeasuredShotsOptions {
     /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a
     /// TOML file with its noise, one standard deviation each: speed = "0.05 ft/s", pitch, polar,
     /// backspin; or depth = "0.5 in", left_right, entry_angle; or position [default: lab for
-    /// releases, noah for landings, optical_25hz for trajectories].
+    /// releases, noah for landings; for trajectories the frame rate and noise that they show].
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
     /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or

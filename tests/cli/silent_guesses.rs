@@ -326,3 +326,188 @@ fn contract_copies_of_a_player_are_not_ranked() {
     assert!(text.contains("is best") && text.contains(" to "), "{text}");
     assert!(!text.contains("the best player first"), "{text}");
 }
+
+/// The tracks of the docs, changed point by point: shot, time (s), x and y (ft).
+fn tracks_with(change: impl Fn(u32, &mut f64, &mut f64, &mut f64)) -> String {
+    let text = fs::read_to_string("docs/data/optical_tracking.csv").unwrap();
+    let mut lines = text.lines();
+    let mut all = lines.next().unwrap().to_owned() + "\n";
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let shot = cells[0].parse().unwrap();
+        let [mut time, mut x, mut y] = [1, 2, 3].map(|k: usize| cells[k].parse::<f64>().unwrap());
+        change(shot, &mut time, &mut x, &mut y);
+        let _ = writeln!(
+            all,
+            "{shot},{time:.3},{x:.3},{y:.3},{},{}",
+            cells[4], cells[5]
+        );
+    }
+    all
+}
+
+/// The drag of the made-up flights is 0.45: another one is named, and flights from many places give
+/// it without a profile.
+#[test]
+fn contract_a_drag_that_the_flights_reject_is_named() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let heavy = write_file(
+        &folder,
+        "heavy.toml",
+        "[physics]\npreset = \"ncaa\"\ndrag_coefficient = 0.9\n",
+    );
+    let file = Path::new("docs/data/optical_tracking.csv");
+    let answer = fit(
+        file,
+        &out,
+        &["--physics", heavy.to_str().unwrap(), "--json"],
+    )
+    .exits(0);
+    let warnings = answer.json()["warnings"].to_string();
+    assert!(warnings.contains("--free drag_coefficient"), "{warnings}");
+    let answer = fit(file, &out, &["--json"]).exits(0);
+    let warnings = answer.json()["warnings"].to_string();
+    assert!(!warnings.contains("drag"), "{warnings}");
+    // A shot every 14 degrees, 3.4 ft from the next.
+    let around = tracks_with(|shot, _, x, y| {
+        let angle = 0.24 * (f64::from(shot % 13) - 6.0);
+        let (sin, cos) = angle.sin_cos();
+        (*x, *y) = (*x * cos - *y * sin, *x * sin + *y * cos);
+    });
+    let few: String = around
+        .lines()
+        .filter(|line| {
+            line.split(',')
+                .next()
+                .unwrap()
+                .parse()
+                .is_ok_and(|shot: u32| shot < 26)
+                || line.starts_with("shot")
+        })
+        .map(|line| line.to_owned() + "\n")
+        .collect();
+    let file = write_file(&folder, "around.csv", few);
+    let answer = fit(&file, &out, &["--free", "drag_coefficient"])
+        .exits(3)
+        .prints("drag_coefficient  0.")
+        .says("no profile was fitted");
+    assert!(answer.stdout().contains("from 25 flights"), "{answer:?}");
+}
+
+/// A clock that counts milliseconds from 1970 gives the same fit.
+#[test]
+fn contract_times_have_no_limit() {
+    let folder = TempDir::new().unwrap();
+    let p = |text: String, name: &str| {
+        let file = write_file(&folder, name, text);
+        let answer = fit(&file, &folder.path().join("out"), &["--json"]).exits(0);
+        answer.json()["probability"]["mean"].as_f64().unwrap()
+    };
+    let own = p(tracks_with(|_, _, _, _| ()), "s.csv");
+    let unix = tracks_with(|_, time, _, _| *time = 1_451_350_000_000.0 + 1000.0 * *time);
+    let unix = p(unix.replace("time_s", "time_ms"), "ms.csv");
+    assert!((own - unix).abs() < 0.003, "{own} {unix}");
+}
+
+/// Releases of a made-up player: speed, angle and direction scatter about an aim near the best one.
+fn player(seed: u64, shots: usize) -> String {
+    use rand::{RngExt, SeedableRng};
+    let mut random = rand::rngs::ChaCha12Rng::seed_from_u64(seed);
+    let mut normal = || {
+        // Twelve uniform numbers less six are as good as normal here.
+        (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0
+    };
+    let aim = [
+        24.2 + 0.12 * normal(),
+        52.0 + 2.0 * normal(),
+        0.35 * normal(),
+    ];
+    let sd = [0.25, 1.25, 1.2].map(|sd: f64| sd * (0.25 * normal()).exp());
+    let mut text = String::from("speed_ft_s,pitch_deg,aim_deg,distance_ft,release_height_ft\n");
+    for _ in 0..shots {
+        let values: [f64; 3] = std::array::from_fn(|i| aim[i] + sd[i] * normal());
+        let _ = writeln!(
+            text,
+            "{:.4},{:.3},{:.3},13.75,7",
+            values[0], values[1], values[2]
+        );
+    }
+    text
+}
+
+/// The suggestions of `advise` for several seeds: causes without those that come with others, and
+/// whether something is at the limit. No suggestion's interval holds 0.
+fn suggestions(player: &Path, seeds: std::ops::RangeInclusive<u32>) -> Vec<(Vec<String>, bool)> {
+    let of_seed = |seed: u32| {
+        let mut command = bankshot();
+        command
+            .arg("advise")
+            .arg(player)
+            .args(["--quiet", "--json", "--seed", &seed.to_string()]);
+        let json = Answer::of(&mut command).exits(0).json();
+        let causes = json["causes"].as_array().unwrap().clone();
+        let with = |support: &str| {
+            let causes = causes.iter().filter(|cause| cause["support"] == support);
+            causes
+                .map(|cause| cause["cause"].as_str().unwrap().to_owned())
+                .collect::<Vec<_>>()
+        };
+        let mut supported = with("supported");
+        if supported.contains(&"pitch".to_owned()) {
+            supported.retain(|cause| cause != "speed");
+        }
+        if !supported.is_empty() {
+            assert!(
+                json["advised_gain"]["low"].as_f64().unwrap() > 0.0,
+                "{json:#}"
+            );
+        }
+        (supported, !with("at_the_limit").is_empty())
+    };
+    seeds.map(of_seed).collect()
+}
+
+fn check_one_suggestion(found: &[(Vec<String>, bool)]) {
+    let mut clear: Vec<_> = found
+        .iter()
+        .filter(|(_, limit)| !limit)
+        .map(|(all, _)| all)
+        .collect();
+    clear.dedup();
+    clear.sort();
+    clear.dedup();
+    assert!(clear.len() <= 1, "{found:?}");
+}
+
+#[test]
+fn contract_another_seed_gives_the_same_suggestion() {
+    let folder = TempDir::new().unwrap();
+    for shooter in 1..=3 {
+        let file = write_file(&folder, "player.csv", player(shooter, 60));
+        check_one_suggestion(&suggestions(&file, 1..=3));
+    }
+}
+
+/// `cargo test --test cli campaign_seeds -- --ignored --nocapture`
+#[test]
+#[ignore = "20 minutes"]
+fn campaign_seeds_give_one_suggestion() {
+    let folder = TempDir::new().unwrap();
+    let (mut at_limit, mut all) = (0, 0);
+    for shooter in 1..=20 {
+        let file = write_file(&folder, "player.csv", player(shooter, 60));
+        let found = suggestions(&file, 1..=20);
+        at_limit += found.iter().filter(|(_, limit)| *limit).count();
+        all += found.len();
+        println!(
+            "shooter {shooter}: {:?}",
+            found
+                .iter()
+                .map(|(s, l)| (s.join("+"), *l))
+                .collect::<std::collections::BTreeSet<_>>()
+        );
+        check_one_suggestion(&found);
+    }
+    println!("at the limit: {at_limit} of {all}");
+}

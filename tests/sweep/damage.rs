@@ -306,3 +306,24 @@ fn contract_pipes_and_linked_plots_are_refused_at_once() {
     assert_code(&output, 74);
     assert_eq!(fs::read_to_string(&target).unwrap(), "precious");
 }
+
+/// The final tables are looked at too.
+#[test]
+fn contract_verify_finds_a_damaged_table() {
+    let test = TestFolder::new();
+    let (complete, _) = test.undisturbed();
+    let verify = || bankshot().arg("verify").arg(&complete).output().unwrap();
+    assert_code(&verify(), 0);
+    for name in ["best_shots.csv", "best_shots.parquet", "provenance.json"] {
+        let path = complete.join(name);
+        let valid = fs::read(&path).unwrap();
+        fs::write(&path, &valid[..valid.len() / 2]).unwrap();
+        let answer = verify();
+        assert_code(&answer, 4);
+        assert_printed(&answer, name);
+        fs::remove_file(&path).unwrap();
+        assert_code(&verify(), 4);
+        fs::write(&path, &valid).unwrap();
+    }
+    assert_code(&verify(), 0);
+}

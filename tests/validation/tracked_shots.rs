@@ -12,7 +12,7 @@ use bankshot::math::normal_distribution::quantile;
 use bankshot::measured_shots::columns::Columns;
 use bankshot::measured_shots::court_frame::CourtFrame;
 use bankshot::measured_shots::read::{read, tracker_by_flights};
-use bankshot::measured_shots::shooter_shots::ReadOptions;
+use bankshot::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use bankshot::measured_shots::table::Table;
 use bankshot::model::Preset;
 use bankshot::units::{DEGREE_RAD, FOOT_M, INCH_M};
@@ -198,8 +198,8 @@ fn tracked(
     points
 }
 
-/// P of the fit of a table in `text`; that of the place with the most shots.
-fn probability(text: &str, has_place: bool) -> f64 {
+/// The shots of a table in `text`.
+fn read_shots(text: &str, has_place: bool, height_m: Option<f64>) -> ShooterShots {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("shots.csv");
     std::fs::write(&path, text).unwrap();
@@ -211,7 +211,7 @@ fn probability(text: &str, has_place: bool) -> f64 {
         frame: CourtFrame::named("hoop").unwrap(),
         distance_m: has_place.then_some(13.75 * FOOT_M),
         court_angle_rad: None,
-        release_heights_m: vec![(None, 7.0 * FOOT_M)],
+        release_heights_m: height_m.map(|height_m| (None, height_m)).into_iter().collect(),
         backspin_rad_s: None,
         noise: Tracker::named("noah").unwrap().noise,
     };
@@ -220,8 +220,13 @@ fn probability(text: &str, has_place: bool) -> f64 {
     if let Some(noise) = tracker_by_flights(&table, &columns, &options, &simulator) {
         options.noise = noise;
     }
-    let shooters = read(&table, &columns, &options, &simulator).unwrap();
-    let shots = &shooters[0];
+    read(&table, &columns, &options, &simulator).unwrap().remove(0)
+}
+
+/// P of the fit of a table in `text`; that of the place with the most shots.
+fn probability(text: &str, has_place: bool) -> f64 {
+    let physics = Preset::named("ncaa").unwrap().physics();
+    let shots = &read_shots(text, has_place, Some(7.0 * FOOT_M));
     let test = ShooterTest {
         name: "test",
         places: &shots.places,
@@ -315,6 +320,9 @@ fn val_a_fast_tracker_is_taken_from_the_file() {
         (by_tracks - by_landings).abs() < 2.0,
         "{by_tracks} {by_landings}"
     );
+    // The ball leaves the hand 2.13 m above the floor.
+    let height_m = read_shots(&text, false, None).places[0].release_height_m;
+    assert!((height_m - 7.0 * FOOT_M).abs() < 0.12, "{height_m}");
 }
 
 /// Thirty flights from many places: the interval of the drag, and its middle.

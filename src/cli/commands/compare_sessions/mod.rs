@@ -30,8 +30,8 @@ Examples:
   bankshot compare-sessions season.csv --plot season.svg
   bankshot compare-sessions season.csv --session September --session March
 
-A file with a column session needs no second one; with several shooters, each is compared. Sessions that are numbers, or dates with \
-the year first (2026-11-03), are compared in their order, others in that of the file, or as --session names them.")]
+A file with a column session needs no second one; with several shooters, each is compared. Sessions that are numbers or \
+dates are compared in their order, others in that of the file, or as --session names them.")]
 pub(crate) struct CompareSessionsOptions {
     /// The first session, or a file with a column session that has two values.
     pub(crate) before: PathBuf,
