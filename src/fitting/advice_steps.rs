@@ -34,8 +34,6 @@ const SAME_PITCH_RAD: f64 = 0.1 * DEGREE_RAD;
 /// A change is supported from this share of the draws on: in so many it gains, and goes to one
 /// side.
 const SUPPORTED: f64 = 0.975;
-/// The density of the standard normal distribution where it has [`SUPPORTED`] below it.
-const DENSITY_AT_SUPPORTED: f64 = 0.058_45;
 /// So many standard errors of the computation to both sides of a limit are at the limit: another
 /// seed could decide otherwise.
 const GUARD: f64 = 2.5;
@@ -438,13 +436,18 @@ impl Shooting<'_> {
         let simulation = libm::hypot(difference.simulation_standard_error(), SEARCH_ERROR);
         let count = self.draws.len() as f64;
         let of_mean = libm::hypot(simulation, interval.sd / count.sqrt());
-        let share = difference.share_positive();
-        let of_share = libm::hypot(
-            error_of_share(share, self.draws.len()),
-            DENSITY_AT_SUPPORTED * simulation / interval.sd.max(1e-9),
-        );
         let worth = Support::of(interval.mean, WORTH_A_CHANGE, of_mean);
-        worth.min(Support::of(share, SUPPORTED, of_share))
+        // All draws share the error of the simulation.
+        let [least, most] = [GUARD, -GUARD].map(|guard| {
+            let share = difference.share_above(guard * simulation);
+            Support::of(share, SUPPORTED, error_of_share(share, self.draws.len()))
+        });
+        let positive = if least == most {
+            least
+        } else {
+            Support::AtTheLimit
+        };
+        worth.min(positive)
     }
 
     /// Whether the draws support the side of a change.

@@ -121,8 +121,14 @@ impl DrawProbabilities {
     /// The share of the draws in which this, a difference, is positive.
     #[must_use]
     pub fn share_positive(&self) -> f64 {
-        let positive = self.of_draws.iter().filter(|p| **p > 0.0).count();
-        positive as f64 / self.of_draws.len() as f64
+        self.share_above(0.0)
+    }
+
+    /// The share of the draws in which this is above a limit.
+    #[must_use]
+    pub fn share_above(&self, limit: f64) -> f64 {
+        let above = self.of_draws.iter().filter(|p| **p > limit).count();
+        above as f64 / self.of_draws.len() as f64
     }
 
     /// Draw by draw, this less `other`.

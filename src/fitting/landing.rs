@@ -124,7 +124,7 @@ pub fn release_of_landing(
 ///
 /// # Errors
 /// No release lands like this.
-pub(crate) fn release_of_uncertain_landing(
+pub fn release_of_uncertain_landing(
     simulator: &Simulator,
     place: &Place,
     (landing, landing_covariance): (&Landing, &Matrix3<f64>),
@@ -169,7 +169,8 @@ pub(crate) fn release_of_uncertain_landing(
 /// and polar angle change with those that land alike from the place of the group.
 ///
 /// `None` where one of the two does not rise to the hoop.
-pub(crate) fn own_path(
+#[must_use]
+pub fn own_path(
     simulator: &Simulator,
     (own_place, own_values): (&Place, &Values),
     (place, values): (&Place, &Values),

@@ -56,8 +56,10 @@ pub use flight_fit::{
     DragEstimate, FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight,
 };
 pub use interval::Interval;
-pub use landing::{CENTRE_DEPTH_M, Landing, LandingError, landing_of, release_of_landing};
-pub(crate) use landing::{own_path, release_of_uncertain_landing};
+pub use landing::{
+    CENTRE_DEPTH_M, Landing, LandingError, landing_of, own_path, release_of_landing,
+    release_of_uncertain_landing,
+};
 pub use measured_release::{
     Covariance, MeasuredRelease, OwnPath, Place, PlaceScatter, VALUE_NAMES, Values, nominal_of,
     values_of,

@@ -115,26 +115,17 @@ fn join_nearest(groups: &mut Vec<Group>, limit_m: f64, joins: impl Fn(&Group) ->
         let other = groups.remove(j);
         of_each.remove(j);
         groups[i].join(&other);
-        for k in 0..groups.len() {
-            let is_stale = match of_each[k] {
-                Some((_, partner)) => partner == i || partner == j,
-                None => false,
-            };
-            if is_stale || k == i {
-                of_each[k] = nearest(groups, k);
-                continue;
-            }
-            if let Some((_, partner)) = &mut of_each[k]
-                && *partner > j
-            {
-                *partner -= 1;
-            }
-            // The group that grew may have come nearer.
-            if k < i {
-                let again = nearest(groups, k);
-                of_each[k] = again;
-            }
-        }
+        of_each = of_each
+            .iter()
+            .enumerate()
+            .map(|(k, pair)| match pair {
+                // The group that grew may have come nearer; its partners are others now.
+                _ if k <= i => nearest(groups, k),
+                Some((_, partner)) if *partner == j => nearest(groups, k),
+                Some((distance, partner)) if *partner > j => Some((*distance, partner - 1)),
+                pair => *pair,
+            })
+            .collect();
     }
 }
 

@@ -66,15 +66,15 @@ struct Shot {
 impl Shot {
     fn start(&self) -> State {
         let [x, y, z] = self.from;
-        let towards = (-y).atan2(-x) - self.aim_rad;
-        let (up, along) = self.pitch_rad.sin_cos();
+        let towards = libm::atan2(-y, -x) - self.aim_rad;
+        let (up, along) = libm::sincos(self.pitch_rad);
         let v = self.speed_m_s;
         [
             x,
             y,
             z,
-            v * along * towards.cos(),
-            v * along * towards.sin(),
+            v * along * libm::cos(towards),
+            v * along * libm::sin(towards),
             v * up,
         ]
     }
@@ -97,12 +97,12 @@ impl Shot {
         let [before, after] = [states[states.len() - 2], states[states.len() - 1]];
         let part = (before[2] - PLANE_M) / (before[2] - after[2]);
         let at: State = std::array::from_fn(|i| before[i] + part * (after[i] - before[i]));
-        let away = self.from[1].atan2(self.from[0]);
-        let (sin, cos) = away.sin_cos();
+        let away = libm::atan2(self.from[1], self.from[0]);
+        let (sin, cos) = libm::sincos(away);
         [
             9.0 - (at[0] * cos + at[1] * sin) / INCH_M,
             (at[1] * cos - at[0] * sin) / INCH_M,
-            (-at[5]).atan2(at[3].hypot(at[4])) / DEGREE_RAD,
+            libm::atan2(-at[5], libm::hypot(at[3], at[4])) / DEGREE_RAD,
         ]
     }
 }
@@ -168,9 +168,14 @@ fn behind_s(before_s: f64) -> f64 {
     back
 }
 
+/// The same for a push with a constant force from rest in 0.35 s.
+fn behind_s_of_constant_force(before_s: f64) -> f64 {
+    before_s - before_s * before_s / 0.7
+}
+
 /// A shot as a tracker sees it, from 0.3 s before the release.
 fn tracked(
-    shot: &Shot,
+    (shot, hand): (&Shot, fn(f64) -> f64),
     drag_coefficient: f64,
     (rate, sd_m, rho): (f64, f64, f64),
     random: &mut ChaCha12Rng,
@@ -183,7 +188,7 @@ fn tracked(
     for frame in first.. {
         let t = (f64::from(frame) + phase) / rate;
         let at: [f64; 3] = if t < 0.0 {
-            std::array::from_fn(|i| states[0][i] - states[0][i + 3] * behind_s(-t))
+            std::array::from_fn(|i| states[0][i] - states[0][i + 3] * hand(-t))
         } else {
             let index = (t / STEP_S) as usize;
             let Some(before) = states.get(index) else {
@@ -211,7 +216,10 @@ fn read_shots(text: &str, has_place: bool, height_m: Option<f64>) -> ShooterShot
         frame: CourtFrame::named("hoop").unwrap(),
         distance_m: has_place.then_some(13.75 * FOOT_M),
         court_angle_rad: None,
-        release_heights_m: height_m.map(|height_m| (None, height_m)).into_iter().collect(),
+        release_heights_m: height_m
+            .map(|height_m| (None, height_m))
+            .into_iter()
+            .collect(),
         backspin_rad_s: None,
         noise: Tracker::named("noah").unwrap().noise,
     };
@@ -220,7 +228,9 @@ fn read_shots(text: &str, has_place: bool, height_m: Option<f64>) -> ShooterShot
     if let Some(noise) = tracker_by_flights(&table, &columns, &options, &simulator) {
         options.noise = noise;
     }
-    read(&table, &columns, &options, &simulator).unwrap().remove(0)
+    read(&table, &columns, &options, &simulator)
+        .unwrap()
+        .remove(0)
 }
 
 /// P of the fit of a table in `text`; that of the place with the most shots.
@@ -244,11 +254,11 @@ fn probability(text: &str, has_place: bool) -> f64 {
     fit.probabilities[most].interval().mean
 }
 
-fn tracks_csv(shots: &[Shot], tracker: (f64, f64, f64), seed: u64) -> String {
+fn tracks_csv(shots: &[Shot], hand: fn(f64) -> f64, tracker: (f64, f64, f64), seed: u64) -> String {
     let mut random = ChaCha12Rng::seed_from_u64(1000 + seed);
     let mut text = String::from("shot,time_s,x_m,y_m,z_m\n");
     for (number, shot) in shots.iter().enumerate() {
-        for (time_s, [x, y, z]) in tracked(shot, 0.45, tracker, &mut random) {
+        for (time_s, [x, y, z]) in tracked((shot, hand), 0.45, tracker, &mut random) {
             let _ = writeln!(text, "{number},{time_s:.4},{x:.4},{y:.4},{z:.4}");
         }
     }
@@ -269,7 +279,7 @@ const ARENA: (f64, f64, f64) = (25.0, 0.12 * FOOT_M, 0.3);
 /// P by trajectories less P by the landings of the same shots, in shots of 100.
 fn difference(places_ft: f64, seed: u64) -> f64 {
     let shots = free_throws(places_ft, 100, seed);
-    let by_tracks = probability(&tracks_csv(&shots, ARENA, seed), false);
+    let by_tracks = probability(&tracks_csv(&shots, behind_s, ARENA, seed), false);
     100.0 * (by_tracks - probability(&landings_csv(&shots), true))
 }
 
@@ -313,7 +323,7 @@ fn campaign_trajectories_against_landings() {
 #[test]
 fn val_a_fast_tracker_is_taken_from_the_file() {
     let shots = free_throws(0.0, 40, 5);
-    let text = tracks_csv(&shots, (100.0, 0.01, 0.0), 5);
+    let text = tracks_csv(&shots, behind_s_of_constant_force, (100.0, 0.01, 0.0), 5);
     let by_tracks = 100.0 * probability(&text, false);
     let by_landings = 100.0 * probability(&landings_csv(&shots), true);
     assert!(
@@ -336,7 +346,11 @@ fn drag(seed: u64) -> (f64, [f64; 2]) {
             let distance = (12.0 + 12.0 * random.random::<f64>()) * FOOT_M;
             let angle = 1.2 * (random.random::<f64>() - 0.5);
             let mut shot = Shot {
-                from: [distance * angle.cos(), distance * angle.sin(), 7.0 * FOOT_M],
+                from: [
+                    distance * libm::cos(angle),
+                    distance * libm::sin(angle),
+                    7.0 * FOOT_M,
+                ],
                 speed_m_s: 7.0,
                 pitch_rad: (50.0 + 2.0 * normal(&mut random)) * DEGREE_RAD,
                 aim_rad: 0.02 * normal(&mut random),
@@ -345,7 +359,7 @@ fn drag(seed: u64) -> (f64, [f64; 2]) {
             while shot.landing(0.45)[0] < 11.0 {
                 shot.speed_m_s += 0.05;
             }
-            let points = tracked(&shot, 0.45, ARENA, &mut random).into_iter();
+            let points = tracked((&shot, behind_s), 0.45, ARENA, &mut random).into_iter();
             let points: Vec<TrackedPoint> = points
                 .map(|(time_s, [x, y, z])| TrackedPoint {
                     time_s,
