@@ -38,12 +38,12 @@ Where the best shot changes much from place to place, many nodes are added; --le
 With --output a stopped table is not lost: what it found is kept beside the file, and the same command goes on with it.
 
 Examples:
-  bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' \\
+  bankshot table robot.toml --distances '7 ft to 20 ft by 1 ft' \\
     --pitch '60 deg' --backspin '2 rev/s'
   bankshot table robot.toml --distances '8 ft, 12 ft, 16 ft' \\
     --angles '0 deg to 60 deg by 15 deg' --kind bank
   bankshot table robot.toml --distances '6 ft to 20 ft by 1 ft' --kind best \\
-    -o ShotTable.java -o shots.csv")]
+    -o ShotTable.java -o table.csv")]
 pub(crate) struct TableOptions {
     /// The launcher's profile.
     pub(crate) profile: PathBuf,
