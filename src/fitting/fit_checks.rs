@@ -553,8 +553,7 @@ mod tests {
     use rand::rngs::ChaCha12Rng;
     use rand::{RngExt, SeedableRng};
 
-    /// Whoever did not ask for a t distribution is not told so: a fit by its own choice says that
-    /// far releases are frequent, at the level of that choice.
+    /// A fit that chooses a t distribution by itself gives the reason, at the level of its choice.
     #[test]
     fn contract_the_words_on_tails_follow_the_choice() {
         let sample = |seed: u64| -> Vec<MeasuredRelease> {
