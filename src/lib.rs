@@ -64,10 +64,19 @@ pub mod best_shot;
 pub mod fitting;
 
 #[cfg(feature = "app")]
-pub mod output;
+pub mod files;
 
 #[cfg(feature = "app")]
 pub mod measured_shots;
+
+#[cfg(feature = "app")]
+pub mod store;
+
+#[cfg(feature = "app")]
+pub mod answers;
+
+#[cfg(feature = "app")]
+pub mod present;
 
 #[cfg(feature = "app")]
 pub mod sweep;

@@ -8,7 +8,7 @@ use bankshot::dynamics::{
     BatchWorkspace, Integrator, OutcomeKind, Release, ReleaseStates, Simulator,
 };
 use bankshot::model::{BallState, Physics, Preset, SolidId};
-use bankshot::output::simulation_files::release_columns::{ReleaseColumns, release_of_values};
+use bankshot::present::simulation_files::release_columns::{ReleaseColumns, release_of_values};
 use bankshot::probability::Progress;
 use bankshot::units::DEGREE_RAD;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};

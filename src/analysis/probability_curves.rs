@@ -4,7 +4,7 @@ use crate::math::evenly_spaced::Linspace;
 use crate::probability::{NominalProbabilities, Sampler, Silent, TABLE_RMS_ERROR};
 use crate::search_space::TablePlan;
 use crate::shooter::{Nominal, NominalVariable, Profile};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Values of a curve that is sampled.
 const SAMPLED_VALUES: usize = 13;
@@ -12,7 +12,7 @@ const SAMPLED_VALUES: usize = 13;
 const SAMPLES: u64 = 16384;
 
 /// P at one value of a variable.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// The value (SI units).
     pub value: f64,
@@ -24,7 +24,7 @@ pub struct CurvePoint {
 }
 
 /// P along one variable of a nominal shot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbabilityCurve {
     /// The variable.
     pub variable: NominalVariable,

@@ -13,7 +13,7 @@ use crate::shooter::{
     Nominal, NominalVariable, Profile, ReleaseDistribution, ReleaseVariable, ShotKind,
 };
 use crate::units::FOOT_M;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Speeds that a re-optimised shot is tried with, in standard deviations of the speed from its own.
 const SPEEDS: [f64; 5] = [-0.5, -0.25, 0.0, 0.25, 0.5];
@@ -27,7 +27,7 @@ const A_TENTH_LESS: f64 = 0.9;
 const HALVINGS: u32 = 12;
 
 /// A difference of two probabilities.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// The difference.
     pub value: f64,
@@ -44,7 +44,7 @@ impl Difference {
 }
 
 /// The values of one variable between which the error-free shot is made, the other variables fixed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShotWindow {
     /// The variable.
     pub variable: NominalVariable,
@@ -77,7 +77,7 @@ impl ShotWindow {
 }
 
 /// What one error costs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorCost {
     /// The variable with the error.
     pub variable: ReleaseVariable,
@@ -88,7 +88,7 @@ pub struct ErrorCost {
 }
 
 /// The gain in P of a changed shot, its speed re-optimised among shots of the same kind.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variation {
     /// The changed value, SI units: backspin, or height of the release.
     pub value: f64,
@@ -97,7 +97,7 @@ pub struct Variation {
 }
 
 /// How P depends on the errors, backspin and height.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// Windows in speed, pitch angle and polar angle.
     pub windows: [ShotWindow; 3],

@@ -12,8 +12,8 @@ pub use crate::shooter::ShotKind;
 pub use best_by_pitch::{ShotAtPitch, best_by_pitch};
 pub use found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
 pub use physics_comparison::{
-    PhysicsComparison, PhysicsRow, PhysicsVariant, SameShot, SameShotProbability, compare_physics,
-    likely_board_restitutions, physics_variants, together,
+    ChangeOfP, PhysicsChange, PhysicsComparison, PhysicsOf, PhysicsRow, PhysicsVariant, SameShot,
+    SameShotProbability, compare_physics, likely_board_restitutions, physics_variants, together,
 };
 pub use search::{find, find_kinds};
 pub use shot_table::{

@@ -49,7 +49,7 @@ Examples:
 
 /// How to shoot a basketball, given your own errors: a parallel batch probability engine.
 #[derive(Debug, Parser)]
-#[command(version, about, after_help = EXIT_CODES, max_term_width = 80)]
+#[command(version, after_help = EXIT_CODES, max_term_width = 80)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,

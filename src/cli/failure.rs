@@ -5,6 +5,7 @@ use crate::config::ConfigError;
 use crate::dynamics::StateError;
 use crate::search_space::PlanError;
 use crate::shooter::{IdentityError, ProfileError};
+use crate::store;
 use crate::sweep::SweepFolderError;
 use crate::sweep::sqlite_results::StoreError;
 use crate::units::suggestion;
@@ -129,6 +130,21 @@ impl From<SweepFolderError> for Failure {
         Self {
             code,
             message: error.to_string(),
+        }
+    }
+}
+
+impl From<store::StoreError> for Failure {
+    fn from(error: store::StoreError) -> Self {
+        match error {
+            store::StoreError::Damaged { .. } => Self {
+                code: code::DAMAGED,
+                message: error.to_string(),
+            },
+            store::StoreError::Io { file, error } => Self::io(file.display(), &error),
+            store::StoreError::Refused(message) => Self::usage(message),
+            store::StoreError::Config(error) => error.into(),
+            store::StoreError::Profile(error) => error.into(),
         }
     }
 }

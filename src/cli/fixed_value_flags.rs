@@ -1,10 +1,11 @@
 //! Values of a nominal shot that a command's flags take out of its search.
 
-use super::changed_profile_text::rewritten;
 use super::failure::Failure;
+use super::loaded_profile::{LoadedProfile, set, table_mut};
 use crate::shooter::{NominalVariable, Profile};
 use crate::units::{self, DEGREE_RAD, REV_RAD};
 use clap::Args;
+use toml_edit::Array;
 
 /// The flags of what is fixed.
 #[derive(Args, Debug)]
@@ -80,36 +81,29 @@ impl FixedOptions {
         self.given().map(checked).collect()
     }
 
-    /// The text of a profile in which these values are fixed. A value stands as it was written, so
-    /// that it is read as the same number.
-    pub(crate) fn profile_text(&self, profile: &Profile, text: &str) -> Result<String, Failure> {
+    /// The profile in which these values are fixed. A value stands as it was written, so that it is
+    /// read as the same number.
+    pub(crate) fn changed(&self, loaded: LoadedProfile) -> Result<LoadedProfile, Failure> {
         let fixed = self.variables();
-        let refuse = |error: String| Failure::usage(format!("the profile: {error}"));
-        let parsed = text.parse::<toml::Table>();
-        let mut root = parsed.map_err(|error| refuse(error.to_string()))?;
-        let mut set = |table: &str, key: &str, value: toml::Value| {
-            let table = root
-                .entry(table)
-                .or_insert_with(|| toml::Table::new().into());
-            if let Some(table) = table.as_table_mut() {
-                table.insert(key.to_owned(), value);
-            }
-        };
-        for (variable, text) in self.given() {
-            set("nominal", variable.name(), text.into());
+        // A message about a value names its flag.
+        if self.values(&loaded.profile)?.is_empty() {
+            return Ok(loaded);
         }
-        let chosen: Vec<toml::Value> = profile
-            .search()
-            .choice
-            .iter()
+        let choice = loaded.profile.search().choice.iter();
+        let chosen: Array = choice
             .filter(|chosen| !fixed.contains(chosen))
-            .map(|chosen| chosen.name().into())
+            .map(NominalVariable::name)
             .collect();
-        set("search", "choose", chosen.into());
-        let flags: String = self
+        let flags: Vec<String> = self
             .given()
-            .map(|(variable, text)| format!(" --{} '{text}'", variable.name()))
+            .map(|(variable, text)| format!("--{} '{text}'", variable.name()))
             .collect();
-        rewritten(text, &root, &flags)
+        loaded.edited(&flags.join(" "), |document| {
+            for (variable, text) in self.given() {
+                set(table_mut(document, "nominal"), variable.name(), text);
+            }
+            set(table_mut(document, "search"), "choose", chosen);
+            Ok(())
+        })
     }
 }

@@ -19,7 +19,7 @@ use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
 use crate::model::{DEFAULT_PRESET, Physics};
-use crate::output::fit_files::fit_json::FitSource;
+use crate::present::fit_files::fit_json::FitSource;
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
 use std::collections::BTreeSet;

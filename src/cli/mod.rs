@@ -2,7 +2,6 @@
 //!
 //! [`main`] is the program; [`answer_of`] runs one command inside another program.
 
-mod changed_profile_text;
 mod command_line;
 mod commands;
 mod config_files;
@@ -10,15 +9,15 @@ mod embedded_session;
 mod failure;
 mod fit_folder;
 mod fixed_value_flags;
+mod loaded_profile;
 mod measured_shots_flags;
 mod nominal_shot_flags;
 mod output_files;
 mod plot_files;
+mod profile_flags;
 mod progress_bars;
-mod ring_told_by_makes;
 mod run_folder;
 mod scatter_flags;
-mod shooter_folders;
 mod signals;
 mod terminal;
 mod value_lists;

@@ -1,9 +1,8 @@
-//! The nominal shot of a command and its place: from the flags, then from the profile's tables
-//! `[nominal]` and `[location]`.
+//! The nominal shot of a command: from the flags, then from the profile's table `[nominal]`.
 
 use super::failure::Failure;
-use crate::shooter::{Location, Nominal, NominalVariable, Profile};
-use crate::units::{self, DEGREE_RAD, Dimension, REV_RAD};
+use crate::shooter::{Nominal, NominalVariable, Profile};
+use crate::units::{self, DEGREE_RAD, REV_RAD};
 use clap::Args;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -38,70 +37,6 @@ pub(crate) struct NominalOptions {
     /// Spin about the vertical [default: the profile's, else none].
     #[arg(long, allow_hyphen_values = true)]
     side_spin: Option<String>,
-}
-
-/// The flags of a place. Each overrides the profile's `[location]` table.
-#[derive(Args, Debug)]
-pub(crate) struct PlaceOptions {
-    /// Distance from the hoop's centre, such as '12 ft' [default: the profile's].
-    #[arg(long, allow_hyphen_values = true)]
-    distance: Option<String>,
-    /// Court angle, such as '30 deg' [default: the profile's].
-    #[arg(long, allow_hyphen_values = true)]
-    angle: Option<String>,
-}
-
-impl PlaceOptions {
-    pub(crate) fn is_given(&self) -> bool {
-        self.distance.is_some() || self.angle.is_some()
-    }
-
-    /// The profile at this place.
-    pub(crate) fn moved(&self, profile: Profile) -> Result<Profile, Failure> {
-        if !self.is_given() {
-            return Ok(profile);
-        }
-        let value = |flag: &str, text: &Option<String>, dimension, own: f64| match text {
-            None => Ok(own),
-            Some(text) => units::parse(text, dimension)
-                .map_err(|error| Failure::usage(format!("--{flag}: {error}"))),
-        };
-        let own = profile.location();
-        let place = Location {
-            distance_m: value(
-                "distance",
-                &self.distance,
-                Dimension::Length,
-                own.distance_m,
-            )?,
-            angle_rad: value("angle", &self.angle, Dimension::Angle, own.angle_rad)?,
-        };
-        place.check(profile.physics()).map_err(|error| {
-            let given = if self.distance.is_some() {
-                "distance"
-            } else {
-                "angle"
-            };
-            Failure::usage(format!("--{given}: {error}"))
-        })?;
-        Ok(profile.moved_to(place)?)
-    }
-
-    /// The `[location]` table of the place, if a flag gives one; `own` is that of the profile. What
-    /// a flag gives stands as it was written, so that it is read as the same number.
-    pub(crate) fn table(&self, own: &Location) -> Option<String> {
-        if !self.is_given() {
-            return None;
-        }
-        let value = |flag: &Option<String>, own: String| {
-            toml::Value::String(flag.clone().unwrap_or(own)).to_string()
-        };
-        Some(format!(
-            "[location]\ndistance = {}\nangle = {}\n",
-            value(&self.distance, format!("{} m", own.distance_m)),
-            value(&self.angle, format!("{} rad", own.angle_rad))
-        ))
-    }
 }
 
 impl NominalOptions {

@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, code};
 use super::terminal::print_remark;
-use crate::output::atomic_file;
+use crate::files::atomic_file;
 use std::path::{Path, PathBuf};
 
 /// How an answer is written.

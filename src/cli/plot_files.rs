@@ -2,7 +2,7 @@
 
 use super::failure::{Failure, code};
 use super::terminal::{print_prose, print_remark};
-use crate::output::atomic_file;
+use crate::files::atomic_file;
 use crate::plots::rasterise::to_png;
 use crate::plots::svg::Plot;
 use std::path::Path;

@@ -1,30 +1,31 @@
 //! The folder of a run of `best`: its name and its files.
 
 use super::failure::{Failure, code};
+use crate::answers::best_shots::BestShotsAnswer;
+use crate::answers::json::in_units;
 use crate::best_shot::BestShots;
-use crate::output::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
-use crate::output::best_shot_json::best_shots_json;
-use crate::output::{atomic_file, json_object};
+use crate::files::atomic_file;
+use crate::present::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
+use crate::present::json_object;
 use crate::shooter::Profile;
+use crate::store::best_run::{ANSWER_FILE, BestRun};
 use crate::sweep::SweepConfig;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The file beside the plots of a sweep that names the sweep's folder, and that of the sweep it is
-/// compared with.
-pub(crate) const SWEEP_LINK: &str = "of_sweep.json";
 /// The folder, in that of a comparison, of the best shots of the other shooter.
 pub(crate) const AGAINST_FOLDER: &str = "against";
 /// The file that says which configuration a folder belongs to.
 const PROVENANCE: &str = "provenance.json";
 /// The files of a run.
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
     "best_shots.csv",
     "best_shots.json",
     "curves.csv",
     "sensitivity.csv",
     "profile.toml",
     "plan.json",
+    ANSWER_FILE,
     PROVENANCE,
 ];
 
@@ -190,13 +191,15 @@ pub(crate) fn write_best_shots(
     provenance.push(("seed".to_owned(), profile.search().seed.into()));
     provenance.push(("table_shots".to_owned(), best.plan.shots.into()));
     provenance.push(("configuration_si".to_owned(), configuration));
+    let answer = BestRun::of(best, units).sealed(&profile_text);
     let contents = [
         best_shots_csv(profile, best, units),
-        json(&best_shots_json(profile, best, units)),
+        json(&in_units(&BestShotsAnswer::new(profile, best), units)),
         curves_csv(best, units),
         sensitivity_csv(best, units),
         profile_text.into_bytes(),
         json(&plan),
+        answer.into_bytes(),
         json(&json_object::object(provenance)),
     ];
     for (name, bytes) in FILES.into_iter().zip(contents) {

@@ -1,12 +1,10 @@
 //! Errors of a profile that a flag makes smaller or greater.
 
-use super::changed_profile_text::rewritten;
 use super::failure::Failure;
-use crate::config::parse_profile;
-use crate::shooter::{Profile, ReleaseDispersion};
-use crate::units::{self, Dimension};
+use super::loaded_profile::{LoadedProfile, set, table_mut};
+use crate::units::{self, Dimension, rounded};
 use clap::Args;
-use std::path::Path;
+use toml_edit::{Item, Value};
 
 /// The flag of changed errors.
 #[derive(Args, Debug)]
@@ -39,47 +37,54 @@ impl ScatterOptions {
         }
     }
 
-    /// A profile with changed errors, and its text with them.
-    pub(crate) fn changed(
-        &self,
-        (profile, text): (Profile, String),
-        origin: &Path,
-    ) -> Result<(Profile, String), Failure> {
-        if self.scatter.is_empty() {
-            return Ok((profile, text));
-        }
-        let refuse = |error: String| Failure::usage(format!("the profile: {error}"));
-        let parsed = text.parse::<toml::Table>();
-        let mut root = parsed.map_err(|error| refuse(error.to_string()))?;
-        let errors = root
-            .get_mut("shooter")
-            .and_then(|shooter| shooter.get_mut("errors"))
-            .and_then(toml::Value::as_table_mut)
-            .ok_or_else(|| refuse("has no table [shooter.errors]".to_owned()))?;
-        let mut named: Vec<usize> = Vec::new();
+    /// The profile with changed errors, each in the unit that it is written in.
+    pub(crate) fn changed(&self, loaded: LoadedProfile) -> Result<LoadedProfile, Failure> {
+        let mut factors: Vec<(usize, f64)> = Vec::new();
         for text in &self.scatter {
             let (number, factor) = error_and_factor(text)?;
-            if named.contains(&number) {
+            if factors.iter().any(|(other, _)| *other == number) {
                 let name = ERRORS[number].0;
                 return Err(Failure::usage(format!("--scatter: {name} is given twice")));
             }
-            named.push(number);
-            for key in ERRORS[number].1 {
-                errors.remove(*key);
-            }
-            for (key, value) in scaled(number, factor, &profile.shooter().dispersion) {
-                errors.insert(key.to_owned(), value);
-            }
+            factors.push((number, factor));
         }
-        let flags: String = self
-            .scatter
-            .iter()
-            .map(|text| format!(" --scatter '{text}'"))
-            .collect();
-        let text = rewritten(&text, &root, &flags)?;
-        let profile = parse_profile(&text, &format!("{} as changed", origin.display()))?;
-        Ok((profile, text))
+        if factors.is_empty() {
+            return Ok(loaded);
+        }
+        let flags = self.scatter.iter();
+        let flags: Vec<String> = flags.map(|text| format!("--scatter '{text}'")).collect();
+        loaded.edited(&flags.join(" "), |document| {
+            let errors = table_mut(document, "shooter").get_mut("errors");
+            let errors = errors
+                .and_then(Item::as_table_like_mut)
+                .ok_or_else(|| Failure::usage("the profile: has no table [shooter.errors]"))?;
+            for (number, factor) in factors {
+                for key in ERRORS[number].1 {
+                    if let Some(value) = errors.get(key).and_then(|item| scaled(item, factor)) {
+                        set(errors, key, value);
+                    }
+                }
+            }
+            Ok(())
+        })
     }
+}
+
+/// A value such as `0.25 ft/s` or `0.03`, scaled in its unit.
+fn scaled(item: &Item, factor: f64) -> Option<Value> {
+    let scaled = |value: f64| rounded(factor * value);
+    Some(match item.as_value()? {
+        Value::String(text) => {
+            let text = text.value().trim();
+            let ends = (0..=text.len()).filter(|end| text.is_char_boundary(*end));
+            let mut number = ends.filter_map(|end| Some((text[..end].parse().ok()?, &text[end..])));
+            let (number, unit): (f64, &str) = number.next_back()?;
+            format!("{}{unit}", scaled(number)).into()
+        }
+        Value::Integer(number) => scaled(*number.value() as f64).into(),
+        Value::Float(number) => scaled(*number.value()).into(),
+        _ => return None,
+    })
 }
 
 /// The place in [`ERRORS`] and the factor of `speed=-20%`.
@@ -102,28 +107,4 @@ fn error_and_factor(text: &str) -> Result<(usize, f64), Failure> {
         return Err(refuse("is out of range"));
     }
     Ok((number, 1.0 + share))
-}
-
-/// The keys of an error, scaled.
-fn scaled(
-    number: usize,
-    factor: f64,
-    dispersion: &ReleaseDispersion,
-) -> Vec<(&'static str, toml::Value)> {
-    let with = |value: f64, unit: &str| toml::Value::from(format!("{} {unit}", factor * value));
-    let bare = |value: f64| toml::Value::from(factor * value);
-    match number {
-        0 => vec![
-            ("c10", with(dispersion.c10_m_s, "m/s")),
-            ("c11", bare(dispersion.c11)),
-            ("c12", with(dispersion.c12_s_m, "s/m")),
-        ],
-        1 => vec![("c20", with(dispersion.c20_rad, "rad"))],
-        2 => vec![("c30", with(dispersion.c30_rad, "rad"))],
-        _ => vec![
-            ("c40", with(dispersion.c40_rad_s, "rad/s")),
-            ("c41", bare(dispersion.c41)),
-            ("c42", with(dispersion.c42_s_rad, "s/rad")),
-        ],
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::failure::code;
 use super::terminal::print_remark;
-use crate::output::atomic_file;
+use crate::files::atomic_file;
 use std::sync::Mutex;
 
 /// The remark to print on a signal.
@@ -63,7 +63,19 @@ fn is_ignored(signal: i32) -> bool {
 /// Handles Ctrl-C.
 #[cfg(not(unix))]
 pub(crate) fn handle() {
-    let _ = ctrlc::set_handler(|| exit(code::INTERRUPTED));
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    let is_pressed = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&is_pressed);
+    if signal_hook::flag::register(signal_hook::consts::SIGINT, flag).is_err() {
+        return;
+    }
+    let _ = std::thread::Builder::new().spawn(move || {
+        while !is_pressed.load(Ordering::Relaxed) {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+        }
+        exit(code::INTERRUPTED);
+    });
 }
 
 /// Writes a byte to a file if the program aborts.

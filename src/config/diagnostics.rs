@@ -12,6 +12,28 @@ pub struct Diagnostic {
     pub key: String,
     /// What is wrong and what is allowed.
     pub message: String,
+    /// Its sort, for what is said beside it.
+    pub(super) problem: Problem,
+}
+
+/// The sort of a [`Diagnostic`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Problem {
+    /// The key is not given.
+    Missing,
+    /// The value is not written as a quantity of this dimension is.
+    Writing,
+    /// Another one.
+    #[default]
+    Other,
+}
+
+impl Diagnostic {
+    /// The same, of a sort.
+    pub(super) fn of(mut self, problem: Problem) -> Self {
+        self.problem = problem;
+        self
+    }
 }
 
 /// All errors in a configuration file.

@@ -14,7 +14,7 @@ pub use diagnostics::{ConfigError, Diagnostic};
 pub use locations_csv::{NamedLocations, parse_locations};
 #[cfg(feature = "app")]
 pub use physics_table::is_physics_alone;
-pub use physics_table::{has_physics_table, parse_physics};
+pub use physics_table::parse_physics;
 pub use profile_file::{MAX_FILE_BYTES, MAX_TOML_BYTES, parse_profile};
 #[cfg(feature = "app")]
 pub(crate) use profile_file::{ReadSettings, read_settings, read_settings_of};

@@ -1,9 +1,9 @@
 //! The table `[physics]`: constants of the model, and the integrator.
 
-use super::diagnostics::{ConfigError, Diagnostic};
+use super::diagnostics::{ConfigError, Diagnostic, Problem};
 use super::toml_reader::{TableReader, parse_toml};
 use crate::dynamics::{Integrator, Precision};
-use crate::model::{BoardEdge, DEFAULT_PRESET, PRESETS, Physics, Preset, SolidId};
+use crate::model::{BoardEdge, CONSTANTS, DEFAULT_PRESET, PRESETS, Physics, Preset, SolidId};
 use crate::units::{Dimension, suggestion};
 
 /// Steps of the paper's integrator that a file can give, s.
@@ -29,18 +29,12 @@ pub fn parse_physics(text: &str, origin: &str) -> Result<(Physics, Integrator), 
                     span: root.as_written(&key).1,
                     key,
                     message: format!("must be {}", error.allowed),
+                    problem: Problem::Other,
                 });
             }
         }
         Some((physics, integrator))
     })
-}
-
-/// Whether a TOML text has a `[physics]` table. (One that is not TOML has none.)
-#[must_use]
-pub fn has_physics_table(text: &str) -> bool {
-    text.parse::<toml::Table>()
-        .is_ok_and(|table| table.contains_key("physics"))
 }
 
 /// Whether a text has a physics and no shooter.
@@ -79,46 +73,20 @@ fn read_constants(
     physics: &mut Physics,
     diagnostics: &mut Vec<Diagnostic>,
 ) {
-    let p = physics;
-    let constants: [(&'static str, Dimension, &mut f64); 17] = [
-        ("ball_radius", Dimension::Length, &mut p.ball_radius_m),
-        ("ball_mass", Dimension::Mass, &mut p.ball_mass_kg),
-        ("inertia_ratio", Dimension::Number, &mut p.inertia_ratio),
-        ("ring_radius", Dimension::Length, &mut p.ring_radius_m),
-        (
-            "ring_tube_diameter",
-            Dimension::Length,
-            &mut p.ring_tube_diameter_m,
-        ),
-        ("bracket_width", Dimension::Length, &mut p.bracket_width_m),
-        ("board_distance", Dimension::Length, &mut p.board_distance_m),
-        ("board_width", Dimension::Length, &mut p.board_width_m),
-        ("board_height", Dimension::Length, &mut p.board_height_m),
-        (
-            "board_centre_height",
-            Dimension::Length,
-            &mut p.board_centre_height_m,
-        ),
-        ("hoop_height", Dimension::Length, &mut p.hoop_height_m),
-        ("gravity", Dimension::Acceleration, &mut p.gravity_m_s2),
-        ("air_density", Dimension::Density, &mut p.air.density_kg_m3),
-        (
-            "drag_coefficient",
-            Dimension::Number,
-            &mut p.air.drag_coefficient,
-        ),
-        ("lift_slope", Dimension::Number, &mut p.air.lift_slope),
-        ("time_limit", Dimension::Time, &mut p.time_limit_s),
-        ("lodged_after", Dimension::Time, &mut p.lodged_after_s),
-    ];
-    for (key, dimension, constant) in constants {
-        if let Some(value) = table.quantity(key, dimension, diagnostics) {
-            *constant = value;
+    // Those of the contacts can be given for both at once.
+    let of_contacts = ContactKeys::ALL.iter().flat_map(|of| of.keys);
+    let of_contacts: Vec<&str> = of_contacts.collect();
+    for constant in CONSTANTS {
+        if of_contacts.contains(&constant.key) {
+            continue;
+        }
+        if let Some(value) = table.quantity(constant.key, constant.dimension, diagnostics) {
+            (constant.set)(physics, value);
         }
     }
-    read_altitude(table, p, diagnostics);
+    read_altitude(table, physics, diagnostics);
     if let Some(radius_m) = table.quantity("board_edge_radius", Dimension::Length, diagnostics) {
-        p.board_edge = BoardEdge::Rounded { radius_m };
+        physics.board_edge = BoardEdge::Rounded { radius_m };
     }
 }
 
@@ -194,6 +162,12 @@ struct ContactKeys {
 }
 
 impl ContactKeys {
+    const ALL: [Self; 4] = [
+        Self::STIFFNESS,
+        Self::DAMPING,
+        Self::FRICTION,
+        Self::RESTITUTION,
+    ];
     const STIFFNESS: Self = Self {
         dimension: Dimension::Stiffness,
         keys: ["stiffness", "board_stiffness", "hoop_stiffness"],

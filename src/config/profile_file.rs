@@ -1,6 +1,6 @@
 //! A shooter's profile as a TOML file.
 
-use super::diagnostics::{ConfigError, Diagnostic};
+use super::diagnostics::{ConfigError, Diagnostic, Problem};
 use super::location_table::read_location;
 use super::physics_table::read_physics;
 use super::search_tables::{read_grid, read_output, read_search};
@@ -99,6 +99,7 @@ pub(crate) fn read_settings_of(
                 span,
                 key,
                 message: error.message,
+                problem: Problem::Other,
             });
         }
     }

@@ -3,7 +3,8 @@
 //! The reader of each table is what decides; a test holds the keys here against those that it
 //! knows.
 
-use crate::model::PRESETS;
+use crate::model::{CONSTANTS, PRESETS};
+use crate::units::Dimension;
 use serde_json::{Map, Value, json};
 
 /// What a value is written as.
@@ -195,7 +196,8 @@ const GRID: &[Key] = &[
     ),
 ];
 
-const PHYSICS: &[Key] = &[
+/// What the table of the physics has beside [`CONSTANTS`].
+const MORE_OF_PHYSICS: &[Key] = &[
     ("preset", Preset, "The ball and the hoop."),
     (
         "restitution",
@@ -210,85 +212,15 @@ const PHYSICS: &[Key] = &[
         "Instead of restitution: the damping of the ball.",
     ),
     (
-        "board_damping",
-        Quantity("20 kg/s"),
-        "The same of the board alone.",
-    ),
-    (
-        "hoop_damping",
-        Quantity("20 kg/s"),
-        "The same of the hoop alone.",
-    ),
-    (
         "stiffness",
         Quantity("29000 N/m"),
         "Stiffness of the contacts.",
     ),
-    (
-        "board_stiffness",
-        Quantity("29000 N/m"),
-        "The same of the board alone.",
-    ),
-    (
-        "hoop_stiffness",
-        Quantity("29000 N/m"),
-        "The same of the hoop alone.",
-    ),
     ("friction", Number, "Coefficient of friction."),
-    ("board_friction", Number, "The same of the board alone."),
-    ("hoop_friction", Number, "The same of the hoop alone."),
-    ("ball_radius", Quantity("4.7 in"), "Radius of the ball."),
-    ("ball_mass", Quantity("22 oz"), "Mass of the ball."),
-    (
-        "inertia_ratio",
-        Number,
-        "Moment of inertia over mass and squared radius; 2/3 for a thin shell.",
-    ),
-    (
-        "ring_radius",
-        Quantity("9.3125 in"),
-        "Radius of the circle in the middle of the ring's rod.",
-    ),
-    (
-        "ring_tube_diameter",
-        Quantity("0.625 in"),
-        "Thickness of the ring's rod.",
-    ),
-    (
-        "bracket_width",
-        Quantity("6 in"),
-        "Width of the bracket between ring and board.",
-    ),
-    (
-        "hoop_height",
-        Quantity("10 ft"),
-        "Height of the ring's upper edge above the floor.",
-    ),
-    (
-        "board_distance",
-        Quantity("15 in"),
-        "From the hoop's centre to the board's face.",
-    ),
-    ("board_width", Quantity("6 ft"), "Width of the board."),
-    (
-        "board_height",
-        Quantity("3.5 ft"),
-        "Height of the board itself.",
-    ),
-    (
-        "board_centre_height",
-        Quantity("15 in"),
-        "Height of the board's middle above the ring.",
-    ),
     (
         "board_edge_radius",
         Quantity("1 in"),
         "Radius of the board's rounded edges.",
-    ),
-    (
-        "air_density",
-        Quantity("1.19 kg/m^3"),
-        "Density of the air.",
     ),
     (
         "altitude",
@@ -299,27 +231,6 @@ const PHYSICS: &[Key] = &[
         "temperature",
         Quantity("72 F"),
         "Temperature of the air, with altitude.",
-    ),
-    (
-        "drag_coefficient",
-        Number,
-        "Drag of the ball in air; 0 for none.",
-    ),
-    (
-        "lift_slope",
-        Number,
-        "Lift coefficient over the spin ratio; 0 for none.",
-    ),
-    ("gravity", Quantity("9.81 m/s^2"), "Gravity."),
-    (
-        "time_limit",
-        Quantity("10 s"),
-        "A shot that lasts longer is missed.",
-    ),
-    (
-        "lodged_after",
-        Quantity("3 s"),
-        "A ball that stays in contact so long is lodged.",
     ),
     (
         "integrator",
@@ -347,6 +258,18 @@ const PHYSICS: &[Key] = &[
         "Precision of contacts; auto by default.",
     ),
 ];
+
+/// The keys of the physics.
+fn keys_of_physics() -> Vec<Key> {
+    let constants = CONSTANTS.iter().map(|constant| {
+        let written = match constant.dimension {
+            Dimension::Number => Number,
+            _ => Quantity(constant.example),
+        };
+        (constant.key, written, constant.meaning)
+    });
+    MORE_OF_PHYSICS.iter().copied().chain(constants).collect()
+}
 
 const OUTPUT: &[Key] = &[
     ("folder", Text, "Where runs are kept; results by default."),
@@ -423,7 +346,7 @@ const SWEEP: &[Key] = &[
     ),
 ];
 
-const TABLES: [(&str, &str, &[Key]); 8] = [
+const TABLES: [(&str, &str, &[Key]); 7] = [
     ("shooter", "Who shoots.", SHOOTER),
     ("location", "From where.", LOCATION),
     (
@@ -433,7 +356,6 @@ const TABLES: [(&str, &str, &[Key]); 8] = [
     ),
     ("search", "How the best shot is sought.", SEARCH),
     ("grid", "How fine the table of the search is.", GRID),
-    ("physics", "The ball and the hoop.", PHYSICS),
     ("output", "Where results go.", OUTPUT),
     ("sweep", "The places of a sweep.", SWEEP),
 ];
@@ -445,6 +367,8 @@ pub fn schema() -> Value {
     for (name, description, keys) in TABLES {
         tables.insert(name.to_owned(), table(description, keys));
     }
+    let physics = table("The ball and the hoop.", &keys_of_physics());
+    tables.insert("physics".to_owned(), physics);
     let correlation = json!({
         "type": "object",
         "description": "Correlations between errors, from -1 to 1; keys such as speed_pitch.",
@@ -506,7 +430,9 @@ impl Written {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::parse_profile;
+    use crate::config::{parse_physics, parse_profile};
+    use crate::model::Physics;
+    use crate::units::{self, UnitSystem};
 
     /// The keys that the reader of a table says it knows.
     fn known_keys(table: &str) -> Vec<String> {
@@ -523,7 +449,9 @@ mod tests {
 
     #[test]
     fn contract_the_schema_has_the_keys_that_the_reader_knows() {
-        for (table, _, keys) in TABLES {
+        let physics = keys_of_physics();
+        let tables = TABLES.map(|(table, _, keys)| (table, keys));
+        for (table, keys) in tables.into_iter().chain([("physics", &physics[..])]) {
             if table == "sweep" {
                 continue;
             }
@@ -539,16 +467,41 @@ mod tests {
         assert_eq!(errors, known_keys("shooter.errors"));
     }
 
+    /// A row of [`CONSTANTS`] is all that a constant needs: it is read, has its range, is in the
+    /// schema and, unless it is one of the numerics or told by another value, is listed.
+    #[test]
+    fn contract_a_row_of_the_table_is_all_that_a_constant_needs() {
+        let usual = Physics::default();
+        let listed = usual.values(UnitSystem::Imperial);
+        for constant in CONSTANTS {
+            let key = constant.key;
+            let text = format!("[physics]\n{key} = \"{}\"\n", constant.example);
+            let (read, _) = parse_physics(&text, "test").unwrap();
+            let known = units::parse(constant.example, constant.dimension).unwrap();
+            assert_eq!((constant.get)(&read), known, "{key}");
+            let mut beyond = usual.clone();
+            (constant.set)(&mut beyond, 2.0 * constant.range.1);
+            let errors = beyond.errors();
+            assert!(errors.iter().any(|error| error.key == key), "{key}");
+            let in_schema = &schema()["properties"]["physics"]["properties"][key];
+            assert_eq!(in_schema["description"], constant.meaning);
+            let is_listed = listed.iter().any(|value| value.key == key);
+            let is_hidden = key.ends_with("_damping") || constant.dimension == Dimension::Time;
+            assert_eq!(is_listed, !is_hidden, "{key}");
+        }
+    }
+
     /// Every example is what the reader takes.
     #[test]
     fn contract_the_examples_of_the_schema_are_valid() {
         let good = "[shooter]\nrelease_height = \"7 ft\"\nmax_backspin = \"3 rev/s\"\n[shooter.errors]\nspeed = \"0.25 ft/s\"\n\
                     pitch = \"1.2 deg\"\npolar = \"1.22 deg\"\nbackspin = \"0.3 rev/s\"\n[location]\ndistance = \"13.75 ft\"\n\
                     angle = \"0 deg\"\n";
+        let physics = keys_of_physics();
         for (table, keys) in [
             ("nominal", NOMINAL),
             ("search", SEARCH),
-            ("physics", PHYSICS),
+            ("physics", &physics[..]),
         ] {
             for (key, written, _) in keys {
                 let Quantity(example) = written else { continue };

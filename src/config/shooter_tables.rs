@@ -1,6 +1,6 @@
 //! The tables `[shooter]`, `[shooter.errors]`, `[shooter.correlation]` and `[nominal]`.
 
-use super::diagnostics::Diagnostic;
+use super::diagnostics::{Diagnostic, Problem};
 use super::toml_reader::TableReader;
 use crate::shooter::{
     Correlation, NominalOverrides, NominalVariable, ReleaseDispersion, ReleaseVariable, Shooter,
@@ -47,9 +47,8 @@ fn read_dispersion(
         let before = diagnostics.len();
         let value = table.required_as(keys, dimension, diagnostics);
         if matches!(dimension, Dimension::Speed | Dimension::Spin) {
-            let of_writing = |message: &str| message.contains("; write");
             for diagnostic in &mut diagnostics[before..] {
-                if of_writing(&diagnostic.message) {
+                if diagnostic.problem != Problem::Other {
                     diagnostic.message += ", or a share such as \"1.5 %\"";
                 }
             }

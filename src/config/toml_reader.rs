@@ -1,6 +1,6 @@
 //! Reads TOML tables key by key. It collects the errors instead of stopping at the first.
 
-use super::diagnostics::{ConfigError, Diagnostic};
+use super::diagnostics::{ConfigError, Diagnostic, Problem};
 use crate::units::{Dimension, PERCENT, meant_by, parse};
 use std::ops::Range;
 use toml::Spanned;
@@ -8,8 +8,6 @@ use toml::de::{DeTable, DeValue};
 
 /// Known keys are listed up to this number.
 const MOST_KNOWN_NAMES: usize = 40;
-/// How the message about a missing key begins.
-const IS_MISSING: &str = "is missing";
 
 /// Two names of one key: the paper's and the plain one, which messages use.
 const PLAIN_NAMES: [(&str, &str); 4] = [
@@ -68,6 +66,7 @@ pub(crate) fn parse_toml<T>(
             span: error.span().unwrap_or(0..0),
             key: String::new(),
             message: format!("not TOML: {}", error.message()),
+            problem: Problem::Other,
         })
         .collect();
     let syntax_is_valid = diagnostics.is_empty();
@@ -128,6 +127,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
             span,
             key: self.full_name(key),
             message: message.into(),
+            problem: Problem::Other,
         }
     }
 
@@ -137,6 +137,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
             span: self.span.clone(),
             key: self.path.clone(),
             message: message.into(),
+            problem: Problem::Other,
         }
     }
 
@@ -202,7 +203,11 @@ impl<'t, 'i> TableReader<'t, 'i> {
             DeValue::String(text) => match parse(text, dimension) {
                 Ok(value) => return Some(value),
                 Err(error) => {
-                    diagnostics.push(self.diagnostic(key, error.to_string()));
+                    let problem = match error.is_of_writing() {
+                        true => Problem::Writing,
+                        false => Problem::Other,
+                    };
+                    diagnostics.push(self.diagnostic(key, error.to_string()).of(problem));
                     return None;
                 }
             },
@@ -210,11 +215,13 @@ impl<'t, 'i> TableReader<'t, 'i> {
             DeValue::Float(number) => number.as_str().replace('_', "").parse::<f64>().ok(),
             _ => None,
         };
-        let message = match number {
+        let (problem, message) = match number {
             Some(number) if dimension == Dimension::Number && number.is_finite() => {
                 return Some(number);
             }
-            Some(_) if dimension == Dimension::Number => "must be a finite number".to_owned(),
+            Some(_) if dimension == Dimension::Number => {
+                (Problem::Other, "must be a finite number".to_owned())
+            }
             Some(number) => {
                 let units = dimension.unit_names();
                 let example = dimension.units().first().map_or("", |(name, _)| name);
@@ -224,11 +231,16 @@ impl<'t, 'i> TableReader<'t, 'i> {
                     Dimension::Speed => "\"24 ft/s\" or \"7.3 m/s\"".to_owned(),
                     _ => format!("\"{number} {example}\""),
                 };
-                format!("has no unit; write it as text with one of {units}, such as {example}")
+                let message =
+                    format!("has no unit; write it as text with one of {units}, such as {example}");
+                (Problem::Writing, message)
             }
-            None => "must be a number, or a text with a number and a unit".to_owned(),
+            None => {
+                let message = "must be a number, or a text with a number and a unit";
+                (Problem::Other, message.to_owned())
+            }
         };
-        diagnostics.push(self.diagnostic(key, message));
+        diagnostics.push(self.diagnostic(key, message).of(problem));
         None
     }
 
@@ -243,7 +255,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
             self.asked.push(key);
             let example = dimension.units().first().map_or("", |(name, _)| name);
             let message = format!("is missing; write {key} = \"... {example}\"");
-            diagnostics.push(self.diagnostic(key, message));
+            diagnostics.push(self.diagnostic(key, message).of(Problem::Missing));
             return None;
         }
         self.quantity(key, dimension, diagnostics)
@@ -268,7 +280,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
             (false, false) => {
                 let example = dimension.units().first().map_or("", |(name, _)| name);
                 let message = format!("is missing; write {other} (or {key}) = \"... {example}\"");
-                diagnostics.push(self.diagnostic(other, message));
+                diagnostics.push(self.diagnostic(other, message).of(Problem::Missing));
                 None
             }
         }
@@ -416,7 +428,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
                     diagnostics.retain(|diagnostic| {
                         let is_meant =
                             diagnostic.key == meant || diagnostic.key.starts_with(&below);
-                        !(is_meant && diagnostic.message.starts_with(IS_MISSING))
+                        !(is_meant && diagnostic.problem == Problem::Missing)
                     });
                     format!(
                         "; did you mean \"{}\"?",
@@ -431,6 +443,7 @@ impl<'t, 'i> TableReader<'t, 'i> {
                 span: key.span(),
                 key: self.full_name(&shown),
                 message,
+                problem: Problem::Other,
             });
         }
     }

@@ -15,6 +15,7 @@ use super::posterior::Draw;
 use crate::math::normal_distribution::quantile;
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, FOOT_M};
+use serde::Serialize;
 
 /// Shots of a sample that two steps are compared with, and of one that a speed is chosen with.
 const STEP_SHOTS: usize = 32_768;
@@ -84,7 +85,8 @@ pub struct AdviceStep {
 
 /// Whether shots support a change: it gains at least half a make in 100, its interval lies above 0,
 /// and the side of the change is as clear.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Support {
     /// They do not.
     NotSupported,
@@ -95,16 +97,6 @@ pub enum Support {
 }
 
 impl Support {
-    /// Its name for programs.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::NotSupported => "not_supported",
-            Self::AtTheLimit => "at_the_limit",
-            Self::Supported => "supported",
-        }
-    }
-
     /// Of a value that must lie above a limit; `error` is its standard error.
     fn of(value: f64, limit: f64, error: f64) -> Self {
         if value >= limit + GUARD * error {

@@ -1,7 +1,9 @@
 //! What is known of a quantity.
 
+use serde::Serialize;
+
 /// Mean, standard deviation and the middle 95 % of some values.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// The mean.
     pub mean: f64,

@@ -51,6 +51,13 @@ impl SpinSource {
             Self::Assumed => "assumed",
         }
     }
+
+    /// That of a word.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [Self::Measured, Self::Given, Self::Assumed];
+        all.into_iter().find(|source| source.name() == name)
+    }
 }
 
 /// The distribution of the releases about the aim.

@@ -2,9 +2,11 @@
 
 use super::column_map_proposal::map_proposal;
 use super::columns::{Columns, Label, Quantity};
+use serde::Deserialize;
 
 /// What a file holds of a shot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Source {
     /// Its release.
     Releases,
@@ -23,13 +25,6 @@ impl Source {
             Self::Landings => "landings",
             Self::Trajectories => "trajectories",
         }
-    }
-
-    /// The source of a word.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        let all = [Self::Releases, Self::Landings, Self::Trajectories];
-        all.into_iter().find(|source| source.name() == name)
     }
 
     /// The tracker that is taken where none is named.

@@ -1,7 +1,7 @@
 //! A whole CSV or Parquet file as rows of text.
 
-use crate::output::simulation_files::csv_records::CsvRecords;
-use crate::output::simulation_files::parquet_rows::ParquetRows;
+use crate::files::csv_records::CsvRecords;
+use crate::files::parquet_rows::ParquetRows;
 use std::fs::File;
 use std::path::Path;
 

@@ -10,9 +10,14 @@ pub(crate) mod solids;
 
 pub use ball_state::BallState;
 pub(crate) use ball_state::StateDerivative;
+mod physics_checks;
+mod physics_constants;
+mod physics_error;
 mod physics_presets;
 mod physics_values;
-pub use physics::{Air, BoardEdge, ContactLaw, Physics, PhysicsError};
+pub use physics::{Air, BoardEdge, ContactLaw, Physics};
+pub use physics_constants::{CONSTANTS, Constant};
+pub use physics_error::PhysicsError;
 pub use physics_presets::{DEFAULT_PRESET, PRESETS, Preset};
 pub use physics_values::PhysicsValue;
 pub use restitution::{contact_time_s, damping_for_restitution_kg_s, restitution_of_damping};

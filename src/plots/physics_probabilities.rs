@@ -3,6 +3,8 @@
 use super::axes::{format_tick, ticks};
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::best_shot::{PhysicsComparison, PhysicsRow};
+use crate::present::physics_text::{physics_name, same_shot_in_words, what_stays};
+use crate::units::UnitSystem;
 
 /// Colours of the best direct shot, and of the best bank shot.
 const DIRECT_COLOUR: &str = "#0072b2";
@@ -17,7 +19,7 @@ const ROW: f64 = 24.0;
 
 /// Draws one row for each physics. `name` is the shooter's.
 #[must_use]
-pub fn draw(name: &str, comparison: &PhysicsComparison) -> Plot {
+pub fn draw(name: &str, comparison: &PhysicsComparison, units: UnitSystem) -> Plot {
     let rows = &comparison.rows;
     let title = format!("{}: P under each physics", shortened(name, 60));
     let bottom = TOP + ROW * rows.len() as f64;
@@ -48,7 +50,7 @@ pub fn draw(name: &str, comparison: &PhysicsComparison) -> Plot {
             (LEFT - 12.0, y + 4.0),
             12.0,
             Anchor::End,
-            &shortened(&row.name, 60),
+            &shortened(&physics_name(row.of, units), 60),
         );
         svg.polyline([(LEFT, y), (LEFT + SCALE_WIDTH, y)], &grid);
         for (shot, colour) in [(&row.direct, DIRECT_COLOUR), (&row.bank, BANK_COLOUR)] {
@@ -65,8 +67,8 @@ pub fn draw(name: &str, comparison: &PhysicsComparison) -> Plot {
         (20.0, bottom + 64.0),
         &format!(
             "Bar: {}, {}.",
-            comparison.same_shot.in_words(),
-            comparison.same_shot.what_stays()
+            same_shot_in_words(comparison.same_shot),
+            what_stays(comparison.same_shot)
         ),
     );
     Plot {

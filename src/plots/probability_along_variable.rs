@@ -2,7 +2,7 @@
 
 use super::axes::Axes;
 use super::svg::{Anchor, INK, Plot, Svg, shortened};
-use crate::output::probability_along_variable::ProbabilityAlong;
+use crate::present::probability_along_variable::ProbabilityAlong;
 
 /// Left and upper edge of the panel, and its width and height, px.
 const PANEL: ((f64, f64), (f64, f64)) = ((70.0, 84.0), (470.0, 260.0));
@@ -76,7 +76,7 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
             &line,
         );
     }
-    let label = format!("{name} ({})", along.unit().0);
+    let label = format!("{name} ({})", along.unit().name);
     axes.draw(&mut svg, "", &label, "probability of a make");
     let of_line = own.map_or("", |_| "Dashed: the shooter's own. ");
     let of_bars = match along.draws_in_words() {

@@ -6,12 +6,12 @@ use super::page_data::Scene;
 use super::shot_in_words::ReportShot;
 use crate::fitting::{ShooterFit, nominal_of};
 use crate::model::league_courts::League;
-use crate::output::fit_files::fit_json::FitSource;
-use crate::output::fit_files::fit_text::tests_text;
-use crate::output::fit_files::parameters::parameters;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
+use crate::present::fit_files::fit_json::FitSource;
+use crate::present::fit_files::fit_text::tests_text;
 use crate::shooter::ShotKind;
+use crate::store::parameters::parameters;
 use crate::units::UnitSystem;
 
 /// Makes the page of a fit, with its plots.

@@ -4,7 +4,6 @@
 //! The page loads nothing from elsewhere, and all names in it are escaped.
 
 pub mod best_shot_page;
-pub mod best_shot_run;
 mod best_shot_table;
 pub mod fit_page;
 mod html_table;

@@ -4,7 +4,7 @@ use super::shot_in_words::ReportShot;
 use crate::dynamics::{Release, Simulator, StateError};
 use crate::math::vector::Vec3;
 use crate::model::league_courts::Court;
-use crate::output::json_object::number;
+use crate::present::json_object::number;
 use crate::units::UnitSystem;
 use serde_json::{Value, json};
 

@@ -2,6 +2,9 @@
 
 use super::html_table::{HtmlTable, format_cell};
 use crate::best_shot::{PhysicsComparison, PhysicsRow};
+use crate::present::physics_text::{
+    comparison_in_words, physics_name, same_shot_in_words, what_stays,
+};
 use crate::units::{DEGREE_RAD, UnitSystem};
 
 /// The best shots under each physics, and one shot under all of them.
@@ -25,7 +28,7 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
         let direct = row.direct.as_ref().ok();
         let bank = row.bank.as_ref().ok();
         vec![
-            row.name.clone(),
+            physics_name(row.of, units),
             number(direct.map(|shot| shot.estimate.probability), 3),
             number(direct.map(|shot| shot.nominal.speed_m_s / metre), 2),
             number(direct.map(|shot| shot.nominal.pitch_rad / DEGREE_RAD), 1),
@@ -38,11 +41,9 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
         caption: "How much rests on the physics".to_owned(),
         note: format!(
             "{}Same shot: {}, {}.",
-            comparison
-                .in_words()
-                .map_or_else(String::new, |words| words + " "),
-            comparison.same_shot.in_words(),
-            comparison.same_shot.what_stays()
+            comparison_in_words(comparison, units).map_or_else(String::new, |words| words + " "),
+            same_shot_in_words(comparison.same_shot),
+            what_stays(comparison.same_shot)
         ),
         columns: columns.to_vec(),
         rows: comparison

@@ -1,14 +1,18 @@
-//! The table of the sensitivity, from the rows of `sensitivity.csv`.
+//! The table of what the best shots depend on.
 
 use super::html_table::{HtmlTable, format_cell};
+use crate::present::sensitivity_rows::{SensitivityRow, Topic, sensitivity_rows};
+use crate::store::best_run::FoundShot;
+use crate::units::UnitSystem;
 
-/// The table of `sensitivity.csv` (kind, topic, variable, unit, value, gain, standard_error; the
-/// header first), the gains in points of P; `None` if the file has no rows.
-pub(super) fn sensitivity_table(rows: &[Vec<String>]) -> Option<HtmlTable> {
-    let rows: Vec<_> = rows
+/// The table, the gains in points of P; `None` if no shot has any.
+pub(super) fn sensitivity_table(shots: &[FoundShot], units: UnitSystem) -> Option<HtmlTable> {
+    let rows: Vec<_> = shots
         .iter()
-        .skip(1)
-        .filter_map(|row| Some((None, cells(row)?)))
+        .flat_map(|shot| {
+            let rows = sensitivity_rows(&shot.sensitivity, units).into_iter();
+            rows.map(|row| (None, cells(shot.kind.name(), &row)))
+        })
         .collect();
     (!rows.is_empty()).then(|| HtmlTable {
         caption: "Sensitivity".to_owned(),
@@ -27,36 +31,27 @@ pub(super) fn sensitivity_table(rows: &[Vec<String>]) -> Option<HtmlTable> {
     })
 }
 
-fn cells(row: &[String]) -> Option<Vec<String>> {
-    let [kind, topic, variable, unit, value, gain, standard_error] = row else {
-        return None;
-    };
-    let value = value
-        .parse::<f64>()
-        .map_or(String::new(), |value| format!("{value:.2} {unit}"));
-    Some(vec![
-        kind.clone(),
-        what_changes(topic, variable),
-        value,
-        points(gain),
-        points(standard_error),
-    ])
+fn cells(kind: &str, row: &SensitivityRow) -> Vec<String> {
+    let points = |p: f64| format_cell(100.0 * p, 1);
+    let value = |value| format!("{value:.2} {}", row.unit);
+    vec![
+        kind.to_owned(),
+        what_changes(row.topic, row.variable),
+        row.value.map_or_else(String::new, value),
+        row.gain.map_or_else(String::new, |gain| points(gain.value)),
+        row.gain
+            .map_or_else(String::new, |gain| points(gain.standard_error)),
+    ]
 }
 
-fn what_changes(topic: &str, variable: &str) -> String {
+fn what_changes(topic: Topic, variable: &str) -> String {
     let variable = variable.replace('_', " ");
     match topic {
-        "window_low" => format!("window, lowest {variable}"),
-        "window_high" => format!("window, highest {variable}"),
-        "without" => format!("no error in {variable}"),
-        "a_tenth_less" => format!("10 % less error in {variable}"),
-        "release_height" => "release height".to_owned(),
-        other => other.to_owned(),
+        Topic::WindowLow => format!("window, lowest {variable}"),
+        Topic::WindowHigh => format!("window, highest {variable}"),
+        Topic::Without => format!("no error in {variable}"),
+        Topic::ATenthLess => format!("10 % less error in {variable}"),
+        Topic::Backspin => "backspin".to_owned(),
+        Topic::ReleaseHeight => "release height".to_owned(),
     }
-}
-
-/// A probability in points; empty if the cell is.
-fn points(text: &str) -> String {
-    text.parse::<f64>()
-        .map_or(String::new(), |value| format_cell(100.0 * value, 1))
 }

@@ -2,7 +2,7 @@
 
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::shooter::Location;
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, with_decimals};
 
 /// A best shot on a page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +37,7 @@ impl ReportShot {
             self.shot.probability,
             nominal.speed_m_s / unit_m,
             nominal.pitch_rad / DEGREE_RAD,
-            // Rounded first, and 0 added: no negative zero.
-            libm::round(10.0 * nominal.polar_rad / DEGREE_RAD) / 10.0 + 0.0,
+            with_decimals(nominal.polar_rad / DEGREE_RAD, 1),
             nominal.backspin_rad_s / REV_RAD
         )
     }

@@ -21,7 +21,7 @@ pub use identity_hash::{IdentityError, identity_hash};
 pub use invalid_setting::SettingError;
 pub use location::{Location, LocationError};
 pub use nominal::{Nominal, NominalOverrides};
-pub use plausibility::{implausible_values, nominal_values_not_fixed};
+pub use plausibility::{Implausible, implausible_values, nominal_values_not_fixed};
 pub use profile::{OutputSettings, Profile, ProfileError, ProfileSettings, Shooter};
 pub use release_distribution::ReleaseDistribution;
 pub use release_errors::ReleaseDispersion;

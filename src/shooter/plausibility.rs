@@ -11,12 +11,27 @@ const USUAL_SPEED_M_S: f64 = 7.4;
 /// Balls below this mass are no basketballs of any size, g.
 const LIGHTEST_BASKETBALL_G: f64 = 300.0;
 
+/// A value that no player is known to have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Implausible {
+    /// Its key in a profile.
+    pub key: &'static str,
+    /// Why, in words.
+    pub why: String,
+}
+
+impl std::fmt::Display for Implausible {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(out, "{}: {}", self.key, self.why)
+    }
+}
+
 /// What is implausible about a profile, each as a sentence; nothing for a profile of a player.
 ///
 /// Measured scatters are 0.15 to 0.45 ft/s and 0.8 to 2.7 deg; the limits here are three times and
 /// more that. The heights of release and the distances are those of people on a court.
 #[must_use]
-pub fn implausible_values(profile: &Profile) -> Vec<String> {
+pub fn implausible_values(profile: &Profile) -> Vec<Implausible> {
     let shooter = profile.shooter();
     let errors = &shooter.dispersion;
     let feet = |length_m: f64| length_m / FOOT_M;
@@ -26,69 +41,75 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
     let units = profile.output().units;
     let (physics, nominal) = (profile.physics(), profile.nominal_overrides());
     let mut found = Vec::new();
-    let mut say = |is_odd: bool, words: String| {
+    let mut say = |is_odd: bool, key: &'static str, why: String| {
         if is_odd {
-            found.push(words);
+            found.push(Implausible { key, why });
         }
     };
     let height = feet(shooter.release_height_m);
     say(
         !(1.5..=9.5).contains(&height),
+        "shooter.release_height",
         match units {
-            UnitSystem::Imperial => format!(
-                "shooter.release_height: a release {height:.1} ft above the floor; players release at 5 to 9 ft"
-            ),
+            UnitSystem::Imperial => {
+                format!("a release {height:.1} ft above the floor; players release at 5 to 9 ft")
+            }
             UnitSystem::Metric => format!(
-                "shooter.release_height: a release {:.3} m above the floor; players release at 1.5 to 2.7 m",
+                "a release {:.3} m above the floor; players release at 1.5 to 2.7 m",
                 shooter.release_height_m
             ),
         },
     );
     say(
         feet(speed_sd) > 1.5,
+        "shooter.errors",
         match units {
             UnitSystem::Imperial => format!(
-                "shooter.errors: speeds scatter by {:.1} ft/s (one standard deviation); players by 0.15 to 0.45 ft/s",
+                "speeds scatter by {:.1} ft/s (one standard deviation); players by 0.15 to 0.45 ft/s",
                 feet(speed_sd)
             ),
             UnitSystem::Metric => format!(
-                "shooter.errors: speeds scatter by {speed_sd:.2} m/s (one standard deviation); players by 0.05 to 0.14 m/s"
+                "speeds scatter by {speed_sd:.2} m/s (one standard deviation); players by 0.05 to 0.14 m/s"
             ),
         },
     );
     for (key, angle_rad) in [
-        ("c20 (pitch)", errors.c20_rad),
-        ("c30 (polar)", errors.c30_rad),
+        ("shooter.errors.c20 (pitch)", errors.c20_rad),
+        ("shooter.errors.c30 (polar)", errors.c30_rad),
     ] {
         let angle = angle_rad / DEGREE_RAD;
         say(
             angle > 6.0,
+            key,
             format!(
-                "shooter.errors.{key}: angles scatter by {angle:.1} deg (one standard deviation); players by 0.8 to 2.7 deg"
+                "angles scatter by {angle:.1} deg (one standard deviation); players by 0.8 to 2.7 deg"
             ),
         );
     }
     let spin_sd = errors.c40_rad_s / REV_RAD;
     say(
         spin_sd > 1.5,
+        "shooter.errors.c40 (backspin)",
         format!(
-            "shooter.errors.c40 (backspin): spins scatter by {spin_sd:.1} rev/s (one standard deviation); players by about 0.3 rev/s"
+            "spins scatter by {spin_sd:.1} rev/s (one standard deviation); players by about 0.3 rev/s"
         ),
     );
     let most_spin = shooter.max_backspin_rad_s / REV_RAD;
     say(
         most_spin > 6.0,
-        format!("shooter.max_backspin: {most_spin:.1} rev/s; players reach 2 to 3 rev/s"),
+        "shooter.max_backspin",
+        format!("{most_spin:.1} rev/s; players reach 2 to 3 rev/s"),
     );
     say(
         feet(distance_m) > 35.0,
+        "location",
         match units {
             UnitSystem::Imperial => format!(
-                "location: {:.0} ft from the hoop; three-point shots are from 20 to 30 ft, half a court is 42 ft",
+                "{:.0} ft from the hoop; three-point shots are from 20 to 30 ft, half a court is 42 ft",
                 feet(distance_m)
             ),
             UnitSystem::Metric => format!(
-                "location: {distance_m:.1} m from the hoop; three-point shots are from 6 to 9 m, half a court is 13 m"
+                "{distance_m:.1} m from the hoop; three-point shots are from 6 to 9 m, half a court is 13 m"
             ),
         },
     );
@@ -96,9 +117,8 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
         let pitch = pitch_rad / DEGREE_RAD;
         say(
             !(20.0..=80.0).contains(&pitch),
-            format!(
-                "nominal.pitch: {pitch:.1} deg above the horizontal; players release at 35 to 65 deg"
-            ),
+            "nominal.pitch",
+            format!("{pitch:.1} deg above the horizontal; players release at 35 to 65 deg"),
         );
     }
     let mass_g = 1000.0 * physics.ball_mass_kg;
@@ -111,8 +131,9 @@ pub fn implausible_values(profile: &Profile) -> Vec<String> {
                     libm::fabs(difference) < 0.001
                 })
             }),
+        "physics.ball_mass",
         format!(
-            "physics.ball_mass: a ball of {mass_g:.0} g with the bounce of a basketball (board_restitution {:.2}, hoop_restitution {:.2}); give both, from a drop test: the square root of bounce height over drop height; and inertia_ratio, 0.4 for a solid ball",
+            "a ball of {mass_g:.0} g with the bounce of a basketball (board_restitution {:.2}, hoop_restitution {:.2}); give both, from a drop test: the square root of bounce height over drop height; and inertia_ratio, 0.4 for a solid ball",
             physics.restitution_on(SolidId::Board),
             physics.restitution_on(SolidId::Ring)
         ),

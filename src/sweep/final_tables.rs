@@ -7,7 +7,7 @@ use super::columns::{self, ColumnType};
 use super::job_list::Jobs;
 use super::result_row::{Cell, ResultRow};
 use super::sweep_toml::SweepConfig;
-use crate::output::json_object::{Record, number, object, provenance};
+use crate::present::json_object::{Record, number, object, provenance};
 use crate::units::UnitSystem;
 use crate::units::rounded;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};

@@ -29,7 +29,7 @@ const MAX_ABORTS: u32 = 2;
 
 /// A fault to inject at a spot, for tests.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FaultInjection {
+pub(crate) enum FaultInjection {
     /// Panic at this spot.
     Panic(usize),
     /// Abort the program at this spot.
@@ -49,7 +49,7 @@ pub struct RunOptions {
     /// Whether to compute failed jobs again.
     pub retry_failed: bool,
     /// A fault to inject, for tests.
-    pub fault: Option<FaultInjection>,
+    pub(crate) fault: Option<FaultInjection>,
 }
 
 /// The result of a run.

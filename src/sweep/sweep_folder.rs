@@ -13,7 +13,7 @@ use super::result_row::{JobStatus, ResultRow};
 use super::shard_lock::{ShardLock, lock_file, open_lock};
 use super::sqlite_results;
 use super::sweep_toml::{SourceTexts, SweepConfig, parse_sweep};
-use crate::output::atomic_file;
+use crate::files::atomic_file;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Write};

@@ -8,7 +8,7 @@ mod unit_system;
 pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
 pub use quantity::{Dimension, QuantityError, parse, suggestion};
 pub(crate) use quantity::{PERCENT, meant_by};
-pub use unit_system::UnitSystem;
+pub use unit_system::{Unit, UnitSystem};
 
 /// The value with 12 significant digits. A table shows 6 and not 6.000000000000001, the last digits
 /// of a change of units.
@@ -16,6 +16,13 @@ pub use unit_system::UnitSystem;
 pub fn rounded(value: f64) -> f64 {
     // Both conversions are exact to the last bit on every machine.
     format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// The value with so many decimals, for people: never a negative zero.
+#[must_use]
+pub fn with_decimals(value: f64, decimals: i32) -> f64 {
+    let scale = libm::pow(10.0, f64::from(decimals));
+    libm::round(scale * value) / scale + 0.0
 }
 
 /// A length for people: one decimal, or two where the second is not zero.

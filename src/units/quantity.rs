@@ -188,6 +188,14 @@ pub enum QuantityError {
     },
 }
 
+impl QuantityError {
+    /// Whether it is written in a way that has a better one: with a unit, without, with a point.
+    #[must_use]
+    pub fn is_of_writing(&self) -> bool {
+        !matches!(self, Self::NotANumber { .. } | Self::NotFinite { .. })
+    }
+}
+
 /// Parses a quantity and returns its value in SI units.
 ///
 /// ```

@@ -33,6 +33,7 @@ fn contract_best_prints_only_json_and_writes_its_folder() {
     assert_eq!(
         file_names(run),
         [
+            "answer.json",
             "best_shots.csv",
             "best_shots.json",
             "curves.csv",

@@ -74,17 +74,9 @@ fn check(page: &str, least: usize) {
 }
 
 #[test]
-fn contract_the_readme_prints_what_the_program_prints() {
+#[ignore = "a minute; `cargo test --test cli campaign_docs -- --ignored`"]
+fn campaign_docs_print_what_the_program_prints() {
     check("README.md", 5);
-}
-
-#[test]
-fn contract_the_tutorial_prints_what_the_program_prints() {
     check("docs/tutorial.md", 3);
-}
-
-#[test]
-#[ignore = "half a minute; `cargo test --test cli campaign_launcher -- --ignored`"]
-fn campaign_launcher_page_prints_what_the_program_prints() {
     check("docs/launcher.md", 3);
 }

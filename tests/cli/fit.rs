@@ -634,7 +634,7 @@ fn contract_a_ring_is_told_by_the_makes_of_all_shooters() {
     let read = |path: &str| -> serde_json::Value {
         serde_json::from_slice(&fs::read(folder.path().join(path)).unwrap()).unwrap()
     };
-    let together = read("both/free.json")[0].clone();
+    let together = read("both/shooters.json")["free"][0].clone();
     let interval = |of: &serde_json::Value| {
         let [low, high] = ["low", "high"].map(|end| of[end].as_f64().unwrap());
         (low, high)

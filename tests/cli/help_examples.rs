@@ -1,9 +1,10 @@
-//! Every example of the help texts runs, in a folder with the files that it names, and each shot
-//! that an example traces goes in.
+//! Every example of the help texts runs, in a folder with the files that it names; what they and
+//! every other format print and write are known bytes; each shot that an example traces goes in.
 
 use crate::support::{Answer, bankshot};
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
@@ -200,52 +201,203 @@ fn prepare(folder: &Path) {
     .exits(0);
 }
 
-#[test]
-#[ignore = "a minute or more; `cargo test --test cli campaign_help -- --ignored`"]
-fn campaign_help_examples_run() {
-    let folder = TempDir::new().unwrap();
-    prepare(folder.path());
-    let shared = folder.path().join("shared").display().to_string();
+/// Formats and commands that no example of the help texts has.
+const MORE: &[&str] = &[
+    "bankshot best configs/free_throw.toml --details --quiet",
+    "bankshot best configs/bank_wing.toml --json --quiet --out wing",
+    "bankshot best results/season-fit --draws results/season-fit --quiet",
+    "bankshot best configs/free_throw.toml --physics paper --units metric",
+    "bankshot probability configs/free_throw.toml --speed '24.4 ft/s' --pitch '52 deg' --backspin '3 rev/s' --json",
+    "bankshot probability configs/free_throw.toml --speed '24.4 ft/s' --pitch '46 deg to 56 deg by 5 deg' --backspin '3 rev/s' --json",
+    "bankshot probability configs/free_throw.toml --speed '24.4 ft/s' --pitch '46 deg to 56 deg by 5 deg' --backspin '3 rev/s' --output p.csv --output p.json --output p.txt --plot p.svg",
+    "bankshot trace configs/free_throw.toml --speed '24.4 ft/s' --pitch '52 deg' --backspin '3 rev/s' --json",
+    "bankshot trace configs/free_throw.toml --speed '25.4 ft/s' --pitch '52 deg' --backspin '3 rev/s' --units metric",
+    "bankshot simulate releases.csv --output outcomes.parquet",
+    "bankshot pitch-curve player.toml --pitches '48 deg, 52 deg' --json",
+    "bankshot pitch-curve player.toml --pitches '48 deg, 52 deg' --output c.csv --output c.json --output c.txt --plot c.svg",
+    "bankshot pitch-curve robot.toml --distances '8 ft, 12 ft' --pitches '48 deg, 52 deg' --json",
+    "bankshot table robot.toml --distances '8 ft, 12 ft' --draft --output t.csv --output t.json --output t.txt --output t.c --output t.hpp --output t.py --output t.java",
+    "bankshot table robot.toml --distances '8 ft, 12 ft' --angles '0 deg, 30 deg' --kind best --draft --json --units metric",
+    "bankshot physics player.toml --json",
+    "bankshot physics results/season-fit",
+    "bankshot team results/season-fit --json",
+    "bankshot team ann.toml bo.toml --json --quiet",
+    "bankshot team ann.toml bo.toml --out team",
+    "bankshot fit season.csv --json --out results/json-fit",
+    "bankshot fit season.csv --units metric --out results/metric-fit",
+    "bankshot fit docs/data/optical_tracking.csv --release-height '7 ft' --out results/tracks-fit",
+    "bankshot fit march.csv --distance '13.75 ft' --release-height '7 ft' --free hoop_restitution --out results/free-fit",
+    "bankshot fit shots.csv --map 'speed=ReleaseSpeed:mph' --map 'shooter=Player' --map 'session=Day' --dates mdy --distance '13.75 ft' --release-height '7 ft' --out results/several-fit",
+    "bankshot advise results/season-fit",
+    "bankshot advise results/season-fit --json --units metric",
+    "bankshot compare-sessions season.csv --json",
+    "bankshot compare-sessions season.csv --output s.csv --output s.json --output s.txt",
+    "bankshot design results/season-fit --shots 25 --json",
+    "bankshot design results/rested --against results/tired --shots 25 --json",
+    "bankshot check configs/free_throw.toml",
+    "bankshot check configs/free_throw.toml --verbose",
+    "bankshot check configs/free_throw.toml --json",
+    "bankshot check configs/quick_sweep.toml --json",
+    "bankshot check no.toml",
+    "bankshot plan configs/free_throw.toml --json",
+    "bankshot plan configs/half_court.toml --json",
+    "bankshot status half_court --json",
+    "bankshot merge half_court",
+    "bankshot report half_court",
+    "bankshot report results/season-fit",
+    "bankshot report wing",
+    "bankshot compare half_court --out maps",
+    "bankshot schema",
+    "bankshot completions bash",
+    "bankshot man",
+    "bankshot man fit",
+    "bankshot",
+];
+
+/// What a run says of itself, and the lines with times or with a checksum of all this, do not
+/// count.
+fn without_what_varies(bytes: &[u8], folder: &Path) -> Vec<u8> {
+    const VARYING: [&str; 7] = [
+        "\"checksum\":",
+        "left of this step",
+        "players: about",
+        " s left: ",
+        "time    ",
+        "\"forecast_s\":",
+        "\"thread_seconds\":",
+    ];
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return bytes.to_vec();
+    };
+    let place = folder.display().to_string();
+    let kept = text.split_inclusive('\n');
+    let kept = kept.filter(|line| !VARYING.iter().any(|time| line.contains(time)));
+    kept.collect::<String>()
+        .replace(&place, "FOLDER")
+        .replace(env!("BANKSHOT_COMMIT"), "COMMIT")
+        .replace(env!("CARGO_PKG_VERSION"), "VERSION")
+        .into_bytes()
+}
+
+/// All files of a folder, with their bytes.
+fn files(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let metadata = fs::symlink_metadata(&path).unwrap();
+        if metadata.is_dir() {
+            files(&path, found);
+        // The stores of a sweep name the host and have times.
+        } else if metadata.is_file() && !path.parent().is_some_and(|above| above.ends_with("store"))
+        {
+            found.insert(path.clone(), fs::read(&path).unwrap());
+        }
+    }
+}
+
+/// The examples of all help texts, each question of a dialogue with its default.
+fn all_examples(folder: &Path) -> Vec<String> {
+    let shared = folder.join("shared").display().to_string();
     let mut helps = vec![Answer::of(bankshot().arg("--help")).stdout().to_owned()];
     for name in COMMANDS {
-        helps.push(
-            Answer::of(bankshot().args([name, "--help"]))
-                .exits(0)
-                .stdout()
-                .to_owned(),
-        );
+        let help = Answer::of(bankshot().args([name, "--help"])).exits(0);
+        helps.push(help.stdout().to_owned());
     }
-    let mut tried = 0;
-    let mut failed = Vec::new();
-    for line in helps.iter().flat_map(|help| examples(help)) {
-        // Each question of the dialogue has a default.
-        let line = line
-            .replace("/shared", &shared)
+    let lines = helps.iter().flat_map(|help| examples(help));
+    let runnable = lines.map(|line| {
+        line.replace("/shared", &shared)
             .replace("--interactive", "--interactive </dev/null")
             // The checks between the places of a table take minutes.
-            .replace("bankshot table", "bankshot table --draft");
-        let is_new = line.starts_with("bankshot new");
-        let own = TempDir::new().unwrap();
-        let start = std::time::Instant::now();
-        let answer = run(if is_new { own.path() } else { folder.path() }, &line);
-        println!("{:.1} s  {line}", start.elapsed().as_secs_f64());
-        tried += 1;
-        // 1: not as precise as wanted; 3: one shard is not the whole sweep; a dialogue needs a
-        // person.
-        let is_done = match answer.code {
+            .replace("bankshot table", "bankshot table --draft")
+    });
+    runnable.collect()
+}
+
+/// Whether an example did what it says. 1: not as precise as wanted; 3: one shard is not the whole
+/// sweep; a dialogue needs a person.
+fn is_done(line: &str, answer: &Answer) -> bool {
+    let is_in =
+        !line.starts_with("bankshot trace") || answer.stdout().starts_with("The shot is made");
+    is_in
+        && match answer.code {
             Some(0 | 1) => true,
             Some(3) => line.contains("--shard"),
             Some(2) => line.contains("--interactive"),
             _ => false,
-        };
-        let is_in =
-            !line.starts_with("bankshot trace") || answer.stdout().starts_with("The shot is made");
-        if !is_done || !is_in {
+        }
+}
+
+/// Every example of the help texts runs, and the bytes of everything that a command prints and
+/// writes, in each format, are those of `golden_bytes.txt`: what changes them on purpose writes the
+/// file anew. `BANKSHOT_GOLDEN=FOLDER` keeps the bytes there and writes the file.
+#[test]
+#[ignore = "minutes; `cargo test --test cli campaign_golden -- --ignored`"]
+fn campaign_golden_bytes_of_every_command() {
+    let folder = TempDir::new().unwrap();
+    let folder = folder.path();
+    prepare(folder);
+    let keep = std::env::var_os("BANKSHOT_GOLDEN").map(PathBuf::from);
+    let mut before = BTreeMap::new();
+    let mut listed = String::new();
+    let mut failed = Vec::new();
+    let of_help = all_examples(folder);
+    assert!(of_help.len() > 45, "{}", of_help.len());
+    let more = MORE.iter().map(|line| (*line).to_owned());
+    for (number, line) in of_help.iter().cloned().chain(more).enumerate() {
+        let own = TempDir::new().unwrap();
+        let is_new = line.starts_with("bankshot new");
+        let start = std::time::Instant::now();
+        let answer = run(if is_new { own.path() } else { folder }, &line);
+        println!("{:.1} s  {line}", start.elapsed().as_secs_f64());
+        if number < of_help.len() && !is_done(&line, &answer) {
             failed.push(format!("{line}\n{answer:?}"));
+        }
+        let mut written = vec![
+            ("stdout".to_owned(), answer.stdout.clone()),
+            ("stderr".to_owned(), answer.stderr.clone().into_bytes()),
+        ];
+        let mut after = BTreeMap::new();
+        files(folder, &mut after);
+        files(own.path(), &mut after);
+        for (path, bytes) in &after {
+            if before.get(path) != Some(bytes) {
+                let name = path.strip_prefix(folder).or(path.strip_prefix(own.path()));
+                written.push((name.unwrap().display().to_string(), bytes.clone()));
+            }
+        }
+        if number > 0 {
+            after.retain(|path, _| path.starts_with(folder));
+        }
+        before = after;
+        let shown = line.replace(&folder.display().to_string(), "FOLDER");
+        listed += &format!("{shown}\n  exit code {:?}\n", answer.code);
+        for (name, bytes) in written {
+            let bytes = without_what_varies(&bytes, folder);
+            let hash = blake3::hash(&bytes).to_hex();
+            listed += &format!("  {} {name}\n", &hash[..16]);
+            if let Some(keep) = &keep {
+                let path = keep.join(format!("{number:03}/{name}"));
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, bytes).unwrap();
+            }
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n\n"));
-    assert!(tried > 45, "{tried}");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/golden_bytes.txt");
+    if keep.is_some() {
+        fs::write(file, listed).unwrap();
+        return;
+    }
+    let stored = fs::read_to_string(file).unwrap();
+    let stored: Vec<&str> = stored.lines().collect();
+    let other: Vec<&str> = listed
+        .lines()
+        .filter(|line| !stored.contains(line))
+        .collect();
+    assert!(
+        listed.lines().eq(stored),
+        "other bytes:\n{}",
+        other.join("\n")
+    );
 }
 
 /// The single shots of the help texts go in; the rest of the examples is tried by the campaign.

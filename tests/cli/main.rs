@@ -15,6 +15,7 @@ mod probability;
 mod schema;
 mod silent_guesses;
 mod simulate;
+mod stored;
 mod support;
 mod table;
 mod team;

@@ -249,7 +249,7 @@ fn contract_parquet_goes_in_and_out_with_the_same_values() {
 
 /// Writes the rows of a CSV text as Parquet: a text and numbers.
 fn releases_as_parquet(rows: &str, path: &std::path::Path) {
-    use bankshot::output::simulation_files::parquet_rows::{ParquetSink, column};
+    use bankshot::files::parquet_rows::{ParquetSink, column};
     use parquet::basic::Type;
     let mut reader = csv::Reader::from_reader(rows.as_bytes());
     let header = reader.byte_headers().unwrap().clone();

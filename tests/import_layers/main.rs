@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers. Each may use those before it.
-const LAYERS: [&str; 17] = [
+const LAYERS: [&str; 20] = [
     "math",
     "units",
     "model",
@@ -18,8 +18,11 @@ const LAYERS: [&str; 17] = [
     "analysis",
     "best_shot",
     "fitting",
-    "output",
+    "files",
     "measured_shots",
+    "store",
+    "answers",
+    "present",
     "sweep",
     "plots",
     "report",

@@ -14,7 +14,7 @@ use bankshot::fitting::{
 };
 use bankshot::math::normal_distribution::quantile;
 use bankshot::model::Preset;
-use bankshot::output::fit_files::session_changes_text::{Decision, SessionChange};
+use bankshot::present::fit_files::session_changes_text::{Decision, SessionChange};
 use bankshot::probability::Silent;
 use bankshot::shooter::Location;
 use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};

@@ -1,17 +1,17 @@
 //! `bankshot advise`: what a measured shooter should change, and how sure that is.
 
 use super::fit::{failure, report_rejected};
+use crate::answers::advice::AdviceAnswer;
+use crate::answers::json;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::shooter_folders;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
-use crate::fitting::{Posterior, advise};
-use crate::output::fit_files::advice_json::advice_json;
-use crate::output::fit_files::advice_text::{advice_text, brief_advice_text};
-use crate::shooter::Profile;
-use crate::units::UnitSystem;
+use crate::fitting::advise;
+use crate::present::fit_files::advice_text::{advice_text, brief_advice_text};
+use crate::store::fit::Fit;
+use crate::store::shooters::fits_within;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -41,24 +41,13 @@ pub(crate) struct AdviseOptions {
 pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
     if options.shots.is_dir() {
         fit_folder::refuse_options_of_files(&options.shots, &options.measured)?;
-        let folders = match &shooter_folders::of_shooters(&options.shots)[..] {
+        let folders = match &fits_within(&options.shots)?[..] {
             [] => vec![options.shots.clone()],
             several => several.to_vec(),
         };
         for (number, folder) in folders.iter().enumerate() {
             let fit = fit_folder::read(folder)?;
-            separate(options, number)?;
-            print_warnings(&fit.profiles[0].shooter().name, &fit.warnings);
-            let units = options.measured.units_or(fit.units);
-            let places: Vec<ShooterPlace<'_>> = (0..fit.profiles.len())
-                .map(|place| ShooterPlace {
-                    name: &fit.place_names[place],
-                    profile: &fit.profiles[place],
-                    observed: fit.observed[place],
-                })
-                .collect();
-            let shooter_of = (number, folders.len());
-            answer(options, &places, &fit.posterior, units, (shooter_of, quiet))?;
+            answer(options, &fit, (number, folders.len()), quiet)?;
         }
         return Ok(code::DONE);
     }
@@ -72,86 +61,54 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
         let fit = file
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
-        let places: Vec<ShooterPlace<'_>> = (0..fit.places.len())
-            .map(|place| {
-                let makes = fit.makes.at_place(place);
-                ShooterPlace {
-                    name: &shots.place_names[place],
-                    profile: &fit.profiles[place],
-                    observed: (makes.made, makes.labelled),
-                }
-            })
-            .collect();
-        separate(options, number)?;
-        print_warnings(&file.name_of(shots), &fit.warnings);
-        let units = options.measured.unit_system();
-        let shooter_of = (number, file.shooters.len());
-        answer(options, &places, &fit.posterior, units, (shooter_of, quiet))?;
+        let fit = Fit::of(fit, shots, &file.tracker.0);
+        answer(options, &fit, (number, file.shooters.len()), quiet)?;
     }
     Ok(worst)
 }
 
-/// An empty line between the answers for two shooters.
-fn separate(options: &AdviseOptions, number: usize) -> Result<(), Failure> {
-    if number > 0 && !options.json {
-        print_answer("\n")?;
-    }
-    Ok(())
-}
-
-/// Advice is no better than the fit that it rests on: these come first.
-fn print_warnings<W: std::fmt::Display>(name: &str, warnings: &[W]) {
-    for warning in warnings {
-        print_remark(&format!("{name}: warning: {warning}"));
-    }
-}
-
-/// A place of a shooter's test.
-struct ShooterPlace<'a> {
-    /// Its name; empty where the file does not say.
-    name: &'a str,
-    profile: &'a Profile,
-    /// Made, and all with a result.
-    observed: (usize, usize),
-}
-
-/// Advice for each place. `shooter_of` is the index of the shooter and the number of all.
+/// Advice for each place of a fit. `shooter_of` is the index of the shooter and the number of all.
 fn answer(
     options: &AdviseOptions,
-    places: &[ShooterPlace<'_>],
-    posterior: &Posterior,
-    units: UnitSystem,
-    (shooter_of, quiet): ((usize, usize), bool),
+    fit: &Fit,
+    shooter_of: (usize, usize),
+    quiet: bool,
 ) -> Result<(), Failure> {
     let bars = ProgressBars::new(quiet);
     let (shooter, shooters) = shooter_of;
-    for (number, place) in places.iter().enumerate() {
-        if !quiet && shooters * places.len() > 1 {
+    let places = fit.profiles.len();
+    let units = options.measured.units_or(fit.units);
+    let name = &fit.profiles[0].shooter().name;
+    if shooter > 0 && !options.json {
+        print_answer("\n")?;
+    }
+    // Advice is no better than the fit that it rests on: these come first.
+    for warning in &fit.warnings {
+        print_remark(&format!("{name}: warning: {warning}"));
+    }
+    for (place, profile) in fit.profiles.iter().enumerate() {
+        if !quiet && shooters * places > 1 {
             print_remark(&format!(
-                "{}: shooter {} of {shooters}, place {} of {}",
-                place.profile.shooter().name,
+                "{name}: shooter {} of {shooters}, place {} of {places}",
                 shooter + 1,
-                number + 1,
-                places.len()
+                place + 1,
             ));
         }
-        let (profile, observed) = (place.profile, Some(place.observed));
-        let advice = advise(profile, posterior, number, &bars)?;
-        let (name, location) = (&profile.shooter().name, profile.location());
+        let observed = Some(fit.observed[place]);
+        let advice = advise(profile, &fit.posterior, place, &bars)?;
+        let location = profile.location();
+        let place_name = &fit.place_names[place];
         if options.json {
-            let mut json = advice_json(name, &location, &advice, observed, units);
-            if let Some(record) = json.as_object_mut() {
-                record.insert("place".to_owned(), place.name.into());
-            }
-            print_answer(&format!("{json:#}\n"))?;
+            let answer = AdviceAnswer::new(fit, place, &advice);
+            print_answer(&json::text(&json::in_units(&answer, units)))?;
             continue;
         }
-        if places.len() > 1 {
+        if places > 1 {
             let (unit, size) = units.length();
             print_answer(&format!(
                 "{}{}{}, released {:.2} {unit} up\n",
-                if number > 0 { "\n" } else { "" },
-                match place.name {
+                if place > 0 { "\n" } else { "" },
+                match place_name.as_str() {
                     "" => String::new(),
                     name => format!("{name}: "),
                 },

@@ -1,18 +1,17 @@
 //! `bankshot best`: load, plan, search, write.
 
+use crate::answers::best_shots::BestShotsAnswer;
+use crate::answers::json;
 use crate::best_shot;
-use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
 use crate::cli::fixed_value_flags::FixedOptions;
-use crate::cli::nominal_shot_flags::PlaceOptions;
+use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
-use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use crate::output::best_shot_json::best_shots_json;
-use crate::output::best_shot_text::{
+use crate::present::best_shot_text::{
     PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, vacuum_note,
     what_matters,
 };
@@ -33,12 +32,8 @@ Examples:
 Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
 best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
 pub(crate) struct BestOptions {
-    /// The shooter's profile, or the folder of a fit.
-    pub(crate) profile: PathBuf,
     #[command(flatten)]
-    pub(crate) physics: PhysicsArg,
-    #[command(flatten)]
-    pub(crate) place: PlaceOptions,
+    pub(crate) profile: ProfileOptions,
     #[command(flatten)]
     pub(crate) fixed: FixedOptions,
     #[command(flatten)]
@@ -57,20 +52,13 @@ pub(crate) struct BestOptions {
     /// Print one JSON object instead of the table.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Units of the results [default: the profile's, else imperial].
-    #[arg(long)]
-    pub(crate) units: Option<UnitsArg>,
 }
 
 pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
-    let loaded = load_profile_with_text(&options.profile, &options.physics, (&fixed, quiet))?;
-    let loaded = options.scatter.changed(loaded, &options.profile)?;
-    let loaded = with_fixed(loaded, &options.fixed, &options.profile)?;
-    let (mut profile, text) = moved(loaded, &options.place)?;
-    if let Some(units) = options.units {
-        profile = profile.with(|settings| settings.output.units = units.into())?;
-    }
+    let loaded = options.profile.load(&fixed, quiet)?;
+    let loaded = options.fixed.changed(options.scatter.changed(loaded)?)?;
+    let (text, profile) = (loaded.text(), loaded.profile);
     let units = profile.output().units;
     // A plan that is refused is refused before anything is written.
     TablePlan::for_search(&profile)?;
@@ -87,7 +75,8 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         run_folder::link_latest(&folder);
     }
     if options.json {
-        print_answer(&format!("{:#}\n", best_shots_json(&profile, &best, units)))?;
+        let answer = BestShotsAnswer::new(&profile, &best);
+        print_answer(&json::text(&json::in_units(&answer, units)))?;
     } else {
         let mut text = answer_in_words(&profile, &best, units);
         text += &best_shots_table(&profile, &best, units);

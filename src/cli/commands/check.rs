@@ -1,7 +1,8 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
-use crate::cli::config_files::{load_profile, load_profile_with_text, load_sweep, read_text};
+use crate::cli::config_files::{load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
+use crate::cli::loaded_profile::{LoadedProfile, load_profile};
 use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::config::parse_profile;
@@ -42,7 +43,8 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
-    let (profile, text) = load_profile_with_text(&options.profile, &options.physics, (&[], quiet))?;
+    let loaded = LoadedProfile::read(&options.profile, &options.physics, &[], quiet)?;
+    let (text, profile) = (loaded.text(), loaded.profile);
     TablePlan::for_search(&profile)?;
     let own = profile.output().units;
     let units = options.units.map_or(own, UnitSystem::from);
@@ -116,7 +118,7 @@ fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
                     "distance_m": location.distance_m,
                     "court_angle_rad": location.angle_rad,
                     "release_height_m": profile.shooter().release_height_m,
-                    "warnings": implausible_values(&profile),
+                    "warnings": implausible_values(&profile).iter().map(ToString::to_string).collect::<Vec<_>>(),
                 }),
             ))
         }

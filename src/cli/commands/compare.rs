@@ -3,14 +3,14 @@
 
 use super::sweep_summary;
 use crate::best_shot::{self, BestShots};
-use crate::cli::config_files::{load_profile_with_text, load_sweep, read_text};
+use crate::cli::config_files::{load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
+use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder::{self, AGAINST_FOLDER, RunKind, SWEEP_LINK};
+use crate::cli::run_folder::{self, AGAINST_FOLDER, RunKind};
 use crate::cli::terminal::{print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
-use crate::output::atomic_file;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
 use crate::plots::sweep_results::SweepResults;
@@ -18,6 +18,7 @@ use crate::plots::{
     bank_direct_release_map, sweep_bank_direct_map, sweep_best_shot_maps, sweep_difference_map,
 };
 use crate::shooter::Profile;
+use crate::store::sweep_link::SweepLink;
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Jobs;
 use crate::sweep::result_row::ResultRow;
@@ -132,16 +133,12 @@ fn compare_on_court(
         None => sweep_path.join("plots"),
     };
     plot_files::write(&folder, &plots)?;
-    let target = std::fs::canonicalize(sweep_path).unwrap_or(sweep_path.to_owned());
-    let mut link = serde_json::json!({ "sweep": target.display().to_string() });
-    if let Some(other) = other {
-        let path = other.folder.path();
-        let path = std::fs::canonicalize(path).unwrap_or(path.to_owned());
-        link["against"] = path.display().to_string().into();
-    }
-    let file = folder.join(SWEEP_LINK);
-    atomic_file::write_unlinked(&file, format!("{link:#}\n").as_bytes())
-        .map_err(|error| Failure::io(file.display(), &error))?;
+    let absolute = |path: &Path| std::fs::canonicalize(path).unwrap_or(path.to_owned());
+    let link = SweepLink {
+        sweep: absolute(sweep_path),
+        against: other.map(|other| absolute(other.folder.path())),
+    };
+    link.write(&folder)?;
     plot_files::print_captions(&folder, &plots, quiet)?;
     let exit = sweep
         .exit_code()
@@ -154,11 +151,12 @@ fn compare_on_court(
 
 fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
     let own_physics = PhysicsArg::default();
-    let (profile, profile_text) = load_profile_with_text(&options.what, &own_physics, (&[], true))?;
-    let other = match &options.against {
-        None => None,
-        Some(path) => Some(load_profile_with_text(path, &own_physics, (&[], true))?),
+    let load = |path: &PathBuf| {
+        let loaded = LoadedProfile::read(path, &own_physics, &[], true)?;
+        Ok::<_, Failure>((loaded.text(), loaded.profile))
     };
+    let (profile_text, profile) = load(&options.what)?;
+    let other = options.against.as_ref().map(load).transpose()?;
     let bars = ProgressBars::new(quiet);
     let best = best_shot::find(&profile, &bars)?;
     let shots = PlottedShot::of_best(&best);
@@ -171,7 +169,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     // Two profiles of one name are told apart by their files.
     let have_one_name = other
         .as_ref()
-        .is_some_and(|(other, _)| other.shooter().name == *name);
+        .is_some_and(|(_, other)| other.shooter().name == *name);
     let name_of = |profile: &Profile, path: &Path| match have_one_name {
         true => format!("{} ({})", profile.shooter().name, path.display()),
         false => profile.shooter().name.clone(),
@@ -179,7 +177,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     let mut text = probabilities_text(&name_of(&profile, &options.what), &best);
     let mut exit = run_folder::exit_code(&profile, &best);
     let mut against = None;
-    if let (Some((other, other_text)), Some(path)) = (other, &options.against) {
+    if let (Some((other_text, other)), Some(path)) = (other, &options.against) {
         let other_best = best_shot::find(&other, &bars)?;
         let shots = PlottedShot::of_best(&other_best);
         if let Some(mut plot) = bank_direct_release_map::draw_probabilities(&other, &shots) {
@@ -199,7 +197,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
     plot_files::write(&folder, &plots)?;
     run_folder::write_best_shots(&folder, profile_text, &profile, &best)?;
     // The folder may have had another comparison.
-    let _ = std::fs::remove_file(folder.join(SWEEP_LINK));
+    SweepLink::remove(&folder);
     let against_folder = folder.join(AGAINST_FOLDER);
     run_folder::remove_best_shots(&against_folder);
     if let Some((other_text, other, best)) = against {

@@ -3,25 +3,23 @@
 
 use super::table::KindArg;
 use crate::best_shot::{MOST_NODES, best_by_pitch};
-use crate::cli::config_files::{load_profile_with_text, moved, with_fixed};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::fixed_value_flags::FixedOptions;
-use crate::cli::nominal_shot_flags::PlaceOptions;
 use crate::cli::output_files::{self, OutputForm};
 use crate::cli::plot_files::{self, PlotType};
+use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::terminal::{print_answer, wrapped};
 use crate::cli::value_lists::ascending_values;
-use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::fitting::nominal_of;
-use crate::output::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
-use crate::output::shot_table_files::pitch_over_distances::{
-    DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
-};
 use crate::plots;
 use crate::plots::best_by_pitch::UsualShot;
+use crate::present::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
+use crate::present::shot_table_files::pitch_over_distances::{
+    DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
+};
 use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile, SearchSettings};
 use crate::units::{DEGREE_RAD, Dimension, REV_RAD};
@@ -43,12 +41,8 @@ Examples:
   bankshot pitch-curve robot.toml --distances '8 ft to 18 ft by 2 ft'
   bankshot pitch-curve results/season-fit --draws results/season-fit")]
 pub(crate) struct PitchCurveOptions {
-    /// The shooter's profile, or the folder of a fit.
-    pub(crate) profile: PathBuf,
     #[command(flatten)]
-    pub(crate) physics: PhysicsArg,
-    #[command(flatten)]
-    pub(crate) place: PlaceOptions,
+    pub(crate) profile: ProfileOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
     /// The pitch angles, ascending, within the profile's pitch_min and pitch_max [default: from
@@ -79,9 +73,6 @@ pub(crate) struct PitchCurveOptions {
     /// Print JSON instead of the table: an object, with --distances an array.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Units of the output [default: the profile's, else imperial].
-    #[arg(long)]
-    pub(crate) units: Option<UnitsArg>,
 }
 
 pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failure> {
@@ -93,10 +84,8 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     // The pitch angle is given too.
     let mut given = fixed.variables();
     given.push(NominalVariable::Pitch);
-    let loaded = load_profile_with_text(&options.profile, &options.physics, (&given, quiet))?;
-    let loaded = options.scatter.changed(loaded, &options.profile)?;
-    let loaded = with_fixed(loaded, &fixed, &options.profile)?;
-    let (mut profile, _) = moved(loaded, &options.place)?;
+    let loaded = options.profile.load(&given, quiet)?;
+    let profile = fixed.changed(options.scatter.changed(loaded)?)?.profile;
     let choice = profile.search().choice;
     if choice.iter().all(|variable| given.contains(&variable)) {
         return Err(Failure::usage(
@@ -104,18 +93,15 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         ));
     }
     let pitches_rad = pitches_rad(options.pitches.as_deref(), &profile)?;
-    if let Some(units) = options.units {
-        profile = profile.with(|settings| settings.output.units = units.into())?;
-    }
     let units = profile.output().units;
     if let Some(distances) = &options.distances {
         return run_from_distances(options, (&profile, distances), &pitches_rad, quiet);
     }
     // A folder that is no fit is refused before the search.
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
-    let is_own_place = !options.place.is_given();
-    let fit = match is_own_place && options.profile.join("fit.json").is_file() {
-        true => Some(fit_folder::read(&options.profile)?),
+    let is_own_place = !options.profile.place.is_given();
+    let fit = match is_own_place && options.profile.path.join("fit.json").is_file() {
+        true => Some(fit_folder::read(&options.profile.path)?),
         false => None,
     };
     let kind = options.kind.into();

@@ -1,13 +1,14 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
 use super::plan_sweep_time_and_memory;
-use crate::cli::config_files::{load_profile, read_text};
+use crate::cli::config_files::read_text;
 use crate::cli::failure::Failure;
+use crate::cli::loaded_profile::load_profile;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::BatchWorkspace;
 use crate::math::evenly_spaced::CellAxis;
-use crate::output::json_object::{number, object, provenance};
+use crate::present::json_object::{number, object, provenance};
 use crate::probability::MAX_BATCH_BYTES;
 use crate::search_space::{TablePlan, WideSample, sample_wide};
 use crate::shooter::{Nominal, Profile};

@@ -4,7 +4,7 @@ use crate::cli::config_files::load_sweep;
 use crate::cli::failure::Failure;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, time_in_words};
-use crate::output::json_object::{number, object, provenance};
+use crate::present::json_object::{number, object, provenance};
 use crate::probability::MAX_BATCH_BYTES;
 use crate::search_space::{PlanError, TablePlan};
 use crate::sweep::SweepConfig;

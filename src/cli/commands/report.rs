@@ -1,29 +1,30 @@
 //! `bankshot report`: one HTML page of the folder of a run.
 
 use super::sweep_summary;
-use crate::best_shot::{compare_physics, physics_variants};
-use crate::cli::config_files::{load_profile, read_text};
+use crate::best_shot::{PhysicsOf, compare_physics, physics_variants};
+use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::fit_folder;
+use crate::cli::loaded_profile::load_profile;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder::{AGAINST_FOLDER, SWEEP_LINK};
-use crate::cli::shooter_folders;
+use crate::cli::run_folder::AGAINST_FOLDER;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
+use crate::files::atomic_file;
 use crate::fitting::advise;
-use crate::output::atomic_file;
-use crate::output::fit_files::advice_text::brief_advice_text;
 use crate::plots::svg::escaped;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{physics_probabilities, sweep_difference_map};
+use crate::present::fit_files::advice_text::brief_advice_text;
 use crate::report::ReportError;
 use crate::report::best_shot_page::best_shot_page;
-use crate::report::best_shot_run::{
-    BEST_SHOTS_FILE, BestShotRun, CURVES_FILE, PROFILE_FILE, RunTexts, SENSITIVITY_FILE,
-};
 use crate::report::page::Page;
 use crate::report::physics_section::physics_table;
 use crate::report::sweep_page::sweep_page;
+use crate::store::best_run::{ANSWER_FILE, BestRun, PROFILE_FILE};
+use crate::store::fit::{FIT_FILE, PAGE_FILE};
+use crate::store::shooters::fits_within;
+use crate::store::sweep_link::SweepLink;
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Jobs;
 use crate::sweep::result_row::ResultRow;
@@ -43,13 +44,11 @@ pub(crate) struct ReportOptions {
 
 /// The file of a sweep's folder that `sweep` writes first.
 const SWEEP_MANIFEST: &str = "configuration.json";
-/// The file of a fit's folder.
-const FIT_FILE: &str = "fit.json";
 
 pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
     let folder = &options.folder;
     refuse_missing(folder)?;
-    let is_best_run = !folder.join(FIT_FILE).exists() && sweep_of(folder).is_none();
+    let is_best_run = !folder.join(FIT_FILE).exists() && sweep_of(folder)?.is_none();
     if options.with_physics && !is_best_run {
         return Err(Failure::usage(format!(
             "--with-physics: {} is not the folder of a `best` run; leave the option out",
@@ -59,7 +58,7 @@ pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
     if folder.join(FIT_FILE).exists() {
         return page_of_fit(folder, quiet);
     }
-    match sweep_of(folder) {
+    match sweep_of(folder)? {
         Some(sweep) => report_sweep(folder, &sweep, quiet),
         None => report_best_shots(folder, options.with_physics, quiet),
     }
@@ -68,7 +67,7 @@ pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
 /// A fit has its page already, with plots of shots that its folder does not hold. The advice is
 /// added to it.
 fn page_of_fit(folder: &Path, quiet: bool) -> Result<u8, Failure> {
-    let page = folder.join("report.html");
+    let page = folder.join(PAGE_FILE);
     if !page.exists() {
         return Err(Failure::usage(format!(
             "{}: `bankshot fit` writes the page of a fit; run it again",
@@ -117,31 +116,18 @@ const ADVICE_BEGINS: &str = "<section id=\"advice\">";
 /// See [`ADVICE_BEGINS`].
 const SECTION_ENDS: &str = "</section>";
 
-/// The sweep in a folder, or the sweeps whose plots are in it.
-struct SweepPaths {
-    sweep: PathBuf,
-    against: Option<PathBuf>,
-}
-
-fn sweep_of(folder: &Path) -> Option<SweepPaths> {
+fn sweep_of(folder: &Path) -> Result<Option<SweepLink>, Failure> {
     // Also a link that leads nowhere: it is refused with its path later.
     if folder.join(SWEEP_MANIFEST).symlink_metadata().is_ok() {
-        return Some(SweepPaths {
+        return Ok(Some(SweepLink {
             sweep: folder.to_owned(),
             against: None,
-        });
+        }));
     }
-    let link = folder.join(SWEEP_LINK);
-    let text = link.is_file().then(|| read_text(&link).ok()).flatten()?;
-    let link: serde_json::Value = serde_json::from_str(&text).ok()?;
-    let path = |key: &str| Some(PathBuf::from(link.get(key)?.as_str()?));
-    Some(SweepPaths {
-        sweep: path("sweep")?,
-        against: path("against"),
-    })
+    Ok(SweepLink::read(folder)?)
 }
 
-fn report_sweep(folder: &Path, paths: &SweepPaths, quiet: bool) -> Result<u8, Failure> {
+fn report_sweep(folder: &Path, paths: &SweepLink, quiet: bool) -> Result<u8, Failure> {
     let (sweep, config, rows) = open_sweep(&paths.sweep)?;
     let refuse = |error: ReportError| failure(folder, &error);
     let mut page = sweep_page(&config, &rows, (sweep.program(), sweep.hash())).map_err(refuse)?;
@@ -177,15 +163,15 @@ fn report_best_shots(folder: &Path, with_physics: bool, quiet: bool) -> Result<u
         let path = folder.join(PROFILE_FILE);
         let profile = load_profile(&path, &PhysicsArg::default(), true)?;
         let units = profile.output().units;
-        let variants = physics_variants(profile.physics(), units);
+        let variants = physics_variants(profile.physics(), PhysicsOf::Profile);
         let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
         page.tables.push(physics_table(&comparison, units));
         let name = &profile.shooter().name;
         page.plots
-            .push(physics_probabilities::draw(name, &comparison));
+            .push(physics_probabilities::draw(name, &comparison, units));
     }
     let against = folder.join(AGAINST_FOLDER);
-    if against.join(BEST_SHOTS_FILE).exists() {
+    if against.join(ANSWER_FILE).exists() {
         page.add_comparison(best_shots_page_of(&against, quiet)?, None);
     }
     write(folder, &page, quiet)
@@ -197,7 +183,7 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
         return Err(Failure::usage(format!(
             "{}: is not the folder of a `best`, `compare`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST}){}",
             folder.display(),
-            match shooter_folders::of_shooters(folder).is_empty() {
+            match fits_within(folder)?.is_empty() {
                 true => runs_within(folder),
                 false => format!(
                     "; it has the fits of several shooters: `bankshot advise {} --brief` has what to tell each, `bankshot team` a page of all",
@@ -206,18 +192,8 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
             }
         )));
     }
-    let read_if_exists = |name: &str| {
-        let path = folder.join(name);
-        path.exists().then(|| read_text(&path)).transpose()
-    };
-    let texts = RunTexts {
-        profile: read_text(&profile)?,
-        best_shots: read_text(&folder.join(BEST_SHOTS_FILE))?,
-        curves: read_if_exists(CURVES_FILE)?,
-        sensitivity: read_if_exists(SENSITIVITY_FILE)?,
-    };
-    BestShotRun::parse(&texts, &profile.display().to_string())
-        .and_then(|run| best_shot_page(&run, &ProgressBars::new(quiet)))
+    let (profile, run) = BestRun::read(folder)?;
+    best_shot_page(&profile, &run, &ProgressBars::new(quiet))
         .map_err(|error| failure(folder, &error))
 }
 
@@ -250,14 +226,13 @@ fn failure(folder: &Path, error: &ReportError) -> Failure {
             code: code::INCOMPLETE,
             message: format!("{}: {error}", folder.display()),
         },
-        ReportError::File { .. } => Failure::usage(format!("{}: {error}", folder.display())),
         _ => Failure::usage(error),
     }
 }
 
 /// Writes the page into the folder and prints its answer.
 fn write(folder: &Path, page: &Page, quiet: bool) -> Result<u8, Failure> {
-    let target = folder.join("report.html");
+    let target = folder.join(PAGE_FILE);
     let html = page.html()?;
     atomic_file::write_unlinked(&target, html.as_bytes())
         .map_err(|error| Failure::io(target.display(), &error))?;

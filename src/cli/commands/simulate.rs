@@ -6,14 +6,14 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::{Integrator, Simulator};
+use crate::files::atomic_file::{AtomicFile, same_file};
+use crate::files::csv_records::{CsvRecords, Row};
+use crate::files::parquet_rows::{ParquetRows, ParquetSink, column};
 use crate::model::DEFAULT_PRESET;
-use crate::output::atomic_file::{AtomicFile, same_file};
-use crate::output::simulation_files::csv_records::{CsvRecords, Row};
-use crate::output::simulation_files::outcome_columns::{
+use crate::present::simulation_files::outcome_columns::{
     OUTCOME_COLUMNS, OUTCOME_TYPES, outcome_cells,
 };
-use crate::output::simulation_files::parquet_rows::{ParquetRows, ParquetSink, column};
-use crate::output::simulation_files::release_columns::{ReleaseColumns, RowError};
+use crate::present::simulation_files::release_columns::{ReleaseColumns, RowError};
 use crate::probability::Progress;
 use clap::{Args, ValueEnum};
 use csv::{ByteRecord, Writer};

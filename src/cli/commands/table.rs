@@ -3,21 +3,21 @@
 use crate::best_shot::{
     ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
 };
-use crate::cli::config_files::load_profile_with_text;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fixed_value_flags::FixedOptions;
+use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::signals;
 use crate::cli::terminal::{print_answer, print_remark, time_in_words};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
-use crate::output::atomic_file;
-use crate::output::shot_table_files::csv_json::{table_csv, table_json};
-use crate::output::shot_table_files::notes;
-use crate::output::shot_table_files::source_code::{Language, namespace_of, source_code};
-use crate::output::shot_table_files::table_text::table_text;
-use crate::output::shot_table_files::unfinished::UnfinishedTable;
+use crate::files::atomic_file;
+use crate::present::shot_table_files::csv_json::{table_csv, table_json};
+use crate::present::shot_table_files::notes;
+use crate::present::shot_table_files::source_code::{Language, namespace_of, source_code};
+use crate::present::shot_table_files::table_text::table_text;
+use crate::present::shot_table_files::unfinished::UnfinishedTable;
 use crate::shooter::{Location, NominalVariable, Profile};
 use crate::units::Dimension;
 use clap::{Args, ValueEnum};
@@ -139,11 +139,12 @@ impl TableFormat {
 
 pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
-    let loaded = load_profile_with_text(&options.profile, &options.physics, (&fixed, quiet))?;
-    let (mut profile, _) = options.scatter.changed(loaded, &options.profile)?;
-    if let Some(units) = options.units {
-        profile = profile.with(|settings| settings.output.units = units.into())?;
-    }
+    let loaded = LoadedProfile::read(&options.profile, &options.physics, &fixed, quiet)?;
+    let profile = options
+        .scatter
+        .changed(loaded)?
+        .in_units(options.units)?
+        .profile;
     let units = profile.output().units;
     let distances_m = ascending_values("distances", &options.distances, Dimension::Length)?;
     let angles_rad = match &options.angles {

@@ -1,14 +1,13 @@
 //! `bankshot trace`: one shot with its events, its trajectory and a plot.
 
 use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
-use crate::cli::config_files::load_profile;
 use crate::cli::failure::{Failure, code};
-use crate::cli::nominal_shot_flags::{NominalOptions, PlaceOptions};
+use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::plot_files;
+use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::terminal::{print_answer, print_bytes, print_prose, print_remark};
-use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::dynamics::{Release, Trace};
-use crate::output::atomic_file;
+use crate::files::atomic_file;
 use crate::plots::shot_views::{self, MADE_COLOUR, MISSED_COLOUR, ShotPath};
 use crate::plots::svg::shortened;
 use crate::probability::Sampler;
@@ -29,14 +28,10 @@ Examples:
   bankshot trace configs/bank_wing.toml --speed '7.36 m/s' --pitch '54.2 deg' \\
     --polar '53.85 deg' --backspin '3 rev/s' --output shot.csv")]
 pub(crate) struct TraceOptions {
-    /// The shooter's profile (for location, height and physics).
-    pub(crate) profile: PathBuf,
     #[command(flatten)]
-    pub(crate) physics: PhysicsArg,
+    pub(crate) profile: ProfileOptions,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
-    #[command(flatten)]
-    pub(crate) place: PlaceOptions,
     /// Write the trajectory as CSV; - for standard output (then nothing else is printed there).
     #[arg(long, short, value_name = "T.csv")]
     pub(crate) output: Option<PathBuf>,
@@ -46,9 +41,6 @@ pub(crate) struct TraceOptions {
     /// Draw this many more shots with the shooter's errors.
     #[arg(long, value_name = "N", default_value_t = 0, requires = "plot", value_parser = clap::value_parser!(u32).range(0..=5000))]
     pub(crate) swarm: u32,
-    /// Units of the answer [default: the profile's, else imperial].
-    #[arg(long)]
-    pub(crate) units: Option<UnitsArg>,
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub(crate) json: bool,
@@ -60,11 +52,7 @@ const INTERVAL_S: f64 = 0.005;
 const BLACK: &str = "#000000";
 
 pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
-    let profile = load_profile(&options.profile, &options.physics, quiet)?;
-    let mut profile = options.place.moved(profile)?;
-    if let Some(units) = options.units {
-        profile = profile.with(|settings| settings.output.units = units.into())?;
-    }
+    let profile = options.profile.load(&[], quiet)?.profile;
     let units = profile.output().units;
     let nominal = options.nominal.resolve(&profile)?;
     if !quiet {

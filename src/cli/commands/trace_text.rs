@@ -3,7 +3,7 @@
 use crate::dynamics::{Ending, EventKind, Outcome, OutcomeKind, Trace};
 use crate::math::vector::Vec3;
 use crate::model::SolidId;
-use crate::output::json_object::{number, object};
+use crate::present::json_object::{number, object};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use std::fmt::Write;
 

@@ -6,11 +6,11 @@ use crate::fitting::{
     Interval, ProbabilityChange, SessionComparison, SpinSource, VALUE_NAMES, change_of_share,
     compare_probabilities, compare_sessions, probability_change,
 };
-use crate::output::fit_files::fit_json::interval_json;
-use crate::output::fit_files::parameters::value_units;
-use crate::output::fit_files::session_changes_text::{Decision, SessionChange};
-use crate::output::json_object::{number, object};
 use crate::plots::session_changes::{ChangeCause, ChangedValue};
+use crate::present::fit_files::fit_json::interval_json;
+use crate::present::fit_files::session_changes_text::{Decision, SessionChange};
+use crate::present::json_object::{number, object};
+use crate::store::parameters::value_units;
 use crate::units::UnitSystem;
 use serde_json::{Value, json};
 

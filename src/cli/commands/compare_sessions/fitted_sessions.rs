@@ -7,12 +7,12 @@ use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::fitting::{
-    DrawProbabilities, MeasuredRelease, Place, Posterior, ShooterFit, session_names,
-    values_at_height,
+    DrawProbabilities, MeasuredRelease, Place, Posterior, session_names, values_at_height,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::probability::Progress;
 use crate::shooter::Profile;
+use crate::store::fit::Fit;
 use crate::units::UnitSystem;
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub(super) struct Session {
     pub(super) shooter: Option<String>,
     /// What the fit warned of.
     pub(super) warnings: Vec<String>,
-    pub(super) units: Option<UnitSystem>,
+    pub(super) units: UnitSystem,
 }
 
 impl Session {
@@ -50,28 +50,22 @@ impl Session {
         }
     }
 
-    /// `place_names` are those of the places of the fit.
-    fn of(
-        name: String,
-        (shots, place_names): (&ShooterShots, &[String]),
-        mut fit: ShooterFit,
-        number: Option<u32>,
-    ) -> Result<Self, Failure> {
-        let place = fit_folder::index_of_place(number, fit.places.len())?;
-        let makes = fit.makes.at_place(place);
+    /// A session is a fit at one of its places.
+    fn of(name: String, mut fit: Fit, number: Option<u32>) -> Result<Self, Failure> {
+        let place = fit_folder::index_of_place(number, fit.profiles.len())?;
         Ok(Self {
             name,
             is_of_column: false,
-            places: fit.places.len(),
+            places: fit.profiles.len(),
             place,
-            place_name: place_names[place].clone(),
+            place_name: fit.place_names.swap_remove(place),
+            probabilities: fit.usual_probabilities(place),
             posterior: fit.posterior,
-            makes: (makes.made, makes.labelled),
-            probabilities: fit.probabilities.swap_remove(place),
+            makes: fit.observed[place],
             profile: fit.profiles.swap_remove(place),
-            shooter: Some(shots.name.clone()).filter(|name| !name.is_empty()),
-            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
-            units: None,
+            shooter: fit.shooter,
+            warnings: fit.warnings,
+            units: fit.units,
         })
     }
 }
@@ -84,22 +78,7 @@ pub(super) fn read(
 ) -> Result<Session, Failure> {
     let name = path.display().to_string();
     if path.is_dir() {
-        let fit = fit_folder::read(path)?;
-        let place = fit.place_numbered(place)?;
-        return Ok(Session {
-            name,
-            is_of_column: false,
-            places: fit.profiles.len(),
-            place,
-            place_name: fit.place_names[place].clone(),
-            probabilities: fit.usual_probabilities(place),
-            posterior: fit.posterior,
-            makes: fit.observed[place],
-            profile: fit.profiles[place].clone(),
-            shooter: fit.shooter,
-            warnings: fit.warnings,
-            units: Some(fit.units),
-        });
+        return Session::of(name, fit_folder::read(path)?, place);
     }
     let file = measured.read(path)?;
     let shots = file.only_shooter()?;
@@ -107,7 +86,7 @@ pub(super) fn read(
     let fit = file
         .fit(shots, &file.physics)
         .map_err(|error| failure(&name, &error))?;
-    Session::of(name, (shots, &shots.place_names), fit, place)
+    Session::of(name, Fit::of(fit, shots, &file.tracker.0), place)
 }
 
 /// Fits of one physics can be compared, and P of one place.
@@ -229,7 +208,11 @@ pub(super) fn fit_by_session(
         bars.advance(1);
         Ok(Session {
             is_of_column: true,
-            ..Session::of(session.clone(), (shots, &kept.place_names), fit, number)?
+            ..Session::of(
+                session.clone(),
+                Fit::of(fit, &kept, &file.tracker.0),
+                number,
+            )?
         })
     };
     Ok([fit(first, second)?, fit(second, first)?])

@@ -9,8 +9,8 @@ use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
-use crate::output::fit_files::session_changes_text::{SessionSummary, session_changes_text};
 use crate::plots::session_changes;
+use crate::present::fit_files::session_changes_text::{SessionSummary, session_changes_text};
 use crate::probability::Progress;
 use clap::Args;
 use serde_json::Value;
@@ -110,7 +110,7 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
             compared
         }
     };
-    let units = |session: &Session| options.measured.units_or(session.units.unwrap_or_default());
+    let units = |session: &Session| options.measured.units_or(session.units);
     for sessions in &mut compared {
         let units = units(&sessions[0]);
         to_one_release_height(sessions, units);

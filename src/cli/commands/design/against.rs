@@ -3,7 +3,7 @@
 use super::changes::{FirstSession, in_words, known_after};
 use super::tested_shot::TestedShot;
 use crate::fitting::{Covariance, DesignRow, POWER, SessionError, values_of};
-use crate::output::json_object::number;
+use crate::present::json_object::number;
 use crate::shooter::ReleaseVariable;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use serde_json::{Value, json};

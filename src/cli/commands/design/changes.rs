@@ -1,9 +1,9 @@
 //! How many shots show that a shooter has changed: in two equal sessions, and against a first one.
 
-use crate::cli::fit_folder::FitFolder;
 use crate::fitting::{DesignRow, POWER, SessionError};
-use crate::output::fit_files::session_changes_text::two_digits;
-use crate::output::json_object::number;
+use crate::present::fit_files::session_changes_text::two_digits;
+use crate::present::json_object::number;
+use crate::store::fit::Fit;
 use serde_json::{Value, json};
 
 /// The smallest and the largest test.
@@ -23,7 +23,7 @@ pub(super) struct FirstSession {
 
 impl FirstSession {
     /// The shots of a fit at a place: as the fit knows them.
-    pub(super) fn of_fit(fit: &FitFolder, place: usize) -> Self {
+    pub(super) fn of_fit(fit: &Fit, place: usize) -> Self {
         // Those of other places tell the scatter, not this P.
         let shots = match fit.profiles.len() {
             1 => fit.posterior.shots,

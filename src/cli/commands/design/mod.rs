@@ -22,8 +22,8 @@ use crate::fitting::{
     landing_of, release_of_landing, tracked_flight_noise, values_of,
 };
 use crate::measured_shots::source::Source;
-use crate::output::fit_files::session_changes_text::two_digits;
-use crate::output::json_object::number;
+use crate::present::fit_files::session_changes_text::two_digits;
+use crate::present::json_object::number;
 use crate::shooter::{Nominal, Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;

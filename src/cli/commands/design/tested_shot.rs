@@ -3,9 +3,9 @@
 use super::changes::FirstSession;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::best_shot::find_kinds;
-use crate::cli::config_files::load_profile;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
+use crate::cli::loaded_profile::load_profile;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
@@ -66,7 +66,7 @@ impl TestedShot {
             });
         }
         let fit = fit_folder::read(path)?;
-        let place = fit.place_numbered(place)?;
+        let place = fit_folder::index_of_place(place, fit.profiles.len())?;
         let nominal = nominal_of(&fit.posterior.typical().means[place]);
         if fit.profiles.len() > 1 && !quiet {
             print_remark(&format!(

@@ -3,26 +3,21 @@
 use super::options::FitOptions;
 use super::unmeasured_parameters::{UnmeasuredParameter, with_free};
 use crate::cli::failure::Failure;
-use crate::cli::fit_folder::profile_file;
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::plot_files;
 use crate::cli::run_folder::{self, RunKind};
+use crate::files::atomic_file;
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
-use crate::output::atomic_file;
-use crate::output::fit_files::draws_table::draws_parquet;
-use crate::output::fit_files::fit_json::fit_json;
-use crate::output::fit_files::fitted_profile_toml::fitted_profile_toml;
-use crate::output::fit_files::shots_table::shots_csv;
 use crate::plots::measured_shots;
+use crate::present::fit_files::fit_json::fit_json;
+use crate::present::fit_files::fitted_profile_toml::fitted_profile_toml;
+use crate::present::fit_files::shots_table::shots_csv;
 use crate::report::fit_page::fit_page;
+use crate::store::draws::draws_parquet;
+use crate::store::fit::{DRAWS_FILE, FIT_FILE, PAGE_FILE, SHOTS_FILE, profile_file};
+use crate::store::sealed::seal;
 use std::path::Path;
-
-/// The files of every fit, beside a profile for each place and the plots.
-pub(super) const FIT: &str = "fit.json";
-const DRAWS: &str = "draws.parquet";
-pub(super) const SHOTS: &str = "shots.csv";
-const PAGE: &str = "report.html";
 
 /// Writes the files of a fit.
 pub(super) fn write(
@@ -39,19 +34,14 @@ pub(super) fn write(
     let labels = rows
         .zip(labels.map(|(session, shot)| [session.as_str(), shot.as_str()]))
         .collect();
+    let draws = draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?;
+    let rows = shots_csv(fit, &labels, &shots.rejected, units);
+    let json = with_free(fit_json(fit, &source, units), free);
+    let sealed = seal(json, &[(DRAWS_FILE, &draws), (SHOTS_FILE, &rows)]);
     let mut contents: Vec<(String, Vec<u8>)> = vec![
-        (
-            FIT.to_owned(),
-            format!("{:#}\n", with_free(fit_json(fit, &source, units), free)).into_bytes(),
-        ),
-        (
-            DRAWS.to_owned(),
-            draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?,
-        ),
-        (
-            SHOTS.to_owned(),
-            shots_csv(fit, &labels, &shots.rejected, units),
-        ),
+        (FIT_FILE.to_owned(), sealed.into_bytes()),
+        (DRAWS_FILE.to_owned(), draws),
+        (SHOTS_FILE.to_owned(), rows),
     ];
     for place in 0..fit.places.len() {
         let toml = fitted_profile_toml(fit, place, &source, &file.physics_toml, units);
@@ -66,7 +56,7 @@ pub(super) fn write(
     plot_files::write(&folder.join("plots"), &plots)?;
     let page = fit_page(fit, &source, plots, units);
     let html = page.html()?;
-    let path = folder.join(PAGE);
+    let path = folder.join(PAGE_FILE);
     atomic_file::write(&path, html.as_bytes()).map_err(|error| Failure::io(path.display(), &error))
 }
 
@@ -80,7 +70,7 @@ pub(super) fn remove(folder: &Path) -> Result<(), Failure> {
         let end = path.extension();
         end.is_some_and(|end| end == "svg" || end == "png")
     });
-    let fixed = [FIT, DRAWS, SHOTS, PAGE].map(|name| folder.join(name));
+    let fixed = [FIT_FILE, DRAWS_FILE, SHOTS_FILE, PAGE_FILE].map(|name| folder.join(name));
     let profiles = (0..).map(|place| folder.join(profile_file(place)));
     let profiles = profiles.take_while(|path| path.exists());
     for path in fixed.into_iter().chain(profiles).chain(drawn) {

@@ -11,7 +11,8 @@ mod unmeasured_parameters;
 
 use crate::cli::failure::{Failure, code};
 use crate::cli::run_folder;
-use crate::output::atomic_file::same_file;
+use crate::files::atomic_file::same_file;
+use crate::store::fit::SHOTS_FILE;
 use remarks::{print_sessions, print_sides};
 use std::path::{Path, PathBuf};
 
@@ -30,11 +31,10 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
             None => folder,
         }
     });
-    if same_file(&options.shots, &out.join(files::SHOTS)) {
+    if same_file(&options.shots, &out.join(SHOTS_FILE)) {
         return Err(Failure::usage(format!(
-            "--out {}: the fit would write its own {} over your file; name another folder",
-            out.display(),
-            files::SHOTS
+            "--out {}: the fit would write its own {SHOTS_FILE} over your file; name another folder",
+            out.display()
         )));
     }
     for shots in &file.shooters {

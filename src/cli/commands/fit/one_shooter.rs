@@ -14,10 +14,11 @@ use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
-use crate::output::fit_files::fit_json::fit_json;
-use crate::output::fit_files::fit_text::fit_text;
+use crate::present::fit_files::fit_json::fit_json;
+use crate::present::fit_files::fit_text::fit_text;
 use crate::shooter::implausible_values;
-use serde_json::{Value, json};
+use crate::store::{self, fit::FIT_FILE};
+use serde_json::json;
 use std::path::Path;
 
 /// Fits the only shooter of a file into a folder.
@@ -71,7 +72,7 @@ pub(super) fn answer_drag(
 ) -> Result<(), Failure> {
     let found = drag(file, shooters);
     if options.json {
-        print_answer(&format!("{:#}\n", json!({ "free": [found.json] })))?;
+        print_answer(&format!("{:#}\n", json!({ "free": [found.found] })))?;
     } else {
         print_prose(&found.text)?;
     }
@@ -81,10 +82,11 @@ pub(super) fn answer_drag(
 
 /// Refuses the folder of another shooter, whose name is the same as that of a folder.
 fn refuse_other_shooter(folder: &Path, name: &str) -> Result<(), Failure> {
-    let text = std::fs::read_to_string(folder.join("fit.json")).unwrap_or_default();
-    let fit: Value = serde_json::from_str(&text).unwrap_or_default();
-    match fit["shooter"].as_str() {
-        Some(other) if other != name => Err(Failure::usage(format!(
+    if !folder.join(FIT_FILE).exists() {
+        return Ok(());
+    }
+    match store::fit::shooter(folder)? {
+        other if other != name => Err(Failure::usage(format!(
             "{}: holds the fit of {other}; name another folder with --out",
             folder.display()
         ))),
@@ -112,8 +114,8 @@ fn answer(
     }
     if !quiet {
         let warnings = fit.profiles.iter().flat_map(implausible_values);
-        for words in warnings.filter(|words| words.starts_with("location")) {
-            print_remark(&format!("warning: {words}"));
+        for warning in warnings.filter(|warning| warning.key == "location") {
+            print_remark(&format!("warning: {warning}"));
         }
         print_place_scatter(shots, units);
         if fit.places.len() > 1 {

@@ -1,22 +1,22 @@
 //! The fits of several shooters: a folder for each, and one table over all.
 
-use super::files::{self, remove, write};
+use super::files::{remove, write};
 use super::one_shooter::answer_drag;
 use super::options::FitOptions;
 use super::remarks::print_unused;
-use super::shooters_table::{Record, TABLE_FILE, records, table_header, write_table};
+use super::shooters_table::{TABLE_FILE, places_of, write_table};
 use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, drag, estimate, is_drag};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::shooter_folders;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::fitting::{FitWarning, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
-use crate::output::atomic_file;
 use crate::plots::svg::shortened;
 use crate::probability::Progress;
+use crate::store::fit::FIT_FILE;
+use crate::store::shooters::{ShooterPlace, Shooters, fits_within};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use comfy_table::{Table, presets};
 use rayon::prelude::*;
@@ -75,15 +75,15 @@ pub(super) fn fit(
         )));
     }
     // An older fit of all shots together, or of shooters who are no longer in the file.
-    for older in shooter_folders::of_shooters(out) {
+    for older in fits_within(out)? {
         if !folders.contains(&older) {
             remove(&older)?;
         }
     }
-    if out.join(files::FIT).exists() {
+    if out.join(FIT_FILE).exists() {
         remove(out)?;
     }
-    let mut records = Vec::new();
+    let mut shooters = Shooters::default();
     // Places are only named where there are several.
     let names_places = rows
         .iter()
@@ -95,7 +95,7 @@ pub(super) fn fit(
     table.set_header(header.chain(["shots", "made", "expected", "P of the usual\nshot (95 %)"]));
     let mut worst = code::DONE;
     for row in &rows {
-        records.extend(row.records.clone());
+        shooters.places.extend(row.places.clone());
         match &row.result {
             Ok(places) => {
                 for place in places {
@@ -110,24 +110,9 @@ pub(super) fn fit(
             }
         }
     }
-    let path = out.join(TABLE_FILE);
-    write_table(
-        &path,
-        &table_header(options.measured.unit_system()),
-        &records,
-    )?;
     let free = estimate_together(file, &rows, options)?;
-    let free_file = out.join(FREE_FILE);
-    if free.is_empty() && free_file.exists() {
-        // What other shots, or another physics, told.
-        std::fs::remove_file(&free_file)
-            .map_err(|error| Failure::io(free_file.display(), &error))?;
-    }
-    if !free.is_empty() {
-        let json: serde_json::Value = free.iter().map(|found| found.json.clone()).collect();
-        atomic_file::write(&free_file, format!("{json:#}\n").as_bytes())
-            .map_err(|error| Failure::io(free_file.display(), &error))?;
-    }
+    shooters.free = free.iter().map(|found| found.found.clone()).collect();
+    write_table(out, &shooters, options.measured.unit_system())?;
     let assumptions = match &file.shooters[..] {
         [first, ..] => {
             let source = file.source(first);
@@ -167,7 +152,7 @@ pub(super) fn fit(
         print_unused(file);
         print_remark(&format!(
             "written: {}, and a folder for each shooter, whose report.html has the tests and the notes on each fit; next: bankshot advise {}",
-            path.display(),
+            out.join(TABLE_FILE).display(),
             out.display()
         ));
         let has_results = rows.iter().any(|row| {
@@ -182,9 +167,6 @@ pub(super) fn fit(
     }
     Ok(worst)
 }
-
-/// What `--free` found of all shooters together, beside the table.
-const FREE_FILE: &str = "free.json";
 
 /// What the shots of all shooters together say of the parameters of `--free`.
 fn estimate_together(
@@ -224,8 +206,8 @@ fn estimate_together(
 struct ShooterRow {
     /// The fit, if there is one.
     fit: Option<ShooterFit>,
-    /// The rows of shooters.csv, one for each place.
-    records: Vec<Record>,
+    /// The places of the shooter, for the table of all.
+    places: Vec<ShooterPlace>,
     /// A row of the printed table for each place, or why there is no fit.
     result: Result<Vec<PlaceRow>, String>,
     warnings: Vec<String>,
@@ -275,13 +257,15 @@ fn fit_one(
     let fit = match file.fit(shots, &file.physics) {
         Ok(fit) => fit,
         Err(error) => {
-            let mut record = Record::default();
-            record[0].clone_from(&name);
-            record[1] = shots.shots.len().to_string();
-            record[11] = error.to_string();
+            let place = ShooterPlace {
+                shooter: name.clone(),
+                shots: shots.shots.len(),
+                error: error.to_string(),
+                ..ShooterPlace::default()
+            };
             return Ok(ShooterRow {
                 fit: None,
-                records: vec![record],
+                places: vec![place],
                 result: Err(format!("{name}: {error}")),
                 warnings: Vec::new(),
                 is_doubted: false,
@@ -332,12 +316,7 @@ fn fit_one(
         });
     }
     Ok(ShooterRow {
-        records: records(
-            (&name, &shots.place_names),
-            &fit,
-            folder,
-            options.measured.unit_system(),
-        ),
+        places: places_of(&name, &shots.place_names, &fit, folder),
         result: Ok(places),
         is_doubted: is_doubted(&fit),
         warnings: fit

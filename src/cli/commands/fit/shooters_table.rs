@@ -4,75 +4,100 @@ use super::options::FitOptions;
 use crate::cli::failure::Failure;
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::terminal::print_remark;
+use crate::files::atomic_file;
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
-use crate::output::atomic_file;
+use crate::store::shooters::{FittedPlace, ShooterPlace, Shooters};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use std::path::Path;
 
 /// The table over the shooters of a file, in the folder of their fits.
 pub(super) const TABLE_FILE: &str = "shooters.csv";
 
-/// A row of [`TABLE_FILE`].
-pub(super) type Record = [String; 12];
-
-pub(super) fn table_header(units: UnitSystem) -> Record {
-    let (long, _) = units.length();
-    [
-        "shooter".to_owned(),
-        "shots".to_owned(),
-        "made".to_owned(),
-        "place".to_owned(),
-        format!("distance_{long}"),
-        "court_angle_deg".to_owned(),
-        format!("release_height_{long}"),
-        "probability".to_owned(),
-        "low".to_owned(),
-        "high".to_owned(),
-        "folder".to_owned(),
-        "error".to_owned(),
-    ]
-}
-
-/// The rows of a fit, one for each place.
-pub(super) fn records(
-    (name, place_names): (&str, &[String]),
+/// The places of a fit.
+pub(super) fn places_of(
+    name: &str,
+    place_names: &[String],
     fit: &ShooterFit,
     folder: &Path,
-    units: UnitSystem,
-) -> Vec<Record> {
-    let (_, metre) = units.length();
+) -> Vec<ShooterPlace> {
+    let folder = folder.file_name().unwrap_or_default().to_string_lossy();
     let places = fit.places.iter().enumerate();
-    places
-        .map(|(index, place)| {
-            let p = fit.probabilities[index].interval();
-            let makes = fit.makes.at_place(index);
-            let made = (makes.labelled > 0).then(|| makes.made.to_string());
-            [
-                name.to_owned(),
-                makes.shots.len().to_string(),
-                made.unwrap_or_default(),
-                place_names[index].clone(),
-                format!("{:.3}", place.location.distance_m / metre),
-                format!("{:.2}", place.location.angle_rad / DEGREE_RAD),
-                format!("{:.3}", place.release_height_m / metre),
-                format!("{:.4}", p.mean),
-                format!("{:.4}", p.low),
-                format!("{:.4}", p.high),
-                folder.display().to_string(),
-                String::new(),
-            ]
-        })
-        .collect()
+    let place = |(index, place): (usize, &crate::fitting::Place)| {
+        let p = fit.probabilities[index].interval();
+        let makes = fit.makes.at_place(index);
+        ShooterPlace {
+            shooter: name.to_owned(),
+            folder: folder.clone().into_owned(),
+            shots: makes.shots.len(),
+            made: (makes.labelled > 0).then_some(makes.made),
+            place: place_names[index].clone(),
+            fitted: Some(FittedPlace {
+                distance_m: place.location.distance_m,
+                court_angle_rad: place.location.angle_rad,
+                release_height_m: place.release_height_m,
+                probability: p.mean,
+                low: p.low,
+                high: p.high,
+            }),
+            error: String::new(),
+        }
+    };
+    places.map(place).collect()
 }
 
-pub(super) fn write_table(path: &Path, header: &Record, records: &[Record]) -> Result<(), Failure> {
+/// Writes the table and the list of a folder.
+pub(super) fn write_table(
+    folder: &Path,
+    shooters: &Shooters,
+    units: UnitSystem,
+) -> Result<(), Failure> {
+    let (long, metre) = units.length();
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for record in std::iter::once(header).chain(records) {
+    let header = [
+        "shooter",
+        "shots",
+        "made",
+        "place",
+        &format!("distance_{long}"),
+        "court_angle_deg",
+        &format!("release_height_{long}"),
+        "probability",
+        "low",
+        "high",
+        "folder",
+        "error",
+    ];
+    writer.write_record(header).map_err(Failure::bug)?;
+    for place in &shooters.places {
+        let cell = |decimals: usize, value: &dyn Fn(&FittedPlace) -> f64| {
+            let cell = |fitted| format!("{:.decimals$}", value(fitted));
+            place.fitted.as_ref().map_or_else(String::new, cell)
+        };
+        let path = match &place.folder[..] {
+            "" => String::new(),
+            name => folder.join(name).display().to_string(),
+        };
+        let record = [
+            place.shooter.clone(),
+            place.shots.to_string(),
+            place.made.map_or_else(String::new, |made| made.to_string()),
+            place.place.clone(),
+            cell(3, &|fitted| fitted.distance_m / metre),
+            cell(2, &|fitted| fitted.court_angle_rad / DEGREE_RAD),
+            cell(3, &|fitted| fitted.release_height_m / metre),
+            cell(4, &|fitted| fitted.probability),
+            cell(4, &|fitted| fitted.low),
+            cell(4, &|fitted| fitted.high),
+            path,
+            place.error.clone(),
+        ];
         writer.write_record(record).map_err(Failure::bug)?;
     }
     let bytes = writer.into_inner().map_err(Failure::bug)?;
-    atomic_file::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))
+    let path = folder.join(TABLE_FILE);
+    atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+    Ok(shooters.write(folder)?)
 }
 
 /// Puts a fit that was made alone into the table of the folder above, in place of that shooter's
@@ -83,27 +108,23 @@ pub(super) fn renew_table(
     folder: &Path,
     options: &FitOptions,
 ) -> Result<(), Failure> {
-    let Some(path) = folder.parent().map(|above| above.join(TABLE_FILE)) else {
+    let Some(above) = folder.parent() else {
         return Ok(());
     };
-    let header = table_header(options.measured.unit_system());
-    let Ok(mut reader) = csv::Reader::from_path(&path) else {
+    let Some(mut shooters) = Shooters::read(above)? else {
         return Ok(());
     };
-    let rows: Vec<Record> = reader.deserialize().filter_map(Result::ok).collect();
-    let is_same_table = reader.headers().is_ok_and(|own| own.iter().eq(&header));
     let name = file.name_of(shots);
-    let is_own = |row: &Record| row[0] == name;
-    let Some(first) = rows.iter().position(is_own).filter(|_| is_same_table) else {
+    let is_own = |place: &ShooterPlace| place.shooter == name;
+    let Some(first) = shooters.places.iter().position(is_own) else {
         print_remark(&format!(
-            "{}: is not renewed: it has no row of {name}, or is in other units",
-            path.display()
+            "{}: is not renewed: it has no row of {name}",
+            above.join(TABLE_FILE).display()
         ));
         return Ok(());
     };
-    let units = options.measured.unit_system();
-    let mut renewed: Vec<Record> = rows[..first].to_vec();
-    renewed.extend(records((&name, &shots.place_names), fit, folder, units));
-    renewed.extend(rows[first..].iter().filter(|row| !is_own(row)).cloned());
-    write_table(&path, &header, &renewed)
+    shooters.places.retain(|place| !is_own(place));
+    let own = places_of(&name, &shots.place_names, fit, folder);
+    shooters.places.splice(first..first, own);
+    write_table(above, &shooters, options.measured.unit_system())
 }

@@ -5,6 +5,7 @@ use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::fitting::{FittedShooter, ShooterFit, SpinSource, UnseenParameter, likelihood_curve};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::{Preset, SolidId};
+use crate::store::free_parameters::{CurvePoint, FreeParameter};
 use crate::units::{REV_RAD, rounded};
 use serde_json::{Value, json};
 
@@ -46,16 +47,14 @@ pub(super) fn check_shots(
 /// What the shots say of a parameter that was not measured.
 pub(super) struct UnmeasuredParameter {
     pub(super) text: String,
-    pub(super) json: Value,
+    pub(super) found: FreeParameter,
 }
 
 /// The fit for programs, with the parameters that `--free` asked for.
 pub(super) fn with_free(mut fit: Value, free: &[UnmeasuredParameter]) -> Value {
     if !free.is_empty() {
-        fit["free"] = free
-            .iter()
-            .map(|parameter| parameter.json.clone())
-            .collect();
+        let found = free.iter().map(|parameter| &parameter.found);
+        fit["free"] = json!(found.collect::<Vec<_>>());
     }
     fit
 }
@@ -159,21 +158,22 @@ pub(super) fn estimate(
     {
         text += &use_it;
     }
-    let curve_json = curve.points.iter().map(|(value, logarithm)| {
-        json!({ "value": rounded(value / size), "log_likelihood": rounded(*logarithm) })
+    let points = curve.points.iter().map(|(value, logarithm)| CurvePoint {
+        value: rounded(value / size),
+        log_likelihood: rounded(*logarithm),
     });
-    let json = json!({
-        "name": name,
-        "unit": unit.trim(),
-        "best": rounded(best),
-        "low": rounded(low),
-        "high": rounded(high),
-        "is_decided": curve.is_decided,
-        "is_usual": is_usual,
-        "tells_more_than_sources": curve.is_decided && !tells_nothing,
-        "curve": curve_json.collect::<Value>(),
-    });
-    Ok(UnmeasuredParameter { text, json })
+    let found = FreeParameter {
+        name: name.to_owned(),
+        unit: unit.trim().to_owned(),
+        best: Some(rounded(best)),
+        low: Some(rounded(low)),
+        high: Some(rounded(high)),
+        is_decided: curve.is_decided,
+        is_usual: Some(is_usual),
+        tells_more_than_sources: Some(curve.is_decided && !tells_nothing),
+        curve: Some(points.collect()),
+    };
+    Ok(UnmeasuredParameter { text, found })
 }
 
 /// Whether a name is that of the drag, which flights tell without a profile.
@@ -186,10 +186,21 @@ const DRAG: &str = "drag_coefficient";
 /// The drag coefficient by the flights of shooters.
 pub(super) fn drag(file: &MeasuredFile, shooters: &[&ShooterShots]) -> UnmeasuredParameter {
     let own = file.physics.air.drag_coefficient;
+    let none = FreeParameter {
+        name: DRAG.to_owned(),
+        unit: String::new(),
+        best: None,
+        low: None,
+        high: None,
+        is_decided: false,
+        is_usual: None,
+        tells_more_than_sources: None,
+        curve: None,
+    };
     let Some(found) = file.drag_of_flights(shooters) else {
         return UnmeasuredParameter {
             text: "drag_coefficient  these flights cannot tell\n".to_owned(),
-            json: json!({ "name": DRAG, "unit": "", "is_decided": false }),
+            found: none,
         };
     };
     let (best, [low, high]) = (found.best, found.interval);
@@ -205,7 +216,13 @@ pub(super) fn drag(file: &MeasuredFile, shooters: &[&ShooterShots]) -> Unmeasure
             file.physics_name,
             physics_with(file, &format!("drag_coefficient = {best:.3}"))
         ),
-        json: json!({ "name": DRAG, "unit": "", "best": best, "low": low, "high": high, "is_decided": true }),
+        found: FreeParameter {
+            best: Some(best),
+            low: Some(low),
+            high: Some(high),
+            is_decided: true,
+            ..none
+        },
     }
 }
 

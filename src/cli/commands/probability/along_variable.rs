@@ -3,7 +3,7 @@
 use super::options::ProbabilityOptions;
 use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::output_files::{self, OutputForm};
 use crate::cli::plot_files;
@@ -11,11 +11,12 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_remark};
 use crate::cli::value_lists::ascending_values;
 use crate::fitting::{AngleOverDraws, best_angles_of_draws};
-use crate::output::best_shot_text::PROFILE_IS_EXACT;
-use crate::output::probability_along_variable::{PointAlong, ProbabilityAlong};
 use crate::plots;
+use crate::present::best_shot_text::PROFILE_IS_EXACT;
+use crate::present::probability_along_variable::{PointAlong, ProbabilityAlong};
 use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{NominalVariable, Profile};
+use crate::store::fit::Fit;
 
 /// What `--vary` names: a variable, whether it is the angle from the line to the hoop's centre, and
 /// its values, SI.
@@ -60,7 +61,7 @@ impl Varied {
 
 pub(super) fn run(
     options: &ProbabilityOptions,
-    (profile, draws): (&Profile, Option<&FitFolder>),
+    (profile, draws): (&Profile, Option<&Fit>),
     vary: &str,
     quiet: bool,
 ) -> Result<u8, Failure> {

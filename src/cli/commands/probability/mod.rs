@@ -5,7 +5,8 @@ mod options;
 
 use super::trace;
 use crate::analysis::miss_breakdown::classify_misses;
-use crate::cli::config_files::load_profile_with_text;
+use crate::answers::json;
+use crate::answers::probability::{Computed, ProbabilityAnswer};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
@@ -14,8 +15,8 @@ use crate::cli::plot_files::PlotType;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose, print_remark};
 use crate::dynamics::Release;
-use crate::output::best_shot_text::PROFILE_IS_EXACT;
-use crate::output::probability_text_json::{ProbabilityAnswer, answer_json, answer_text};
+use crate::present::best_shot_text::PROFILE_IS_EXACT;
+use crate::present::probability_text::answer_text;
 use crate::probability::{Estimate, MAX_SHOTS, MIN_SHOTS, Sampler, grid_integration, monte_carlo};
 use crate::search_space::TablePlan;
 use crate::shooter::{Nominal, Profile};
@@ -35,12 +36,8 @@ struct Precision {
 }
 
 pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failure> {
-    let loaded = load_profile_with_text(&options.profile, &options.physics, (&[], quiet))?;
-    let (profile, _) = options.scatter.changed(loaded, &options.profile)?;
-    let mut profile = options.place.moved(profile)?;
-    if let Some(units) = options.units {
-        profile = profile.with(|settings| settings.output.units = units.into())?;
-    }
+    let loaded = options.profile.load(&[], quiet)?;
+    let profile = options.scatter.changed(loaded)?.profile;
     output_files::check(&options.output)?;
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
@@ -69,11 +66,10 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     };
     let estimate = estimate(options, &profile, &nominal, &precision, quiet)?;
     let draws_samples = matches!(options.method, Method::Sobol | Method::MonteCarlo);
-    let answer = ProbabilityAnswer {
-        profile: &profile,
-        nominal: &nominal,
+    let computed = Computed {
         method: options.method.name(),
         estimate: &estimate,
+        has_error: options.method != Method::PaperGrid,
         misses: draws_samples
             .then(|| classify_misses(&profile, &nominal, &estimate, precision.seed)),
         seed: precision.seed,
@@ -83,11 +79,12 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         .as_ref()
         .map(|(_, fit)| fit_folder::shot_over_draws(fit, &profile, &nominal))
         .transpose()?;
+    let answer = ProbabilityAnswer::new(&profile, &nominal, &computed, of_draws.as_ref());
+    let units = profile.output().units;
     if options.json {
-        let json = answer_json(&answer, of_draws.as_ref());
-        print_answer(&format!("{json:#}\n"))?;
+        print_answer(&json::text(&json::in_units(&answer, units)))?;
     } else {
-        let mut text = answer_text(&answer);
+        let mut text = answer_text(&answer, units);
         if options.draws.is_none() {
             text += PROFILE_IS_EXACT;
         }

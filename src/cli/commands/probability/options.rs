@@ -1,8 +1,9 @@
 //! The options of `bankshot probability`.
 
-use crate::cli::nominal_shot_flags::{NominalOptions, PlaceOptions};
+use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::value_parsers::{PhysicsArg, UnitsArg, sample, standard_error};
+use crate::cli::value_parsers::{sample, standard_error};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -49,14 +50,10 @@ Examples:
   bankshot probability results/season-fit --draws results/season-fit \\
     --vary 'pitch=45 deg to 60 deg by 1 deg' --plot pitch.png")]
 pub(crate) struct ProbabilityOptions {
-    /// The shooter's profile, or the folder of a fit: its usual shot.
-    pub(crate) profile: PathBuf,
     #[command(flatten)]
-    pub(crate) physics: PhysicsArg,
+    pub(crate) profile: ProfileOptions,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
-    #[command(flatten)]
-    pub(crate) place: PlaceOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
     /// The method of computing P.
@@ -77,9 +74,6 @@ pub(crate) struct ProbabilityOptions {
     /// Trace sample number INDEX of a seed instead.
     #[arg(long, value_name = "SEED:INDEX", value_parser = sample)]
     pub(crate) replay: Option<(u64, u64)>,
-    /// Units of the answer [default: the profile's, else imperial].
-    #[arg(long)]
-    pub(crate) units: Option<UnitsArg>,
     /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
     /// scatter.
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "scatter")]

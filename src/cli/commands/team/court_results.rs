@@ -7,8 +7,8 @@ use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::Difference;
 use crate::fitting::UnseenParameter;
 use crate::model::SolidId;
-use crate::output::fit_files::session_changes_text::two_digits;
 use crate::plots::svg::shortened;
+use crate::present::fit_files::session_changes_text::two_digits;
 use crate::sweep::probability_by_place::{
     PlaceProbabilities, board_aim_of_sides, left_and_right_differ, with_mirror_images,
 };

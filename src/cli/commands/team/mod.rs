@@ -13,7 +13,7 @@ mod team_profiles;
 mod words;
 
 use crate::cli::failure::Failure;
-use crate::cli::nominal_shot_flags::PlaceOptions;
+use crate::cli::profile_flags::PlaceOptions;
 use clap::Args;
 use std::path::PathBuf;
 

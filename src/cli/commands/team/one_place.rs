@@ -7,7 +7,7 @@ use crate::analysis::sensitivity::{Difference, SensitivityTopics};
 use crate::best_shot::{ShotKind, find_kinds};
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
-use crate::cli::nominal_shot_flags::PlaceOptions;
+use crate::cli::profile_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_prose, print_remark};
 use crate::fitting::Interval;

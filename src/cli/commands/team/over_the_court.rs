@@ -11,18 +11,19 @@ use crate::cli::commands::plan_sweep_time_and_memory::forecast_s;
 use crate::cli::commands::sweep::{compute, run_options};
 use crate::cli::config_files::{read_sweep_without_shooter, read_text, warnings_of_fit};
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::fit_folder;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::ring_told_by_makes::ring_told_by_makes;
 use crate::cli::run_folder;
 use crate::cli::terminal::{print_answer, print_prose, print_remark, time_in_words};
+use crate::files::atomic_file;
 use crate::fitting::UnseenParameter;
-use crate::output::atomic_file;
 use crate::plots::player_poster::PlayerPoster;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
 use crate::report::poster_page::{poster_page, posters_page};
+use crate::store::fit::Fit;
+use crate::store::shooters::ring_told_by_makes;
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::{Jobs, Shard};
 use crate::sweep::probability_by_place::PlaceProbabilities;
@@ -35,7 +36,7 @@ use std::time::Instant;
 /// A player whose sweep can begin.
 struct PlannedPlayer {
     name: String,
-    fit: Option<FitFolder>,
+    fit: Option<Fit>,
     /// What its fit warned of, a line each.
     warnings: String,
     config: SweepConfig,
@@ -52,7 +53,7 @@ fn planned_players(
     let players = load_players((players, None), quiet)?.into_iter();
     let planned = players.map(|(path, player)| {
         let name = player.shooter().name.clone();
-        let warnings = warnings_of_fit(&path).into_iter();
+        let warnings = warnings_of_fit(&path)?.into_iter();
         let texts = SourceTexts {
             shooter: Some(read_text(&path)?),
             ..texts.clone()
@@ -84,7 +85,7 @@ fn forecast_in_words(players: &[PlannedPlayer]) -> Option<String> {
     let first = &players[0];
     let sweep_s = forecast_s(&first.config, true)?;
     let fitted = players.iter().filter_map(|player| player.fit.as_ref());
-    let fitted: Vec<&FitFolder> = fitted.collect();
+    let fitted: Vec<&Fit> = fitted.collect();
     let places = Jobs::new(&first.config).sources.len();
     let of_fits_s = fitted
         .first()
@@ -104,7 +105,7 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
     let folder_of = |player: &PlannedPlayer| out.join(run_folder::safe_name(&player.name));
     let folders: Vec<PathBuf> = planned.iter().map(folder_of).collect();
     let units = planned[0].config.settings.output.units;
-    let told = ring_told_by_makes(paths);
+    let told = ring_told_by_makes(paths)?;
     let ring = told.unwrap_or(UnseenParameter::HoopRestitution.usual_range());
     if !quiet && !folders.iter().any(|folder| folder.exists()) {
         forecast_in_words(&planned)

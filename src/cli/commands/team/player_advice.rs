@@ -1,12 +1,12 @@
 //! What the measured shots of a player say.
 
 use crate::cli::failure::Failure;
-use crate::cli::fit_folder::FitFolder;
 use crate::fitting::advise;
-use crate::output::fit_files::advice_for_team::{ShortAdvice, advice_for_poster, short_advice};
-use crate::output::fit_files::advice_text::brief_advice_text;
+use crate::present::fit_files::advice_for_team::{ShortAdvice, advice_for_poster, short_advice};
+use crate::present::fit_files::advice_text::brief_advice_text;
 use crate::probability::Progress;
 use crate::shooter::OutputSettings;
+use crate::store::fit::Fit;
 
 /// What a fitted player's own shots say, at the first place of the fit.
 pub(super) struct PlayerAdvice {
@@ -25,7 +25,7 @@ pub(super) struct PlayerAdvice {
 impl PlayerAdvice {
     /// At the first place of the fit.
     pub(super) fn of_fit(
-        fit: &FitFolder,
+        fit: &Fit,
         output: &OutputSettings,
         progress: &dyn Progress,
     ) -> Result<Self, Failure> {

@@ -4,10 +4,11 @@
 use crate::analysis::sensitivity::Difference;
 use crate::best_shot::likely_board_restitutions;
 use crate::cli::failure::Failure;
-use crate::cli::fit_folder::{self, FitFolder};
+use crate::cli::fit_folder;
 use crate::fitting::{DrawProbabilities, nominal_of};
 use crate::model::SolidId;
 use crate::probability::{Progress, Sampler, Silent};
+use crate::store::fit::Fit;
 use crate::sweep::SweepConfig;
 use crate::sweep::probability_by_place::{LeastGain, PlaceProbabilities, Preference};
 use std::time::Instant;
@@ -22,7 +23,7 @@ const FAR_APART: f64 = 0.1;
 pub(super) fn find_sureness(
     places: &mut [PlaceProbabilities],
     config: &SweepConfig,
-    fit: &FitFolder,
+    fit: &Fit,
     progress: &dyn Progress,
 ) -> Result<(), Failure> {
     let is_open = |place: &PlaceProbabilities| {
@@ -88,7 +89,7 @@ fn share_of_both(gain: &DrawProbabilities, mirror: &DrawProbabilities) -> f64 {
 }
 
 /// Seconds that [`find_sureness`] takes at one place, measured with a shot of the fit.
-pub(super) fn sureness_s(fit: &FitFolder) -> f64 {
+pub(super) fn sureness_s(fit: &Fit) -> f64 {
     let nominal = nominal_of(&fit.posterior.typical().means[0]);
     let start = Instant::now();
     match fit_folder::bank_gain_over_draws(fit, &fit.profiles[0], [&nominal; 2]) {

@@ -1,0 +1,11 @@
+//! The files and texts of a fitted shooter.
+
+pub mod advice_for_team;
+pub mod advice_text;
+mod assumptions_json;
+pub mod change_in_words;
+pub mod fit_json;
+pub mod fit_text;
+pub mod fitted_profile_toml;
+pub mod session_changes_text;
+pub mod shots_table;

@@ -1,0 +1,127 @@
+//! The parameters of a fit, by name, in the units of results.
+
+use crate::fitting::{Draw, Interval, Posterior, SpinSource, VALUE_NAMES, pair_name};
+use crate::units::{Dimension, UnitSystem};
+
+/// One parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name, such as `speed_sd`.
+    pub name: String,
+    /// Its unit; empty for none.
+    pub unit: &'static str,
+    /// Its distribution, in that unit.
+    pub interval: Interval,
+    /// `measured`, `from landings`, `from trajectories`, `given` or `assumed`.
+    pub source: &'static str,
+}
+
+/// Unit and its size in SI units of each of the values.
+#[must_use]
+pub fn value_units(units: UnitSystem) -> [(&'static str, f64); 4] {
+    [
+        Dimension::Speed,
+        Dimension::Angle,
+        Dimension::Angle,
+        Dimension::Spin,
+    ]
+    .map(|dimension| units.unit(dimension))
+    .map(|unit| (unit.name, unit.size))
+}
+
+/// The name of the mean of a value at a place, by its index; the first has no number.
+pub(crate) fn mean_name(place: usize, value: &str) -> String {
+    match place {
+        0 => format!("{value}_mean"),
+        _ => format!("place_{}_{value}_mean", place + 1),
+    }
+}
+
+/// All parameters of a posterior: means (of further places with the number of the place), standard
+/// deviations, correlations, the tail weight (one over the degrees of freedom) where it was fitted,
+/// and the coefficients of the speed's standard deviation where there are several. `kind` is what
+/// was measured: `releases`, `landings` or `trajectories`.
+#[must_use]
+pub fn parameters(posterior: &Posterior, kind: &str, units: UnitSystem) -> Vec<Parameter> {
+    // Releases that the flight model found under a landing or a track were not measured.
+    let release_source = match kind {
+        "landings" => "from landings",
+        "trajectories" => "from trajectories",
+        _ => "measured",
+    };
+    let of_value = value_units(units);
+    let measured = if posterior.spin == SpinSource::Measured {
+        4
+    } else {
+        3
+    };
+    let source = |value: usize| {
+        if value < 3 {
+            release_source
+        } else {
+            posterior.spin.name()
+        }
+    };
+    let mut parameters = Vec::new();
+    let mut add =
+        |name: String, (unit, size): (&'static str, f64), source, value: &dyn Fn(&Draw) -> f64| {
+            parameters.push(Parameter {
+                name,
+                unit,
+                interval: posterior.summary(value).scaled(1.0 / size),
+                source,
+            });
+        };
+    for place in 0..posterior.draws[0].means.len() {
+        for (i, name) in VALUE_NAMES.iter().enumerate() {
+            let name = mean_name(place, name);
+            add(name, of_value[i], source(i), &|draw| draw.means[place][i]);
+        }
+    }
+    for (i, name) in VALUE_NAMES.iter().enumerate() {
+        let source = match (i < 3, posterior.spin) {
+            (true, _) => release_source,
+            (false, SpinSource::Measured) => "measured",
+            // The scatter of a spin that was not measured is the population's, also where its
+            // mean was given.
+            (false, _) => "assumed",
+        };
+        add(format!("{name}_sd"), of_value[i], source, &|draw| {
+            draw.sds[i]
+        });
+    }
+    for j in 1..measured {
+        for i in 0..j {
+            let name = format!("corr_{}", pair_name(i, j));
+            add(name, ("", 1.0), release_source, &|draw| {
+                draw.correlation[(i, j)]
+            });
+        }
+    }
+    if posterior.draws.iter().any(|draw| draw.tail_weight > 0.0) {
+        add(
+            "tail_weight".to_owned(),
+            ("", 1.0),
+            release_source,
+            &|draw| draw.tail_weight,
+        );
+    }
+    let metre = units.length().1;
+    let coefficients = [
+        ("c10", of_value[0].0, metre),
+        ("c11", "", 1.0),
+        ("c12", units.unit(Dimension::PerSpeed).name, 1.0 / metre),
+    ];
+    if posterior.growth_terms > 0 {
+        for (k, (name, unit, size)) in coefficients
+            .into_iter()
+            .enumerate()
+            .take(posterior.growth_terms + 1)
+        {
+            add(name.to_owned(), (unit, size), release_source, &|draw| {
+                draw.speed_coefficients[k]
+            });
+        }
+    }
+    parameters
+}
