@@ -17,5 +17,5 @@ fn main() -> std::io::Result<()> {
     let half_court::HalfCourt { config, rows } = half_court::HalfCourt::load();
     let plot = sweep_bank_direct_map::draw(&SweepResults::new(&config, &rows))
         .ok_or_else(|| std::io::Error::other("the half court has no bank or no direct shots"))?;
-    std::fs::write(folder.join("bank_and_direct.svg"), plot.svg)
+    std::fs::write(folder.join("bank_and_direct.svg"), plot.svg.as_bytes())
 }

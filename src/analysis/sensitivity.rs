@@ -61,12 +61,6 @@ impl ShotWindow {
         NominalVariable::Polar,
     ];
 
-    /// Its width, SI units; 0 if there is none.
-    #[must_use]
-    pub fn width(&self) -> f64 {
-        self.ends.map_or(0.0, |(low, high)| high - low)
-    }
-
     /// First step and far end of the search for an end of the window, SI units.
     fn search_range(variable: NominalVariable) -> (f64, f64) {
         match variable {

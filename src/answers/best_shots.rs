@@ -1,4 +1,31 @@
 //! The best direct and the best bank shot from a place.
+//!
+//! ```
+//! use bankshot::answers::best_shots::BestShotsAnswer;
+//! use bankshot::answers::json::in_units;
+//! use bankshot::probability::Silent;
+//! use bankshot::units::UnitSystem;
+//!
+//! let text = r#"
+//! location = { distance = "13.75 ft", angle = "0 deg" }
+//! grid = { speed = 16, pitch = 10, polar = 10, backspin = 4 }
+//! search = { standard_error = 0.01 }
+//! [shooter]
+//! release_height = "7 ft"
+//! max_backspin = "3 rev/s"
+//! errors = { speed = "0.25 ft/s", pitch = "1.2 deg", polar = "1.22 deg", backspin = "0.3 rev/s" }
+//! "#;
+//! let profile = bankshot::config::parse_profile(text, "the example")?;
+//! let best = bankshot::best_shot::find(&profile, &Silent)?;
+//! let answer = BestShotsAnswer::new(&profile, &best);
+//! let direct = answer.direct.as_ref().unwrap();
+//! assert!(direct.shot.probability > 0.6);
+//! // The same for programs, in the units of results.
+//! let json = in_units(&answer, UnitSystem::Metric);
+//! assert!(json["direct"]["speed_m_s"].as_f64().unwrap() > 7.0);
+//! assert_eq!(json["program"], "bankshot");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::json::{Named, Provenance, si_name};
 use crate::analysis::bank_aim::closed_form_polar_rad;
@@ -138,8 +165,7 @@ impl ShotAnswer {
 }
 
 /// The names of the limits that a shot lies at.
-#[must_use]
-pub fn limit_names(shot: &BestShot) -> String {
+fn limit_names(shot: &BestShot) -> String {
     let limits = shot.at_limits.iter().copied();
     let names: Vec<&str> = limits.map(Limit::name).collect();
     names.join(" ")

@@ -1,4 +1,34 @@
 //! P of one nominal shot.
+//!
+//! ```
+//! use bankshot::answers::probability::{Computed, ProbabilityAnswer};
+//! use bankshot::probability::{Sampler, Silent};
+//! use bankshot::shooter::Nominal;
+//! use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+//!
+//! let text = std::fs::read_to_string("configs/free_throw.toml")?;
+//! let profile = bankshot::config::parse_profile(&text, "the example")?;
+//! let shot = Nominal {
+//!     speed_m_s: 24.4 * FOOT_M,
+//!     pitch_rad: 52.0 * DEGREE_RAD,
+//!     backspin_rad_s: 3.0 * REV_RAD,
+//!     ..Nominal::default()
+//! };
+//! let (target, seed) = (0.01, profile.search().seed);
+//! let estimate = Sampler::new(&profile).estimate(&shot, target, seed, &Silent);
+//! let computed = Computed {
+//!     method: "sobol",
+//!     estimate: &estimate,
+//!     has_error: true,
+//!     misses: None,
+//!     target,
+//!     seed,
+//! };
+//! let answer = ProbabilityAnswer::new(&profile, &shot, &computed, None);
+//! assert_eq!(answer.target_met, Some(true));
+//! assert!(answer.probability > 0.6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use super::json::{Named, Provenance, si_name};
 use crate::analysis::miss_breakdown::MissBreakdown;

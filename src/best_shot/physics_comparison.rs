@@ -42,8 +42,7 @@ pub enum PhysicsChange {
 impl PhysicsChange {
     /// Whether nobody measured it in this gym. The altitude, the thickness of a ring and its
     /// bracket are known of every gym.
-    #[must_use]
-    pub fn is_unmeasured(self) -> bool {
+    fn is_unmeasured(self) -> bool {
         !matches!(
             self,
             Self::NoAir | Self::Altitude | Self::ThinRing | Self::NoBracket

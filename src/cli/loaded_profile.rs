@@ -2,30 +2,24 @@
 
 use super::config_files::{other_physics_warning, physics_text, read_text, warnings_of_fit};
 use super::failure::Failure;
-use super::terminal::print_remark;
+use super::terminal::{is_quiet, print_remark};
 use super::value_parsers::{PhysicsArg, UnitsArg};
 use crate::config::{is_physics_alone, parse_physics, parse_profile};
 use crate::shooter::{NominalVariable, Profile, implausible_values, nominal_values_not_fixed};
 use crate::sweep::sweep_toml::is_sweep;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml_edit::{DocumentMut, Item, TableLike, Value, table};
 
 /// A profile with its text. A change of the text keeps what it does not touch, also comments.
 pub(crate) struct LoadedProfile {
     pub(crate) profile: Profile,
     document: DocumentMut,
-    origin: String,
+    path: PathBuf,
 }
 
 impl LoadedProfile {
-    /// Reads and checks a profile, and warns of what is implausible in it. `fixed` are nominal
-    /// values that the command itself fixes.
-    pub(crate) fn read(
-        path: &Path,
-        physics: &PhysicsArg,
-        fixed: &[NominalVariable],
-        quiet: bool,
-    ) -> Result<Self, Failure> {
+    /// Reads and checks a profile, without a warning.
+    pub(crate) fn read(path: &Path, physics: &PhysicsArg) -> Result<Self, Failure> {
         // The folder of a fit or of a run holds its profile.
         let in_folder = path.join("profile.toml");
         let path = if in_folder.is_file() {
@@ -34,39 +28,53 @@ impl LoadedProfile {
             path
         };
         let text = read_profile_text(path)?;
-        let origin = path.display().to_string();
         // The profile itself must be valid, with its own physics.
-        let profile = parse_profile(&text, &origin)?;
-        if !quiet {
-            warn(path, &profile, fixed)?;
-        }
+        let profile = parse_profile(&text, &path.display().to_string())?;
         let loaded = Self {
             document: text.parse().map_err(Failure::bug)?,
             profile,
-            origin,
+            path: path.to_owned(),
         };
         match &physics.physics {
-            Some(name) => loaded.with_physics(name, quiet),
+            Some(name) => loaded.with_physics(name),
             None => Ok(loaded),
         }
     }
 
+    /// The same, with warnings of what is implausible in it, and of what another physics changes.
+    /// `fixed` are nominal values that the command itself fixes.
+    pub(crate) fn read_and_warn(
+        path: &Path,
+        physics: &PhysicsArg,
+        fixed: &[NominalVariable],
+    ) -> Result<Self, Failure> {
+        let own = Self::read(path, &PhysicsArg::default())?;
+        if is_quiet() {
+            return Self::read(path, physics);
+        }
+        warn(&own.path, &own.profile, fixed)?;
+        let Some(name) = &physics.physics else {
+            return Ok(own);
+        };
+        let before = own.profile.clone();
+        let loaded = own.with_physics(name)?;
+        if let Some(warning) = other_physics_warning(&before, &loaded.profile, name) {
+            print_remark(&warning);
+        }
+        Ok(loaded)
+    }
+
     /// The profile under another physics.
-    fn with_physics(self, name: &str, quiet: bool) -> Result<Self, Failure> {
+    fn with_physics(self, name: &str) -> Result<Self, Failure> {
         let text = physics_text(name)?;
         // By itself first, so that a message names the file and its own line.
         parse_physics(&text, name)?;
         let other: DocumentMut = text.parse().map_err(Failure::bug)?;
-        let own = self.profile.clone();
-        let changed = self.edited(&format!("--physics '{name}'"), |document| {
+        self.edited(&format!("--physics '{name}'"), |document| {
             document.remove("physics");
             document.insert("physics", other["physics"].clone());
             Ok(())
-        })?;
-        if !quiet && let Some(warning) = other_physics_warning(&own, &changed.profile, name) {
-            print_remark(&warning);
-        }
-        Ok(changed)
+        })
     }
 
     /// The profile with a changed text, which says by which flags.
@@ -77,7 +85,7 @@ impl LoadedProfile {
     ) -> Result<Self, Failure> {
         edit(&mut self.document)?;
         let text = format!("# With {flags}\n{}", self.document);
-        self.profile = parse_profile(&text, &format!("{} with {flags}", self.origin))?;
+        self.profile = parse_profile(&text, &format!("{} with {flags}", self.path.display()))?;
         self.document = text.parse().map_err(Failure::bug)?;
         Ok(self)
     }
@@ -100,13 +108,9 @@ impl LoadedProfile {
     }
 }
 
-/// Reads and checks a profile.
-pub(crate) fn load_profile(
-    path: &Path,
-    physics: &PhysicsArg,
-    quiet: bool,
-) -> Result<Profile, Failure> {
-    Ok(LoadedProfile::read(path, physics, &[], quiet)?.profile)
+/// Reads and checks a profile, with its warnings.
+pub(crate) fn load_profile(path: &Path, physics: &PhysicsArg) -> Result<Profile, Failure> {
+    Ok(LoadedProfile::read_and_warn(path, physics, &[])?.profile)
 }
 
 /// A table of a profile, made where there is none.

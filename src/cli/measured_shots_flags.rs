@@ -24,6 +24,7 @@ use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use toml_edit::DocumentMut;
 
 /// What a file of measured shots does not say by itself.
 #[derive(Args, Clone, Debug)]
@@ -562,18 +563,10 @@ fn physics_table(name: &str) -> Result<String, Failure> {
         return Ok(format!("[physics]\npreset = \"{name}\""));
     }
     let text = read_text(Path::new(name))?;
-    let mut kept = String::new();
-    let mut is_inside = false;
-    for line in text.lines() {
-        if line.trim_start().starts_with('[') {
-            is_inside = line.trim_start().starts_with("[physics");
-        }
-        if is_inside {
-            kept += line;
-            kept.push('\n');
-        }
-    }
-    Ok(kept)
+    let mut document: DocumentMut = text.parse().map_err(Failure::usage)?;
+    document.retain(|key, _| key == "physics");
+    document.set_trailing("");
+    Ok(document.to_string())
 }
 
 impl MeasuredFile {

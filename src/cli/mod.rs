@@ -103,35 +103,35 @@ fn run_caught(arguments: &Arguments) -> u8 {
 }
 
 fn run(arguments: &Arguments) -> Result<u8, Failure> {
-    let quiet = arguments.quiet;
+    terminal::set_quiet(arguments.quiet);
     if let Some(instructions) = arguments.simd {
         instructions.use_by_default();
     }
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
-        Command::Best(options) => best::run(options, quiet),
-        Command::Compare(options) => compare::run(options, quiet),
-        Command::Fit(options) => fit::run(options, quiet),
-        Command::Advise(options) => advise::run(options, quiet),
-        Command::CompareSessions(options) => compare_sessions::run(options, quiet),
-        Command::Design(options) => design::run(options, quiet),
-        Command::New(options) => new::run(options, quiet),
-        Command::Team(options) => team::run(options, quiet),
-        Command::Table(options) => table::run(options, quiet),
-        Command::Check(options) => check::run(options, quiet),
-        Command::PitchCurve(options) => pitch_curve::run(options, quiet),
-        Command::Physics(options) => physics::run(options, quiet),
-        Command::Plan(options) => plan::run(options, quiet),
-        Command::Probability(options) => probability::run(options, quiet),
-        Command::Simulate(options) => simulate::run(options, quiet),
-        Command::Sweep(options) => sweep::run(options, quiet),
+        Command::Best(options) => best::run(options),
+        Command::Compare(options) => compare::run(options),
+        Command::Fit(options) => fit::run(options),
+        Command::Advise(options) => advise::run(options),
+        Command::CompareSessions(options) => compare_sessions::run(options),
+        Command::Design(options) => design::run(options),
+        Command::New(options) => new::run(options),
+        Command::Team(options) => team::run(options),
+        Command::Table(options) => table::run(options),
+        Command::Check(options) => check::run(options),
+        Command::PitchCurve(options) => pitch_curve::run(options),
+        Command::Physics(options) => physics::run(options),
+        Command::Plan(options) => plan::run(options),
+        Command::Probability(options) => probability::run(options),
+        Command::Simulate(options) => simulate::run(options),
+        Command::Sweep(options) => sweep::run(options),
         Command::Status(options) => sweep_status::status(options),
-        Command::Verify(options) => sweep_status::verify(options, quiet),
+        Command::Verify(options) => sweep_status::verify(options),
         Command::Missing(options) => sweep_status::missing(options),
-        Command::Merge(options) => sweep::merge(options, quiet),
-        Command::Report(options) => report::run(options, quiet),
-        Command::Figures { out } => figures::run(out, quiet),
-        Command::Trace(options) => trace::run(options, quiet),
+        Command::Merge(options) => sweep::merge(options),
+        Command::Report(options) => report::run(options),
+        Command::Figures { out } => figures::run(out),
+        Command::Trace(options) => trace::run(options),
         Command::Schema => {
             terminal::print_answer(&format!("{:#}\n", crate::config::schema::schema()))
         }

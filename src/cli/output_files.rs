@@ -1,13 +1,14 @@
 //! Files that `--output` names, beside what a command prints.
 
 use super::failure::{Failure, code};
-use super::terminal::print_remark;
+use super::terminal::{print_answer, print_hint};
 use crate::files::atomic_file;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// How an answer is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum OutputForm {
+enum OutputForm {
     Csv,
     Json,
     Text,
@@ -43,21 +44,36 @@ pub(crate) fn check(paths: &[PathBuf]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes the outputs, each in the form that its name asks for.
-pub(crate) fn write(
+/// An answer in each of its forms.
+pub(crate) trait Rendered {
+    fn text(&self) -> String;
+    fn json(&self) -> Value;
+    fn csv(&self) -> String;
+}
+
+/// Writes an answer into the outputs, each in the form that its name asks for, and prints it.
+pub(crate) fn deliver(
+    answer: &impl Rendered,
     paths: &[PathBuf],
-    content: impl Fn(OutputForm) -> String,
+    is_json: bool,
 ) -> Result<(), Failure> {
+    let json = || format!("{:#}\n", answer.json());
     for path in paths {
-        atomic_file::write(path, content(form_of(path)?).as_bytes())
+        let content = match form_of(path)? {
+            OutputForm::Csv => answer.csv(),
+            OutputForm::Json => json(),
+            OutputForm::Text => answer.text(),
+        };
+        atomic_file::write(path, content.as_bytes())
             .map_err(|error| Failure::io(path.display(), &error))?;
     }
+    print_answer(&if is_json { json() } else { answer.text() })?;
     Ok(())
 }
 
 /// Says which of some files there are now.
-pub(crate) fn print_written<'a>(paths: impl Iterator<Item = &'a PathBuf>, quiet: bool) {
-    for path in paths.filter(|path| !quiet && path.exists()) {
-        print_remark(&format!("written: {}", path.display()));
+pub(crate) fn print_written<'a>(paths: impl Iterator<Item = &'a PathBuf>) {
+    for path in paths.filter(|path| path.exists()) {
+        print_hint(&format!("written: {}", path.display()));
     }
 }

@@ -1,7 +1,7 @@
 //! Writes plots as SVG and PNG.
 
 use super::failure::{Failure, code};
-use super::terminal::{print_prose, print_remark};
+use super::terminal::{print_hint, print_prose};
 use crate::files::atomic_file;
 use crate::plots::rasterise::to_png;
 use crate::plots::svg::Plot;
@@ -50,22 +50,20 @@ impl PlotType {
 /// Writes one plot to the file that `--plot` names.
 pub(crate) fn write_one(path: &Path, plot: &Plot) -> Result<(), Failure> {
     let bytes = match PlotType::of(path)? {
-        PlotType::Svg => plot.svg.clone().into_bytes(),
+        PlotType::Svg => plot.svg.as_bytes().to_vec(),
         PlotType::Png => to_png(&plot.svg, PNG_SCALE).map_err(Failure::bug)?,
     };
     atomic_file::write(path, &bytes).map_err(|error| Failure::io(path.display(), &error))
 }
 
 /// Prints the captions of the written plots.
-pub(crate) fn print_captions(folder: &Path, plots: &[Plot], quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn print_captions(folder: &Path, plots: &[Plot]) -> Result<u8, Failure> {
     for plot in plots {
         print_prose(&format!("{}: {}\n", plot.name, plot.caption))?;
     }
-    if !quiet {
-        print_remark(&format!(
-            "plots written to {} (svg and png)",
-            folder.display()
-        ));
-    }
+    print_hint(&format!(
+        "plots written to {} (svg and png)",
+        folder.display()
+    ));
     Ok(code::DONE)
 }

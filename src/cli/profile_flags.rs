@@ -26,12 +26,8 @@ pub(crate) struct ProfileOptions {
 
 impl ProfileOptions {
     /// Reads the profile, at its place. `fixed` are nominal values that the command itself fixes.
-    pub(crate) fn load(
-        &self,
-        fixed: &[NominalVariable],
-        quiet: bool,
-    ) -> Result<LoadedProfile, Failure> {
-        let loaded = LoadedProfile::read(&self.path, &self.physics, fixed, quiet)?;
+    pub(crate) fn load(&self, fixed: &[NominalVariable]) -> Result<LoadedProfile, Failure> {
+        let loaded = LoadedProfile::read_and_warn(&self.path, &self.physics, fixed)?;
         self.place.changed(loaded)?.in_units(self.units)
     }
 }

@@ -1,7 +1,7 @@
 //! Progress on standard error: bars on a terminal, now and then a line elsewhere.
 
 use super::embedded_session;
-use super::terminal::print_remark;
+use super::terminal::{is_quiet, print_remark};
 use crate::probability::Progress;
 use indicatif::{
     HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
@@ -96,7 +96,7 @@ fn log_line(shared: &SharedBar, now: Instant) -> Option<String> {
 
 /// Shows each stage as a progress bar. Stages that overlap share one.
 pub(crate) struct ProgressBars {
-    quiet: bool,
+    is_shown: bool,
     bar: Mutex<Option<SharedBar>>,
     /// Where standard error is a file or a pipe.
     log: Option<Mutex<LogLines>>,
@@ -105,20 +105,31 @@ pub(crate) struct ProgressBars {
 }
 
 impl ProgressBars {
-    pub(crate) fn new(quiet: bool) -> Self {
+    /// Bars, unless the user wants none.
+    pub(crate) fn new() -> Self {
+        Self::shown(!is_quiet())
+    }
+
+    /// No bars: what they say stands elsewhere.
+    pub(crate) fn hidden() -> Self {
+        Self::shown(false)
+    }
+
+    fn shown(is_shown: bool) -> Self {
         Self {
-            quiet,
+            is_shown,
             bar: Mutex::new(None),
-            log: (!quiet && !std::io::stderr().is_terminal()).then(|| Mutex::new(LogLines::new())),
+            log: (is_shown && !std::io::stderr().is_terminal())
+                .then(|| Mutex::new(LogLines::new())),
             embedded: embedded_session::progress(),
         }
     }
 
     fn new_bar(&self, stage: &str, total: u64) -> ProgressBar {
-        let target = if self.quiet {
-            ProgressDrawTarget::hidden()
-        } else {
+        let target = if self.is_shown {
             ProgressDrawTarget::stderr_with_hz(8)
+        } else {
+            ProgressDrawTarget::hidden()
         };
         ProgressBar::with_draw_target(Some(total), target)
             .with_style(style(OF_ONE_STAGE))

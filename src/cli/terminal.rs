@@ -4,6 +4,7 @@ use super::embedded_session;
 use super::failure::{Failure, code};
 use crate::shooter::is_control_or_direction;
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Prints an answer. A closed reader (`| head -1`) is not a failure.
 pub(crate) fn print_answer(text: &str) -> Result<u8, Failure> {
@@ -91,6 +92,27 @@ pub(crate) fn print_bytes(bytes: &[u8]) -> Result<u8, Failure> {
         Ok(()) => Ok(code::DONE),
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(code::DONE),
         Err(error) => Err(Failure::io("standard output", &error)),
+    }
+}
+
+/// Whether the user wants no remarks that can be left out, and no progress bars. It belongs to the
+/// terminal, as the level of a log does.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Sets whether the user wants only what was asked for.
+pub(crate) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// See [`set_quiet`].
+pub(crate) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints a remark that the user may not want.
+pub(crate) fn print_hint(text: &str) {
+    if !is_quiet() {
+        print_remark(text);
     }
 }
 

@@ -12,9 +12,7 @@ use rand::rngs::ChaCha12Rng;
 use rand::{Rng, SeedableRng};
 
 /// Available dimensions.
-pub const DIMENSIONS: usize = 9;
-/// Greatest number of points of one replicate.
-pub const MAX_POINTS: u32 = 1 << 31;
+const DIMENSIONS: usize = 9;
 
 /// Degree, coefficients and first direction numbers of dimensions 2 to 9.
 const PRIMITIVE: [(u32, u32, &[u32]); DIMENSIONS - 1] = [

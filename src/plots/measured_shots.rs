@@ -485,7 +485,10 @@ fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
     let posterior = &fit.posterior;
     let of_sd = |i: usize, unit: f64| posterior.summary(|draw| draw.sds[i]).scaled(1.0 / unit);
     let has_several_places = fit.places.len() > 1;
-    let mut rows: Vec<(String, Interval)> = Vec::new();
+    // Label, interval, and the ends of its scale.
+    let mut rows: Vec<(String, Interval, (f64, f64))> = Vec::new();
+    let share = |label, percent| (label, percent, (0.0, 100.0));
+    let scatter = |label, interval: Interval| (label, interval, (0.0, 1.3 * interval.high));
     for (place, probabilities) in fit.probabilities.iter().enumerate() {
         let at = if has_several_places {
             format!(", place {}", place + 1)
@@ -493,7 +496,7 @@ fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
             String::new()
         };
         let p = probabilities.interval().scaled(100.0);
-        rows.push((format!("P of the usual shot{at} (%)"), p));
+        rows.push(share(format!("P of the usual shot{at} (%)"), p));
         let makes = fit.makes.at_place(place);
         if makes.labelled > 0 {
             let counted = Interval {
@@ -502,13 +505,13 @@ fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
                 low: 100.0 * makes.share.low,
                 high: 100.0 * makes.share.high,
             };
-            rows.push((format!("share of makes, counted{at} (%)"), counted));
+            rows.push(share(format!("share of makes, counted{at} (%)"), counted));
         }
     }
     rows.extend([
-        (format!("scatter of speed ({long}/s)"), of_sd(0, metre)),
-        ("scatter of pitch (deg)".to_owned(), of_sd(1, DEGREE_RAD)),
-        ("scatter of aim (deg)".to_owned(), of_sd(2, DEGREE_RAD)),
+        scatter(format!("scatter of speed ({long}/s)"), of_sd(0, metre)),
+        scatter("scatter of pitch (deg)".to_owned(), of_sd(1, DEGREE_RAD)),
+        scatter("scatter of aim (deg)".to_owned(), of_sd(2, DEGREE_RAD)),
     ]);
     let mut svg = Svg::new(860.0, 70.0 + 90.0 * rows.len() as f64);
     svg.heading(
@@ -517,16 +520,11 @@ fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
         Anchor::Start,
         "What these shots tell: means and 95 % intervals",
     );
-    for (k, (label, interval)) in rows.iter().enumerate() {
-        let is_percent = label.ends_with("(%)");
+    for (k, (label, interval, scale)) in rows.iter().enumerate() {
         let axes = Axes {
             corner: (260.0, 60.0 + 90.0 * k as f64),
             size: (560.0, 26.0),
-            x: if is_percent {
-                (0.0, 100.0)
-            } else {
-                (0.0, 1.3 * interval.high)
-            },
+            x: *scale,
             y: (0.0, 1.0),
         };
         let (low, y) = axes.pixel((interval.low, 0.5));

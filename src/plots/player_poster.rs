@@ -157,7 +157,7 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
             svg: drawing(&sentences),
             caption: sentences.join(" "),
         },
-        map_svg: drawing(&[]),
+        map_svg: drawing(&[]).to_string(),
         sentences,
     })
 }

@@ -5,14 +5,30 @@ use base64::Engine;
 use std::fmt::Write;
 
 /// A finished plot.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
     /// File name without its extension.
     pub name: String,
     /// What the plot shows, in one sentence.
     pub caption: String,
     /// The SVG file.
-    pub svg: String,
+    pub svg: Drawing,
+}
+
+/// An SVG file and its size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    text: String,
+    /// Width over height.
+    pub aspect: f64,
+}
+
+impl std::ops::Deref for Drawing {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.text
+    }
 }
 
 /// Colour of text and lines.
@@ -234,12 +250,16 @@ impl Svg {
 
     /// The drawing as an SVG file. Screen readers read the title.
     #[must_use]
-    pub fn finish(self, title: &str) -> String {
+    pub fn finish(self, title: &str) -> Drawing {
         let (width, height) = (px(self.width), px(self.height));
-        format!(
+        let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" style=\"max-width:100%;height:auto\" font-family=\"DejaVu Sans, Verdana, sans-serif\" role=\"img\">\n<title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
             escaped(title),
             self.body
-        )
+        );
+        Drawing {
+            text,
+            aspect: self.width / self.height,
+        }
     }
 }

@@ -76,7 +76,8 @@ pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -
         _ if aim.is_empty() => {}
         ShotKind::Direct => text += &format!("Aim {aim}.\n"),
         ShotKind::Bank => {
-            let is_aside = aim.ends_with("right") || aim.ends_with("left");
+            let across = shot.outcome.board_point_m.map(|(_, across, _)| across);
+            let is_aside = across.is_some_and(|m| !is_on_middle_line(m, units));
             let of = if is_aside { " of its middle" } else { "" };
             text += &format!("Aim at {aim}{of}.\n");
         }
@@ -180,7 +181,7 @@ fn aim_lines(profile: &Profile, kind: ShotKind, shot: &BestShot, units: UnitSyst
             vec![
                 format!("the board, {:.1} {short}", z.abs() / short_metre),
                 format!("{side} the ring,"),
-                across_text(y / short_metre, short),
+                across_text(y, units),
             ]
         }
         (_, _, Some(past)) if past < profile.physics().board_distance_m => {
@@ -194,12 +195,18 @@ fn aim_lines(profile: &Profile, kind: ShotKind, shot: &BestShot, units: UnitSyst
     }
 }
 
-fn across_text(across: f64, unit: &str) -> String {
-    if across.abs() < 0.05 {
+/// Whether a point of the board is on its middle line, to the decimal that is printed.
+fn is_on_middle_line(across_m: f64, units: UnitSystem) -> bool {
+    across_m.abs() / units.short_length().1 < 0.05
+}
+
+fn across_text(across_m: f64, units: UnitSystem) -> String {
+    if is_on_middle_line(across_m, units) {
         return "on its middle line".to_owned();
     }
-    let side = if across > 0.0 { "right" } else { "left" };
-    format!("{:.1} {unit} {side}", across.abs())
+    let (unit, size) = units.short_length();
+    let side = if across_m > 0.0 { "right" } else { "left" };
+    format!("{:.1} {unit} {side}", across_m.abs() / size)
 }
 
 /// What matters most for the better kind of shot, in at most ten lines.

@@ -183,7 +183,7 @@ impl ProbabilityAlong<'_> {
 
     /// For people, at most 80 columns wide.
     #[must_use]
-    pub fn text(&self) -> String {
+    pub fn in_text(&self) -> String {
         let Some(best) = self.best() else {
             return String::new();
         };
@@ -267,7 +267,7 @@ impl ProbabilityAlong<'_> {
 
     /// As CSV, a row for each value.
     #[must_use]
-    pub fn csv(&self) -> String {
+    pub fn as_csv(&self) -> String {
         let mut text = format!("{},probability,standard_error,shots", self.column());
         let named = MissBreakdown::default().named();
         for (name, _) in &named {
@@ -305,7 +305,7 @@ impl ProbabilityAlong<'_> {
 
     /// As one JSON object.
     #[must_use]
-    pub fn json(&self) -> Value {
+    pub fn as_json(&self) -> Value {
         let named = |name: &str, value: Value| (name.to_owned(), value);
         let points = self.points.iter().map(|point| {
             let misses = point.misses.named();

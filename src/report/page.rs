@@ -207,26 +207,9 @@ fn figure_html(plot: &Plot) -> String {
         html,
         "<figure class=\"wide\" style=\"--aspect: {:.3}\">\n{svg}<figcaption>{caption}</figcaption>\n\
          </figure>\n",
-        aspect(&plot.svg)
+        plot.svg.aspect
     );
     html
-}
-
-/// Width over height of a drawing, by its `viewBox`; 1 without one.
-fn aspect(svg: &str) -> f64 {
-    let view_box = svg
-        .split_once("viewBox=\"")
-        .and_then(|(_, rest)| rest.split_once('"'))
-        .map_or("", |(numbers, _)| numbers);
-    let sides: Vec<f64> = view_box
-        .split(' ')
-        .skip(2)
-        .filter_map(|side| side.parse().ok())
-        .collect();
-    match sides[..] {
-        [width, height] if height > 0.0 => width / height,
-        _ => 1.0,
-    }
 }
 
 /// Replaces each `{{name}}` of a template by its part. One pass over the template: braces inside a

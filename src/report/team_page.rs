@@ -130,7 +130,7 @@ impl TeamPage {
         let maps = self.maps.as_ref().map_or_else(String::new, |plot| {
             format!(
                 "<figure class=\"wide\">\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
-                plot.svg,
+                &*plot.svg,
                 escaped(&plot.caption)
             )
         });

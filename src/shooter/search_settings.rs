@@ -168,7 +168,7 @@ impl Search {
     /// Default standard error of each probability.
     pub const DEFAULT_STANDARD_ERROR: f64 = 0.001;
     /// Default seed of the Sobol scrambles.
-    pub const DEFAULT_SEED: u64 = 1;
+    const DEFAULT_SEED: u64 = 1;
     const DEFAULT_CLIMB_SAMPLES: u32 = 2048;
 
     /// The search from a location with the given settings. The default pitch angles are from 8 deg

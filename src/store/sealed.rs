@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// The version of the stored files. One of another version is refused.
-pub const FORMAT_VERSION: u32 = 2;
+const FORMAT_VERSION: u32 = 2;
 
 /// Largest file that is read, bytes.
 const MAX_BYTES: u64 = 256 << 20;

@@ -11,7 +11,7 @@ use std::fmt;
 pub const SIGNIFICANT_SIGMAS: f64 = 2.0;
 
 /// Least difference in P that is worth a word: one shot in 100.
-pub const LEAST_ADVISED_GAIN: f64 = 0.01;
+const LEAST_ADVISED_GAIN: f64 = 0.01;
 
 /// `a` minus `b`, two independent estimates of P.
 #[must_use]

@@ -38,8 +38,7 @@ pub enum ColumnUnit {
 
 impl ColumnUnit {
     /// The suffix of a column's name in the store.
-    #[must_use]
-    pub fn si_suffix(self) -> &'static str {
+    fn si_suffix(self) -> &'static str {
         match self {
             Self::None => "",
             Self::Length | Self::ShortLength => "_m",

@@ -226,24 +226,6 @@ impl PlaceProbabilities {
         Some(difference(self.bank?, self.direct?))
     }
 
-    /// The place: its name, or where it is.
-    #[must_use]
-    pub fn in_words(&self, units: UnitSystem) -> String {
-        self.name
-            .clone()
-            .unwrap_or_else(|| self.place.location().in_words(units))
-    }
-
-    /// The same for a list of places: with the mirror image of the place, where that is in the list
-    /// too.
-    #[must_use]
-    pub fn in_words_with_mirror(&self, listed: &[&Self], units: UnitSystem) -> String {
-        if !self.has_mirror_in(listed) {
-            return self.in_words(units);
-        }
-        self.place.location().in_words_on_either_side(units)
-    }
-
     /// The place in a player's words: its name, or the part of the court; with its mirror image
     /// where that is in the list too.
     #[must_use]

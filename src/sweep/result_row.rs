@@ -237,15 +237,6 @@ impl ResultRow {
         }
     }
 
-    /// A whole number; `None` if the cell is empty.
-    #[must_use]
-    pub fn integer(&self, column: IntegerColumn) -> Option<i64> {
-        match self.cells[column.index()] {
-            Cell::Integer(value) => Some(value),
-            _ => None,
-        }
-    }
-
     /// A text; `None` if the cell is empty.
     #[must_use]
     pub fn text(&self, column: TextColumn) -> Option<&str> {

@@ -2,7 +2,7 @@
 //! every other format print and write are known bytes; each shot that an example traces goes in.
 
 use crate::support::{Answer, bankshot};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -256,8 +256,8 @@ const MORE: &[&str] = &[
 
 /// What a run says of itself, and the lines with times or with a checksum of all this, do not
 /// count.
-fn without_what_varies(bytes: &[u8], folder: &Path) -> Vec<u8> {
-    const VARYING: [&str; 7] = [
+fn without_what_varies(bytes: &[u8], folder: &Path, hashes: &BTreeSet<String>) -> Vec<u8> {
+    const VARYING: [&str; 8] = [
         "\"checksum\":",
         "left of this step",
         "players: about",
@@ -265,6 +265,7 @@ fn without_what_varies(bytes: &[u8], folder: &Path) -> Vec<u8> {
         "time    ",
         "\"forecast_s\":",
         "\"thread_seconds\":",
+        "\"threads\":",
     ];
     let Ok(text) = std::str::from_utf8(bytes) else {
         return bytes.to_vec();
@@ -272,11 +273,21 @@ fn without_what_varies(bytes: &[u8], folder: &Path) -> Vec<u8> {
     let place = folder.display().to_string();
     let kept = text.split_inclusive('\n');
     let kept = kept.filter(|line| !VARYING.iter().any(|time| line.contains(time)));
-    kept.collect::<String>()
-        .replace(&place, "FOLDER")
-        .replace(env!("BANKSHOT_COMMIT"), "COMMIT")
+    let mut text = kept.collect::<String>().replace(&place, "FOLDER");
+    for hash in hashes {
+        text = text.replace(hash, "HASH").replace(&hash[..12], "HASH");
+    }
+    text.replace(env!("BANKSHOT_COMMIT"), "COMMIT")
         .replace(env!("CARGO_PKG_VERSION"), "VERSION")
         .into_bytes()
+}
+
+/// The hash of a sweep, which names the commit that computes it.
+fn hash_of_sweep(path: &Path, bytes: &[u8]) -> Option<String> {
+    let json: serde_json::Value = (path.file_name()? == "configuration.json")
+        .then(|| serde_json::from_slice(bytes).ok())
+        .flatten()?;
+    Some(json["hash"].as_str()?.to_owned())
 }
 
 /// All files of a folder, with their bytes.
@@ -284,11 +295,14 @@ fn files(folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let metadata = fs::symlink_metadata(&path).unwrap();
+        // The stores of a sweep name the host and have times; its Parquet file has the commit.
+        let is_store = path.parent().is_some_and(|above| above.ends_with("store"));
+        let is_result = path
+            .file_name()
+            .is_some_and(|name| name == "best_shots.parquet");
         if metadata.is_dir() {
             files(&path, found);
-        // The stores of a sweep name the host and have times.
-        } else if metadata.is_file() && !path.parent().is_some_and(|above| above.ends_with("store"))
-        {
+        } else if metadata.is_file() && !is_store && !is_result {
             found.insert(path.clone(), fs::read(&path).unwrap());
         }
     }
@@ -337,6 +351,7 @@ fn campaign_golden_bytes_of_every_command() {
     prepare(folder);
     let keep = std::env::var_os("BANKSHOT_GOLDEN").map(PathBuf::from);
     let mut before = BTreeMap::new();
+    let mut hashes = BTreeSet::new();
     let mut listed = String::new();
     let mut failed = Vec::new();
     let of_help = all_examples(folder);
@@ -358,6 +373,11 @@ fn campaign_golden_bytes_of_every_command() {
         let mut after = BTreeMap::new();
         files(folder, &mut after);
         files(own.path(), &mut after);
+        hashes.extend(
+            after
+                .iter()
+                .filter_map(|(path, bytes)| hash_of_sweep(path, bytes)),
+        );
         for (path, bytes) in &after {
             if before.get(path) != Some(bytes) {
                 let name = path.strip_prefix(folder).or(path.strip_prefix(own.path()));
@@ -371,7 +391,7 @@ fn campaign_golden_bytes_of_every_command() {
         let shown = line.replace(&folder.display().to_string(), "FOLDER");
         listed += &format!("{shown}\n  exit code {:?}\n", answer.code);
         for (name, bytes) in written {
-            let bytes = without_what_varies(&bytes, folder);
+            let bytes = without_what_varies(&bytes, folder, &hashes);
             let hash = blake3::hash(&bytes).to_hex();
             listed += &format!("  {} {name}\n", &hash[..16]);
             if let Some(keep) = &keep {

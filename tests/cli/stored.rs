@@ -179,6 +179,8 @@ fn contract_a_changed_list_of_shooters_is_refused() {
     fs::remove_file(out.join("shooters.json")).unwrap();
     let advise = Answer::of(bankshot().arg("advise").arg(&out));
     advise.exits(4).says("shooters.json is missing");
+    fit(file.to_str().unwrap(), &out, &[]).exits(0);
+    read().unwrap();
 }
 
 #[test]

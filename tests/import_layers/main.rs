@@ -326,3 +326,71 @@ fn contract_every_dependency_is_in_the_notices() {
         "run python3 packaging/third_party_notices.py: {missing:?}"
     );
 }
+
+/// Where a text is looked into by words that this program does not write itself: input of a user,
+/// names of files and columns, messages of libraries, a template, the layout of a terminal.
+const READS_OF_OTHERS: [(&str, &str); 23] = [
+    ("cli/commands/design/tracker.rs", "optical_"),
+    ("cli/commands/new.rs", "  #"),
+    ("cli/commands/simulate.rs", "Parquet error: "),
+    ("cli/commands/team/one_place.rs", "profile.toml"),
+    ("cli/measured_shots_flags.rs", "--map"),
+    ("cli/run_folder.rs", "--"),
+    ("cli/signals.rs", "SigIgn:"),
+    ("cli/terminal.rs", "  "),
+    ("cli/terminal.rs", "  --"),
+    ("cli/terminal.rs", " > "),
+    ("cli/terminal.rs", "-->"),
+    ("cli/terminal.rs", "error: "),
+    ("cli/value_lists.rs", " by "),
+    ("cli/value_lists.rs", " to "),
+    // The name of a tracker that a fit found in its tracks, which a user may type too.
+    ("fitting/tracker_noise.rs", ", "),
+    ("fitting/tracker_noise.rs", "correlation"),
+    ("fitting/tracker_noise.rs", "frames/s"),
+    ("fitting/tracker_noise.rs", "mm"),
+    ("report/page.rs", "{{"),
+    ("report/page.rs", "}}"),
+    ("store/draws.rs", "speed_mean_"),
+    ("store/fit.rs", "profile_place_"),
+    ("sweep/sqlite_results.rs", "error code="),
+];
+
+/// What a sentence says is in the answer as a number or an enum: no code outside of `present` looks
+/// for words in a text that the program wrote. (`measured_shots`, `config`, `units` and `files` read
+/// files of others.)
+#[test]
+fn contract_no_code_reads_its_own_sentences() {
+    const METHODS: [&str; 9] = [
+        "starts_with",
+        "ends_with",
+        "contains",
+        "split_once",
+        "rsplit_once",
+        "strip_prefix",
+        "strip_suffix",
+        "split",
+        "find",
+    ];
+    const READERS: [&str; 5] = ["measured_shots", "config", "units", "files", "present"];
+    let mut found = BTreeSet::new();
+    for (path, text) in source_files() {
+        let shown = path.display().to_string();
+        if READERS.iter().any(|reader| path.starts_with(reader)) {
+            continue;
+        }
+        let code = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+        for method in METHODS {
+            for part in code.split(&format!(".{method}(\"")).skip(1) {
+                let words = part.split('"').next().unwrap().to_owned();
+                found.insert((shown.clone(), words));
+            }
+        }
+    }
+    let known = READS_OF_OTHERS.map(|(file, words)| (file.to_owned(), words.to_owned()));
+    let known: BTreeSet<_> = known.into_iter().collect();
+    let new: Vec<_> = found.difference(&known).collect();
+    assert!(new.is_empty(), "reads its own words: {new:?}");
+    let gone: Vec<_> = known.difference(&found).collect();
+    assert!(gone.is_empty(), "no longer there: {gone:?}");
+}

@@ -7,7 +7,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::fitting::advise;
 use crate::present::fit_files::advice_text::{advice_text, brief_advice_text};
 use crate::store::fit::Fit;
@@ -38,7 +38,7 @@ pub(crate) struct AdviseOptions {
     pub(crate) brief: bool,
 }
 
-pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &AdviseOptions) -> Result<u8, Failure> {
     if options.shots.is_dir() {
         fit_folder::refuse_options_of_files(&options.shots, &options.measured)?;
         let folders = match &fits_within(&options.shots)?[..] {
@@ -47,7 +47,7 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
         };
         for (number, folder) in folders.iter().enumerate() {
             let fit = fit_folder::read(folder)?;
-            answer(options, &fit, (number, folders.len()), quiet)?;
+            answer(options, &fit, (number, folders.len()))?;
         }
         return Ok(code::DONE);
     }
@@ -62,19 +62,14 @@ pub(crate) fn run(options: &AdviseOptions, quiet: bool) -> Result<u8, Failure> {
             .fit(shots, &file.physics)
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         let fit = Fit::of(fit, shots, &file.tracker.0);
-        answer(options, &fit, (number, file.shooters.len()), quiet)?;
+        answer(options, &fit, (number, file.shooters.len()))?;
     }
     Ok(worst)
 }
 
 /// Advice for each place of a fit. `shooter_of` is the index of the shooter and the number of all.
-fn answer(
-    options: &AdviseOptions,
-    fit: &Fit,
-    shooter_of: (usize, usize),
-    quiet: bool,
-) -> Result<(), Failure> {
-    let bars = ProgressBars::new(quiet);
+fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Result<(), Failure> {
+    let bars = ProgressBars::new();
     let (shooter, shooters) = shooter_of;
     let places = fit.profiles.len();
     let units = options.measured.units_or(fit.units);
@@ -87,7 +82,7 @@ fn answer(
         print_remark(&format!("{name}: warning: {warning}"));
     }
     for (place, profile) in fit.profiles.iter().enumerate() {
-        if !quiet && shooters * places > 1 {
+        if !is_quiet() && shooters * places > 1 {
             print_remark(&format!(
                 "{name}: shooter {} of {shooters}, place {} of {places}",
                 shooter + 1,

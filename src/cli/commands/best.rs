@@ -10,7 +10,7 @@ use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_hint, print_prose};
 use crate::present::best_shot_text::{
     PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, vacuum_note,
     what_matters,
@@ -30,7 +30,7 @@ Examples:
   bankshot best configs/free_throw.toml --scatter 'speed=-20%'
 
 Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
-best shots), sensitivity.csv, profile.toml, plan.json and provenance.json.")]
+best shots), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
 pub(crate) struct BestOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
@@ -54,9 +54,9 @@ pub(crate) struct BestOptions {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &BestOptions) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
-    let loaded = options.profile.load(&fixed, quiet)?;
+    let loaded = options.profile.load(&fixed)?;
     let loaded = options.fixed.changed(options.scatter.changed(loaded)?)?;
     let (text, profile) = (loaded.text(), loaded.profile);
     let units = profile.output().units;
@@ -69,7 +69,7 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
         None => run_folder::of_profile(&profile)?,
     };
     run_folder::prepare(&folder, RunKind::Best)?;
-    let best = best_shot::find(&profile, &ProgressBars::new(quiet))?;
+    let best = best_shot::find(&profile, &ProgressBars::new())?;
     run_folder::write_best_shots(&folder, text, &profile, &best)?;
     if options.out.is_none() {
         run_folder::link_latest(&folder);
@@ -103,11 +103,9 @@ pub(crate) fn run(options: &BestOptions, quiet: bool) -> Result<u8, Failure> {
             &nominals,
         )?)?;
     }
-    if !quiet {
-        print_remark(&format!(
-            "written to {0}; next: bankshot report {0}",
-            folder.display()
-        ));
-    }
+    print_hint(&format!(
+        "written to {0}; next: bankshot report {0}",
+        folder.display()
+    ));
     Ok(run_folder::exit_code(&profile, &best))
 }

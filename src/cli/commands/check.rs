@@ -2,7 +2,7 @@
 
 use crate::cli::config_files::{load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
-use crate::cli::loaded_profile::{LoadedProfile, load_profile};
+use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::config::parse_profile;
@@ -33,7 +33,7 @@ pub(crate) struct CheckOptions {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {
     if options.json {
         return print_json(options);
     }
@@ -43,7 +43,7 @@ pub(crate) fn run(options: &CheckOptions, quiet: bool) -> Result<u8, Failure> {
         let (name, places) = (&config.name, config.places.len());
         return print_answer(&format!("{path}: valid ({name}, {places} places)\n"));
     }
-    let loaded = LoadedProfile::read(&options.profile, &options.physics, &[], quiet)?;
+    let loaded = LoadedProfile::read_and_warn(&options.profile, &options.physics, &[])?;
     let (text, profile) = (loaded.text(), loaded.profile);
     TablePlan::for_search(&profile)?;
     let own = profile.output().units;
@@ -103,7 +103,8 @@ fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
         print_answer(&of_file(errors.collect(), Value::Null))?;
         return Ok(code::USAGE);
     }
-    let loaded = load_profile(&options.profile, &options.physics, true).and_then(|profile| {
+    let loaded = LoadedProfile::read(&options.profile, &options.physics).and_then(|loaded| {
+        let profile = loaded.profile;
         TablePlan::for_search(&profile)
             .map(|_| profile)
             .map_err(Failure::from)

@@ -9,7 +9,7 @@ use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, AGAINST_FOLDER, RunKind};
-use crate::cli::terminal::{print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
@@ -52,9 +52,9 @@ pub(crate) struct CompareOptions {
     pub(crate) out: Option<PathBuf>,
 }
 
-pub(crate) fn run(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
     let Some(sweep) = open_sweep(&options.what)? else {
-        return compare_at_location(options, quiet);
+        return compare_at_location(options);
     };
     let other = match &options.against {
         None => None,
@@ -66,7 +66,7 @@ pub(crate) fn run(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> 
             ))
         })?),
     };
-    compare_on_court(options, &sweep, other.as_ref(), quiet)
+    compare_on_court(options, &sweep, other.as_ref())
 }
 
 /// A sweep's folder with its results.
@@ -110,7 +110,6 @@ fn compare_on_court(
     options: &CompareOptions,
     sweep: &OpenSweep,
     other: Option<&OpenSweep>,
-    quiet: bool,
 ) -> Result<u8, Failure> {
     let results = SweepResults::new(&sweep.config, &sweep.rows);
     let mut plots = Vec::new();
@@ -139,25 +138,25 @@ fn compare_on_court(
         against: other.map(|other| absolute(other.folder.path())),
     };
     link.write(&folder)?;
-    plot_files::print_captions(&folder, &plots, quiet)?;
+    plot_files::print_captions(&folder, &plots)?;
     let exit = sweep
         .exit_code()
         .max(other.map_or(code::DONE, OpenSweep::exit_code));
-    if exit != code::DONE && !quiet {
+    if exit != code::DONE && !is_quiet() {
         print_remark("remark: the sweep is incomplete; what is missing or failed is grey");
     }
     Ok(exit)
 }
 
-fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Failure> {
+fn compare_at_location(options: &CompareOptions) -> Result<u8, Failure> {
     let own_physics = PhysicsArg::default();
     let load = |path: &PathBuf| {
-        let loaded = LoadedProfile::read(path, &own_physics, &[], true)?;
+        let loaded = LoadedProfile::read(path, &own_physics)?;
         Ok::<_, Failure>((loaded.text(), loaded.profile))
     };
     let (profile_text, profile) = load(&options.what)?;
     let other = options.against.as_ref().map(load).transpose()?;
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     let best = best_shot::find(&profile, &bars)?;
     let shots = PlottedShot::of_best(&best);
     let mut plots: Vec<Plot> = Vec::new();
@@ -205,7 +204,7 @@ fn compare_at_location(options: &CompareOptions, quiet: bool) -> Result<u8, Fail
         run_folder::write_best_shots(&against_folder, other_text, &other, &best)?;
     }
     print_prose(&text)?;
-    plot_files::print_captions(&folder, &plots, quiet)?;
+    plot_files::print_captions(&folder, &plots)?;
     Ok(exit)
 }
 

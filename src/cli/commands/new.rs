@@ -1,7 +1,7 @@
 //! `bankshot new`: a commented file to edit.
 
 use crate::cli::failure::{Failure, code};
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{print_answer, print_hint, print_remark};
 use crate::config::parse_profile;
 use crate::shooter::{Profile, implausible_values, is_control_or_direction};
 use crate::units::{self, Dimension};
@@ -74,7 +74,7 @@ impl Template {
     }
 }
 
-pub(crate) fn run(options: &NewOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &NewOptions) -> Result<u8, Failure> {
     if options.interactive && options.what != Template::Player {
         return Err(Failure::usage("--interactive: only for a player"));
     }
@@ -113,13 +113,11 @@ pub(crate) fn run(options: &NewOptions, quiet: bool) -> Result<u8, Failure> {
     created
         .write_all(text.as_bytes())
         .map_err(|error| Failure::io(file.display(), &error))?;
-    if !quiet {
-        print_remark(&format!(
-            "written: {}; edit it, then: {}",
-            file.display(),
-            options.what.next(&file)
-        ));
-    }
+    print_hint(&format!(
+        "written: {}; edit it, then: {}",
+        file.display(),
+        options.what.next(&file)
+    ));
     Ok(code::DONE)
 }
 

@@ -9,7 +9,7 @@ use crate::cli::loaded_profile::load_profile;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_prose, print_remark};
 use crate::measured_shots::source::Source;
 use crate::plots::physics_probabilities;
 use crate::present::physics_text::{physics_name, physics_text};
@@ -44,10 +44,10 @@ pub(crate) struct PhysicsOptions {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &PhysicsOptions) -> Result<u8, Failure> {
     let source = &options.profile.path;
     let fit = read_fit(options)?;
-    let (path, profile) = profile_of(options, fit.as_ref(), quiet)?;
+    let (path, profile) = profile_of(options, fit.as_ref())?;
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
@@ -66,16 +66,14 @@ pub(crate) fn run(options: &PhysicsOptions, quiet: bool) -> Result<u8, Failure> 
         None => PhysicsOf::Profile,
     };
     let told_ring = ring_told_by_makes(std::slice::from_ref(&path))?;
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     let answer = compare(&profile, own_is, fitted.as_ref(), told_ring, &bars)?;
     let units = profile.output().units;
     if let Some(path) = &options.plot {
         let name = &profile.shooter().name;
         let plot = physics_probabilities::draw(name, &answer.comparison, units);
         plot_files::write_one(path, &plot)?;
-        if !quiet {
-            print_remark(&format!("plot written to {}", path.display()));
-        }
+        print_hint(&format!("plot written to {}", path.display()));
     }
     if options.json {
         let rows = answer.rows(|of| physics_name(of, units));
@@ -106,7 +104,6 @@ fn read_fit(options: &PhysicsOptions) -> Result<Option<(Fit, usize)>, Failure> {
 fn profile_of(
     options: &PhysicsOptions,
     fit: Option<&(Fit, usize)>,
-    quiet: bool,
 ) -> Result<(PathBuf, Profile), Failure> {
     let (source, moved) = (&options.profile.path, &options.profile.place);
     // A fit names its folder; its profiles are in it.
@@ -115,7 +112,7 @@ fn profile_of(
         None => source.clone(),
     };
     if let Some((fit, place)) = fit {
-        if fit.profiles.len() > 1 && !quiet {
+        if fit.profiles.len() > 1 && !is_quiet() {
             print_remark(&format!(
                 "the fit has {} places: this is place {}, {}",
                 fit.profiles.len(),
@@ -131,7 +128,7 @@ fn profile_of(
             )));
         }
     }
-    let mut profile = load_profile(&path, &options.profile.physics, quiet)?;
+    let mut profile = load_profile(&path, &options.profile.physics)?;
     if moved.is_given() {
         profile = without_usual_shot(&moved.moved(profile)?)?;
     }

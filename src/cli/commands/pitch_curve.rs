@@ -2,29 +2,32 @@
 //! several distances.
 
 use super::table::KindArg;
-use crate::best_shot::{MOST_NODES, best_by_pitch};
+use crate::best_shot::{MOST_NODES, ShotAtPitch, TableKind, best_by_pitch};
 use crate::cli::failure::{Failure, code};
-use crate::cli::fit_folder;
+use crate::cli::fit_folder::{self, OverDraws};
 use crate::cli::fixed_value_flags::FixedOptions;
-use crate::cli::output_files::{self, OutputForm};
+use crate::cli::output_files::{self, Rendered};
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::{print_answer, wrapped};
+use crate::cli::terminal::wrapped;
 use crate::cli::value_lists::ascending_values;
-use crate::fitting::nominal_of;
+use crate::fitting::{AngleOverDraws, nominal_of};
 use crate::plots;
 use crate::plots::best_by_pitch::UsualShot;
+use crate::plots::svg::Plot;
 use crate::present::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
 use crate::present::shot_table_files::pitch_over_distances::{
     DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
 };
 use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile, SearchSettings};
-use crate::units::{DEGREE_RAD, Dimension, REV_RAD};
+use crate::store::fit::{FIT_FILE, Fit};
+use crate::units::{DEGREE_RAD, Dimension, REV_RAD, UnitSystem};
 use clap::Args;
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// The first and the last pitch angle and the step, if none are given, deg.
 const DEFAULT_PITCHES_DEG: (f64, f64, f64) = (40.0, 65.0, 2.5);
@@ -75,7 +78,7 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &PitchCurveOptions) -> Result<u8, Failure> {
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
@@ -84,7 +87,7 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
     // The pitch angle is given too.
     let mut given = fixed.variables();
     given.push(NominalVariable::Pitch);
-    let loaded = options.profile.load(&given, quiet)?;
+    let loaded = options.profile.load(&given)?;
     let profile = fixed.changed(options.scatter.changed(loaded)?)?.profile;
     let choice = profile.search().choice;
     if choice.iter().all(|variable| given.contains(&variable)) {
@@ -93,35 +96,95 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
         ));
     }
     let pitches_rad = pitches_rad(options.pitches.as_deref(), &profile)?;
-    let units = profile.output().units;
     if let Some(distances) = &options.distances {
-        return run_from_distances(options, (&profile, distances), &pitches_rad, quiet);
+        return run_from_distances(options, (&profile, distances), &pitches_rad);
     }
-    // A folder that is no fit is refused before the search.
-    let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
-    let is_own_place = !options.profile.place.is_given();
-    let fit = match is_own_place && options.profile.path.join("fit.json").is_file() {
-        true => Some(fit_folder::read(&options.profile.path)?),
-        false => None,
-    };
-    let kind = options.kind.into();
-    let rows = best_by_pitch(&profile, kind, &pitches_rad, &ProgressBars::new(quiet))?;
-    let over_draws = match &draws {
-        Some((_, fit)) => Some(fit_folder::angles_over_draws(fit, &profile, &rows)?),
-        None => None,
-    };
-    let angles = over_draws.as_ref().map_or(&[][..], |over| &over.angles);
-    // The angles have their best speed and aim, which those of the shooter need not be.
-    let usual = fit.as_ref().map(|fit| UsualShot {
-        nominal: nominal_of(&fit.posterior.typical().means[0]),
-        probability: fit.usual_probabilities(0).interval(),
-    });
-    let of_fit = usual.as_ref().map_or_else(String::new, |usual| {
+    let curve = Curve::find(options, &profile, &pitches_rad)?;
+    if let Some(path) = &options.plot
+        && let Some(plot) = curve.plot()
+    {
+        plot_files::write_one(path, &plot)?;
+    }
+    output_files::deliver(&curve, &options.output, options.json)?;
+    output_files::print_written(options.output.iter().chain(&options.plot));
+    Ok(exit_code(&curve.rows))
+}
+
+/// Incomplete where there is no shot at all.
+fn exit_code<'a>(rows: impl IntoIterator<Item = &'a ShotAtPitch>) -> u8 {
+    match rows.into_iter().any(|row| row.shot.is_some()) {
+        true => code::DONE,
+        false => code::INCOMPLETE,
+    }
+}
+
+/// The best shot at each pitch angle from one place.
+struct Curve<'a> {
+    profile: &'a Profile,
+    kind: TableKind,
+    rows: Vec<ShotAtPitch>,
+    /// The folder and the fit whose draws are asked, and P over them.
+    draws: Option<(&'a Path, Fit, OverDraws)>,
+    /// The shot of a fit, as it was measured.
+    usual: Option<UsualShot>,
+}
+
+impl<'a> Curve<'a> {
+    fn find(
+        options: &'a PitchCurveOptions,
+        profile: &'a Profile,
+        pitches_rad: &[f64],
+    ) -> Result<Self, Failure> {
+        // A folder that is no fit is refused before the search.
+        let draws = fit_folder::read_draws_of(options.draws.as_deref(), profile)?;
+        let path = &options.profile.path;
+        let is_fit = !options.profile.place.is_given() && path.join(FIT_FILE).is_file();
+        let fit = is_fit.then(|| fit_folder::read(path)).transpose()?;
+        let kind = options.kind.into();
+        let rows = best_by_pitch(profile, kind, pitches_rad, &ProgressBars::new())?;
+        let over_draws = |(folder, fit): (&'a Path, Fit)| {
+            let over = fit_folder::angles_over_draws(&fit, profile, &rows)?;
+            Ok::<_, Failure>((folder, fit, over))
+        };
+        Ok(Self {
+            draws: draws.map(over_draws).transpose()?,
+            // The angles have their best speed and aim, which those of the shooter need not be.
+            usual: fit.as_ref().map(|fit| UsualShot {
+                nominal: nominal_of(&fit.posterior.typical().means[0]),
+                probability: fit.usual_probabilities(0).interval(),
+            }),
+            profile,
+            kind,
+            rows,
+        })
+    }
+
+    fn units(&self) -> UnitSystem {
+        self.profile.output().units
+    }
+
+    /// P over the draws at each angle; none without draws.
+    fn angles(&self) -> &[Option<AngleOverDraws>] {
+        self.draws.as_ref().map_or(&[], |(.., over)| &over.angles)
+    }
+
+    fn plot(&self) -> Option<Plot> {
+        let rows = (&self.rows[..], self.angles());
+        plots::best_by_pitch::draw(self.profile, self.kind, rows, (self.usual, self.units()))
+    }
+
+    /// What the shooter makes as it was measured; empty without a fit.
+    fn usual_in_words(&self) -> String {
+        let Some(usual) = &self.usual else {
+            return String::new();
+        };
         let p = usual.probability;
         let spin = usual.nominal.backspin_rad_s / REV_RAD;
-        let is_searched = profile.search().choice.includes(NominalVariable::Backspin);
-        let of_spin = match is_searched {
-            true => format!(" The spin was {spin:.2} rev/s; --backspin '{spin:.2} rev/s' keeps it."),
+        let choice = self.profile.search().choice;
+        let of_spin = match choice.includes(NominalVariable::Backspin) {
+            true => {
+                format!(" The spin was {spin:.2} rev/s; --backspin '{spin:.2} rev/s' keeps it.")
+            }
             false => String::new(),
         };
         wrapped(&format!(
@@ -131,39 +194,62 @@ pub(crate) fn run(options: &PitchCurveOptions, quiet: bool) -> Result<u8, Failur
             100.0 * p.low,
             100.0 * p.high
         ))
-    });
-    let text = || {
-        let text = by_pitch_text(&rows, kind, &profile, units) + &of_fit;
-        let words = draws.as_ref().zip(over_draws.as_ref());
-        let words = words
-            .map(|((folder, fit), over)| fit_folder::angles_in_words((folder, fit), &rows, over));
-        match words {
-            Some(words) => format!("{text}\n{}", wrapped(&words)),
+    }
+}
+
+impl Rendered for Curve<'_> {
+    fn text(&self) -> String {
+        let text = by_pitch_text(&self.rows, self.kind, self.profile, self.units());
+        let text = text + &self.usual_in_words();
+        match &self.draws {
+            Some((folder, fit, over)) => {
+                let words = fit_folder::angles_in_words((folder, fit), &self.rows, over);
+                format!("{text}\n{}", wrapped(&words))
+            }
             None => text,
         }
-    };
-    let json = || {
-        let json = by_pitch_json(&rows, angles, kind, &profile, units);
-        format!("{json:#}\n")
-    };
-    output_files::write(&options.output, |form| match form {
-        OutputForm::Csv => by_pitch_csv(&rows, angles, kind, &profile, units),
-        OutputForm::Json => json(),
-        OutputForm::Text => text(),
-    })?;
-    if let Some(path) = &options.plot
-        && let Some(plot) =
-            plots::best_by_pitch::draw(&profile, kind, (&rows, angles), (usual, units))
-    {
-        plot_files::write_one(path, &plot)?;
     }
-    print_answer(&if options.json { json() } else { text() })?;
-    output_files::print_written(options.output.iter().chain(&options.plot), quiet);
-    Ok(if rows.iter().any(|row| row.shot.is_some()) {
-        code::DONE
-    } else {
-        code::INCOMPLETE
-    })
+
+    fn json(&self) -> Value {
+        by_pitch_json(
+            &self.rows,
+            self.angles(),
+            self.kind,
+            self.profile,
+            self.units(),
+        )
+    }
+
+    fn csv(&self) -> String {
+        by_pitch_csv(
+            &self.rows,
+            self.angles(),
+            self.kind,
+            self.profile,
+            self.units(),
+        )
+    }
+}
+
+/// The same from several distances.
+struct Curves {
+    from: Vec<DistanceShots>,
+    kind: TableKind,
+    units: UnitSystem,
+}
+
+impl Rendered for Curves {
+    fn text(&self) -> String {
+        pitch_over_distances_text(&self.from, self.kind, self.units)
+    }
+
+    fn json(&self) -> Value {
+        pitch_over_distances_json(&self.from, self.kind, self.units)
+    }
+
+    fn csv(&self) -> String {
+        pitch_over_distances_csv(&self.from, self.kind, self.units)
+    }
 }
 
 /// The shots from several distances.
@@ -171,7 +257,6 @@ fn run_from_distances(
     options: &PitchCurveOptions,
     (profile, distances): (&Profile, &str),
     pitches_rad: &[f64],
-    quiet: bool,
 ) -> Result<u8, Failure> {
     let (kind, units) = (options.kind.into(), profile.output().units);
     let mut profiles = Vec::new();
@@ -193,7 +278,7 @@ fn run_from_distances(
             .map_err(|error| Failure::usage(format!("--distances: {error}")))?;
         profiles.push(profile.moved_to(place)?);
     }
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     let searches = profiles.len() * pitches_rad.len();
     bars.begin("pitch angles and distances", searches as u64);
     let mut from = Vec::new();
@@ -207,21 +292,10 @@ fn run_from_distances(
         from.push(DistanceShots { profile, shots });
     }
     bars.end();
-    let text = || pitch_over_distances_text(&from, kind, units);
-    let json = || format!("{:#}\n", pitch_over_distances_json(&from, kind, units));
-    output_files::write(&options.output, |form| match form {
-        OutputForm::Csv => pitch_over_distances_csv(&from, kind, units),
-        OutputForm::Json => json(),
-        OutputForm::Text => text(),
-    })?;
-    print_answer(&if options.json { json() } else { text() })?;
-    output_files::print_written(options.output.iter().chain(&options.plot), quiet);
-    let mut rows = from.iter().flat_map(|shots| &shots.shots);
-    Ok(if rows.any(|row| row.shot.is_some()) {
-        code::DONE
-    } else {
-        code::INCOMPLETE
-    })
+    let curves = Curves { from, kind, units };
+    output_files::deliver(&curves, &options.output, options.json)?;
+    output_files::print_written(options.output.iter().chain(&options.plot));
+    Ok(exit_code(curves.from.iter().flat_map(|shots| &shots.shots)))
 }
 
 /// The pitch angles, if none are given: multiples of the step as far as the limits of the profile

@@ -4,7 +4,7 @@ use super::plan_sweep_time_and_memory;
 use crate::cli::config_files::read_text;
 use crate::cli::failure::Failure;
 use crate::cli::loaded_profile::load_profile;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::BatchWorkspace;
 use crate::math::evenly_spaced::CellAxis;
@@ -52,11 +52,11 @@ struct Forecast {
     wide_sample: Option<WideSample>,
 }
 
-pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &PlanOptions) -> Result<u8, Failure> {
     if is_sweep(&read_text(&options.profile)?) {
-        return plan_sweep_time_and_memory::run(&options.profile, options.json, quiet);
+        return plan_sweep_time_and_memory::run(&options.profile, options.json);
     }
-    let profile = load_profile(&options.profile, &options.physics, quiet)?;
+    let profile = load_profile(&options.profile, &options.physics)?;
     let plan = TablePlan::for_search(&profile)?;
     let forecast = forecast(&profile, &plan, options.wide_sample);
     if options.json {
@@ -65,7 +65,7 @@ pub(crate) fn run(options: &PlanOptions, quiet: bool) -> Result<u8, Failure> {
     let misses_makes = forecast
         .wide_sample
         .is_some_and(|sample| sample.made_outside > 0);
-    if misses_makes && !quiet {
+    if misses_makes && !is_quiet() {
         print_remark(
             "remark: shots outside the search range were made; raise speed_max, or report it",
         );

@@ -27,14 +27,14 @@ const MEMORY_BYTES_PER_JOB: f64 = 4000.0;
 /// See [`MEMORY_BYTES_PER_JOB`].
 const PROGRAM_BYTES: f64 = 10e6;
 
-pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(path: &Path, as_json: bool) -> Result<u8, Failure> {
     let (config, _) = load_sweep(path)?;
     let jobs = Jobs::new(&config);
     let threads = rayon::current_num_threads();
     let spots = jobs.spots.len();
     let chosen = calibration_spots(&jobs);
     let table_bytes = table_bytes(&config, &jobs, &chosen)?;
-    let forecast = forecast(&config, &jobs, &chosen, quiet);
+    let forecast = forecast(&config, &jobs, &chosen, &ProgressBars::new());
     let seconds = forecast.map(|(seconds, _)| seconds);
     let calibrated = forecast.map_or(0, |(_, computed)| computed);
     let rows = (jobs.sources.len() * jobs.kinds.len()) as f64;
@@ -78,10 +78,10 @@ pub(crate) fn run(path: &Path, as_json: bool, quiet: bool) -> Result<u8, Failure
 }
 
 /// The time of a sweep on all threads, s; `None` if nothing of it could be computed.
-pub(super) fn forecast_s(config: &SweepConfig, quiet: bool) -> Option<f64> {
+pub(super) fn forecast_s(config: &SweepConfig) -> Option<f64> {
     let jobs = Jobs::new(config);
     let chosen = calibration_spots(&jobs);
-    forecast(config, &jobs, &chosen, quiet).map(|(seconds, _)| seconds)
+    forecast(config, &jobs, &chosen, &ProgressBars::hidden()).map(|(seconds, _)| seconds)
 }
 
 /// The time of a sweep, s, and how many of the `chosen` spots it was measured at.
@@ -89,11 +89,10 @@ fn forecast(
     config: &SweepConfig,
     jobs: &Jobs,
     chosen: &[usize],
-    quiet: bool,
+    bars: &ProgressBars,
 ) -> Option<(f64, usize)> {
     let threads = rayon::current_num_threads();
-    let bars = ProgressBars::new(quiet);
-    let (mean_s, computed) = mean_spot_time_s(config, jobs, chosen, threads, BUDGET, &bars)?;
+    let (mean_s, computed) = mean_spot_time_s(config, jobs, chosen, threads, BUDGET, bars)?;
     Some((mean_s * jobs.spots.len() as f64, computed))
 }
 

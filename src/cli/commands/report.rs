@@ -5,10 +5,10 @@ use crate::best_shot::{PhysicsOf, compare_physics, physics_variants};
 use crate::cli::config_files::read_text;
 use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::fit_folder;
-use crate::cli::loaded_profile::load_profile;
+use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::AGAINST_FOLDER;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_hint, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::files::atomic_file;
 use crate::fitting::advise;
@@ -45,7 +45,7 @@ pub(crate) struct ReportOptions {
 /// The file of a sweep's folder that `sweep` writes first.
 const SWEEP_MANIFEST: &str = "configuration.json";
 
-pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &ReportOptions) -> Result<u8, Failure> {
     let folder = &options.folder;
     refuse_missing(folder)?;
     let is_best_run = !folder.join(FIT_FILE).exists() && sweep_of(folder)?.is_none();
@@ -56,17 +56,17 @@ pub(crate) fn run(options: &ReportOptions, quiet: bool) -> Result<u8, Failure> {
         )));
     }
     if folder.join(FIT_FILE).exists() {
-        return page_of_fit(folder, quiet);
+        return page_of_fit(folder);
     }
     match sweep_of(folder)? {
-        Some(sweep) => report_sweep(folder, &sweep, quiet),
-        None => report_best_shots(folder, options.with_physics, quiet),
+        Some(sweep) => report_sweep(folder, &sweep),
+        None => report_best_shots(folder, options.with_physics),
     }
 }
 
 /// A fit has its page already, with plots of shots that its folder does not hold. The advice is
 /// added to it.
-fn page_of_fit(folder: &Path, quiet: bool) -> Result<u8, Failure> {
+fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
     let page = folder.join(PAGE_FILE);
     if !page.exists() {
         return Err(Failure::usage(format!(
@@ -86,7 +86,7 @@ fn page_of_fit(folder: &Path, quiet: bool) -> Result<u8, Failure> {
         )));
     };
     let fit = fit_folder::read(folder)?;
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     let mut advice = String::from("<h2>What to change</h2>\n");
     for (place, profile) in fit.profiles.iter().enumerate() {
         let of_place = advise(profile, &fit.posterior, place, &bars)?;
@@ -127,7 +127,7 @@ fn sweep_of(folder: &Path) -> Result<Option<SweepLink>, Failure> {
     Ok(SweepLink::read(folder)?)
 }
 
-fn report_sweep(folder: &Path, paths: &SweepLink, quiet: bool) -> Result<u8, Failure> {
+fn report_sweep(folder: &Path, paths: &SweepLink) -> Result<u8, Failure> {
     let (sweep, config, rows) = open_sweep(&paths.sweep)?;
     let refuse = |error: ReportError| failure(folder, &error);
     let mut page = sweep_page(&config, &rows, (sweep.program(), sweep.hash())).map_err(refuse)?;
@@ -142,7 +142,7 @@ fn report_sweep(folder: &Path, paths: &SweepLink, quiet: bool) -> Result<u8, Fai
         page.add_comparison(other_page, difference);
         exit = exit.max(sweep_summary::exit_code(&Jobs::new(&other), &other_rows));
     }
-    write(folder, &page, quiet)?;
+    write(folder, &page)?;
     Ok(exit)
 }
 
@@ -157,14 +157,14 @@ fn open_sweep(
     Ok((sweep, config, rows))
 }
 
-fn report_best_shots(folder: &Path, with_physics: bool, quiet: bool) -> Result<u8, Failure> {
-    let mut page = best_shots_page_of(folder, quiet)?;
+fn report_best_shots(folder: &Path, with_physics: bool) -> Result<u8, Failure> {
+    let mut page = best_shots_page_of(folder)?;
     if with_physics {
         let path = folder.join(PROFILE_FILE);
-        let profile = load_profile(&path, &PhysicsArg::default(), true)?;
+        let profile = LoadedProfile::read(&path, &PhysicsArg::default())?.profile;
         let units = profile.output().units;
         let variants = physics_variants(profile.physics(), PhysicsOf::Profile);
-        let comparison = compare_physics(&profile, &variants, &ProgressBars::new(quiet))?;
+        let comparison = compare_physics(&profile, &variants, &ProgressBars::new())?;
         page.tables.push(physics_table(&comparison, units));
         let name = &profile.shooter().name;
         page.plots
@@ -172,12 +172,12 @@ fn report_best_shots(folder: &Path, with_physics: bool, quiet: bool) -> Result<u
     }
     let against = folder.join(AGAINST_FOLDER);
     if against.join(ANSWER_FILE).exists() {
-        page.add_comparison(best_shots_page_of(&against, quiet)?, None);
+        page.add_comparison(best_shots_page_of(&against)?, None);
     }
-    write(folder, &page, quiet)
+    write(folder, &page)
 }
 
-fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
+fn best_shots_page_of(folder: &Path) -> Result<Page, Failure> {
     let profile = folder.join(PROFILE_FILE);
     if !profile.exists() {
         return Err(Failure::usage(format!(
@@ -193,8 +193,7 @@ fn best_shots_page_of(folder: &Path, quiet: bool) -> Result<Page, Failure> {
         )));
     }
     let (profile, run) = BestRun::read(folder)?;
-    best_shot_page(&profile, &run, &ProgressBars::new(quiet))
-        .map_err(|error| failure(folder, &error))
+    best_shot_page(&profile, &run, &ProgressBars::new()).map_err(|error| failure(folder, &error))
 }
 
 /// What to name in place of a folder that only holds folders of runs, or a page already.
@@ -231,18 +230,16 @@ fn failure(folder: &Path, error: &ReportError) -> Failure {
 }
 
 /// Writes the page into the folder and prints its answer.
-fn write(folder: &Path, page: &Page, quiet: bool) -> Result<u8, Failure> {
+fn write(folder: &Path, page: &Page) -> Result<u8, Failure> {
     let target = folder.join(PAGE_FILE);
     let html = page.html()?;
     atomic_file::write_unlinked(&target, html.as_bytes())
         .map_err(|error| Failure::io(target.display(), &error))?;
     print_prose(&format!("{}\n", page.answer))?;
-    if !quiet {
-        print_remark(&format!(
-            "written to {} ({:.2} MB)",
-            target.display(),
-            html.len() as f64 / 1e6
-        ));
-    }
+    print_hint(&format!(
+        "written to {} ({:.2} MB)",
+        target.display(),
+        html.len() as f64 / 1e6
+    ));
     Ok(code::DONE)
 }

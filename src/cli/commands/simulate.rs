@@ -3,7 +3,7 @@
 use crate::cli::config_files::load_physics;
 use crate::cli::failure::{Failure, code, io_in_words, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_remark;
+use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::{Integrator, Simulator};
 use crate::files::atomic_file::{AtomicFile, same_file};
@@ -68,7 +68,7 @@ const BATCH_BYTES: usize = 8 << 20;
 /// Bad rows that are reported one by one.
 const MAX_REPORTED: u64 = 20;
 
-pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &SimulateOptions) -> Result<u8, Failure> {
     let input = if options.releases == Path::new("-") {
         Path::new("/dev/stdin")
     } else {
@@ -81,7 +81,7 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
         )));
     }
     let simulator = simulator(options)?;
-    if options.physics.physics.is_none() && !quiet {
+    if options.physics.physics.is_none() && !is_quiet() {
         print_remark(
             "physics: ncaa (the men's college ball, in air); give another with --physics nba, or a profile that has one, such as --physics robot.toml",
         );
@@ -93,14 +93,17 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
     let header = source.header(options)?;
     let columns = ReleaseColumns::new(&header, &options.carry)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
-    if !columns.has_backspin() && !quiet {
+    if !columns.has_backspin() && !is_quiet() {
         print_remark(
             "warning: the backspin is not given (no column such as backspin_rev_s): no ball spins",
         );
     }
     // A bar between the rows on a terminal would stay there.
     let shows_rows = options.output == Path::new("-") && io::stdout().is_terminal();
-    let bars = ProgressBars::new(quiet || shows_rows);
+    let bars = match shows_rows {
+        true => ProgressBars::hidden(),
+        false => ProgressBars::new(),
+    };
     let total = std::fs::metadata(&options.releases).map_or(0, |about| about.len());
     bars.begin("simulating", total);
     let mut stream = Stream {
@@ -138,7 +141,7 @@ pub(crate) fn run(options: &SimulateOptions, quiet: bool) -> Result<u8, Failure>
             .map_err(refuse)?;
     }
     stream.bars.end();
-    stream.report(quiet)
+    stream.report()
 }
 
 fn simulator(options: &SimulateOptions) -> Result<Simulator, Failure> {
@@ -420,7 +423,7 @@ impl Stream<'_> {
         Ok(())
     }
 
-    fn report(&self, quiet: bool) -> Result<u8, Failure> {
+    fn report(&self) -> Result<u8, Failure> {
         if self.bad_rows > MAX_REPORTED {
             print_remark(&format!("... and {} more", self.bad_rows - MAX_REPORTED));
         }
@@ -434,7 +437,7 @@ impl Stream<'_> {
                 message,
             });
         }
-        if !quiet && self.options.output != Path::new("-") {
+        if !is_quiet() && self.options.output != Path::new("-") {
             print_remark(&format!(
                 "{} shots written to {}",
                 self.rows,

@@ -7,7 +7,7 @@ use crate::cli::fit_folder;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::signals;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_prose, print_remark};
 use crate::cli::value_parsers::{fault_injection, shard};
 use crate::files::atomic_file;
 use crate::fitting::{Draw, DrawProbabilities, Interval};
@@ -68,7 +68,7 @@ pub(crate) struct MergeOptions {
 /// The jobs that are saved on disk, for the remark when a signal stops the program.
 static SAVED_JOBS: AtomicUsize = AtomicUsize::new(0);
 
-pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &SweepOptions) -> Result<u8, Failure> {
     let (config, texts) = load_sweep(&options.sweep)?;
     let draws = options.draws.as_deref().map(fit_folder::read).transpose()?;
     let jobs = Jobs::new(&config);
@@ -82,14 +82,14 @@ pub(crate) fn run(options: &SweepOptions, quiet: bool) -> Result<u8, Failure> {
         fault: options.fault.clone(),
         ..run_options(shard)
     };
-    let (folder, summary) = compute(&path, &config, &texts, run_options, quiet)?;
+    let (folder, summary) = compute(&path, &config, &texts, run_options)?;
     if options.out.is_none() {
         run_folder::link_latest(&path);
     }
     if shard == Shard::WHOLE {
-        let exit = write_tables(&folder, &config, &jobs, None, quiet)?;
+        let exit = write_tables(&folder, &config, &jobs, None)?;
         if let Some(fit) = draws {
-            write_over_draws(&folder, &config, &jobs, &fit.posterior.draws, quiet)?;
+            write_over_draws(&folder, &config, &jobs, &fit.posterior.draws)?;
         }
         return Ok(exit);
     }
@@ -127,7 +127,6 @@ pub(super) fn compute(
     config: &SweepConfig,
     texts: &SourceTexts,
     options: RunOptions,
-    quiet: bool,
 ) -> Result<(SweepFolder, RunSummary), Failure> {
     run_folder::refuse_other_results(path, RunKind::Sweep)?;
     let jobs = Jobs::new(config);
@@ -139,7 +138,7 @@ pub(super) fn compute(
         print_remark(&format!("remark: {damage}"));
     }
     let (total, done) = run.progress();
-    if done > 0 && !quiet {
+    if done > 0 && !is_quiet() {
         print_remark(&format!("resuming: {done} of {total} done"));
     }
     let saved = move || {
@@ -147,7 +146,7 @@ pub(super) fn compute(
         format!("{saved} of {total} jobs are saved; run the same command again to continue")
     };
     signals::set_exit_remark(move || format!("stopped: {}", saved()));
-    let summary = run.run(&ProgressBars::new(quiet)).map_err(|error| {
+    let summary = run.run(&ProgressBars::new()).map_err(|error| {
         let mut failure = Failure::from(error);
         failure.message += &format!("\n{}", saved());
         failure
@@ -158,11 +157,11 @@ pub(super) fn compute(
     Ok((folder, summary))
 }
 
-pub(crate) fn merge(options: &MergeOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn merge(options: &MergeOptions) -> Result<u8, Failure> {
     refuse_missing(&options.folder)?;
     let (folder, config) = SweepFolder::existing(&options.folder)?;
     let jobs = Jobs::new(&config);
-    write_tables(&folder, &config, &jobs, options.shards, quiet)
+    write_tables(&folder, &config, &jobs, options.shards)
 }
 
 /// Writes the tables if all jobs are done, and prints a summary.
@@ -171,7 +170,6 @@ fn write_tables(
     config: &SweepConfig,
     jobs: &Jobs,
     shards: Option<usize>,
-    quiet: bool,
 ) -> Result<u8, Failure> {
     let (rows, remarks) = folder.union()?;
     for remark in remarks {
@@ -198,12 +196,10 @@ fn write_tables(
             .map_err(|error| Failure::io(path.display(), &error))?;
     }
     print_answer(&(job_summary(jobs, &rows) + &highlights(config, jobs, &rows)))?;
-    if !quiet {
-        print_remark(&format!(
-            "written to {}: best_shots.csv, best_shots.parquet, provenance.json",
-            folder.path().display()
-        ));
-    }
+    print_hint(&format!(
+        "written to {}: best_shots.csv, best_shots.parquet, provenance.json",
+        folder.path().display()
+    ));
     Ok(exit_code_of_tables(config, &rows))
 }
 
@@ -217,7 +213,6 @@ fn write_over_draws(
     config: &SweepConfig,
     jobs: &Jobs,
     draws: &[Draw],
-    quiet: bool,
 ) -> Result<(), Failure> {
     let draws: Vec<Draw> = draws
         .iter()
@@ -226,7 +221,7 @@ fn write_over_draws(
         .collect();
     let (rows, _) = folder.union()?;
     let (unit, metre) = config.settings.output.units.length();
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     bars.begin("over the draws", rows.len() as u64);
     let found = rows
         .par_iter()
@@ -261,9 +256,7 @@ fn write_over_draws(
     let path = folder.path().join("probability_over_draws.csv");
     atomic_file::write_unlinked(&path, text.as_bytes())
         .map_err(|error| Failure::io(path.display(), &error))?;
-    if !quiet {
-        print_remark(&format!("written: {}", path.display()));
-    }
+    print_hint(&format!("written: {}", path.display()));
     Ok(())
 }
 

@@ -103,7 +103,7 @@ pub(crate) fn missing(options: &MissingOptions) -> Result<u8, Failure> {
     Ok(code::INCOMPLETE)
 }
 
-pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn verify(options: &VerifyOptions) -> Result<u8, Failure> {
     refuse_missing(&options.folder)?;
     let (folder, config) = SweepFolder::existing(&options.folder)?;
     let jobs = Jobs::new(&config);
@@ -128,7 +128,7 @@ pub(crate) fn verify(options: &VerifyOptions, quiet: bool) -> Result<u8, Failure
             .filter(|row| row.status() != Some(JobStatus::Failed))
             .step_by(every)
             .collect();
-        differing = recompute(&config, &jobs, &chosen, quiet);
+        differing = recompute(&config, &jobs, &chosen);
         recomputed = chosen.len();
         text.push_str(&format!(
             "recomputed {} jobs: {} differ\n",
@@ -202,8 +202,8 @@ fn texts(remarks: &[impl ToString]) -> Value {
 }
 
 /// Computes some jobs again; returns those whose result differs.
-fn recompute(config: &SweepConfig, jobs: &Jobs, rows: &[&ResultRow], quiet: bool) -> Vec<u64> {
-    let bars = ProgressBars::new(quiet);
+fn recompute(config: &SweepConfig, jobs: &Jobs, rows: &[&ResultRow]) -> Vec<u64> {
+    let bars = ProgressBars::new();
     bars.begin("recomputing", rows.len() as u64);
     let mut differing = Vec::new();
     for row in rows {

@@ -9,7 +9,7 @@ use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::signals;
-use crate::cli::terminal::{print_answer, print_remark, time_in_words};
+use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_remark, time_in_words};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::files::atomic_file;
@@ -137,15 +137,46 @@ impl TableFormat {
     }
 }
 
-pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &TableOptions) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
-    let loaded = LoadedProfile::read(&options.profile, &options.physics, &fixed, quiet)?;
-    let profile = options
-        .scatter
-        .changed(loaded)?
-        .in_units(options.units)?
-        .profile;
-    let units = profile.output().units;
+    let loaded = LoadedProfile::read_and_warn(&options.profile, &options.physics, &fixed)?;
+    let loaded = options.scatter.changed(loaded)?.in_units(options.units)?;
+    let profile = loaded.profile;
+    let request = request(options, &profile)?;
+    let outputs = outputs(options)?;
+    if request.kind == TableKind::Better && request.angles_rad.len() > 1 {
+        return Err(ShotTableError::SeveralAngles.into());
+    }
+    let mut unfinished = match &outputs[0].file {
+        // A pipe or a device has no folder of its own.
+        Some(file) if !file.exists() || file.is_file() => {
+            Some(unfinished_table(file, &profile, &request)?)
+        }
+        _ => None,
+    };
+    let table = compute(&profile, &request, unfinished.as_mut())?;
+    write(&outputs, &table, &profile)?;
+    if let Some(unfinished) = unfinished {
+        // What stays is thrown away by the next table.
+        let _ = unfinished.remove();
+    }
+    if !is_quiet() {
+        print_remarks(options, &outputs, &table, &profile, &request);
+    }
+    match missing_places(&table) {
+        0 => Ok(code::DONE),
+        missing => {
+            print_hint(&format!(
+                "no clean shot goes in from {missing} of the places that were asked for: they have no values (exit code {}); `bankshot best --distance` says what the most probable shot makes there",
+                code::INCOMPLETE
+            ));
+            Ok(code::INCOMPLETE)
+        }
+    }
+}
+
+/// What the options ask for. A value that cannot be is named with its flag and number.
+fn request(options: &TableOptions, profile: &Profile) -> Result<ShotTableRequest, Failure> {
     let distances_m = ascending_values("distances", &options.distances, Dimension::Length)?;
     let angles_rad = match &options.angles {
         Some(text) => ascending_values("angles", text, Dimension::Angle)?,
@@ -166,82 +197,61 @@ pub(crate) fn run(options: &TableOptions, quiet: bool) -> Result<u8, Failure> {
             })?;
         }
     }
-    let fixed = options.fixed.values(&profile)?;
-    let outputs = outputs(options)?;
-    let request = ShotTableRequest {
+    Ok(ShotTableRequest {
         kind: options.kind.into(),
         distances_m,
         angles_rad,
-        fixed,
+        fixed: options.fixed.values(profile)?,
         max_loss: options.max_loss,
         least_probability: options.least_probability,
         is_draft: options.draft,
-    };
-    if request.kind == TableKind::Better && request.angles_rad.len() > 1 {
-        return Err(ShotTableError::SeveralAngles.into());
-    }
-    let mut unfinished = match &outputs[0].file {
-        // A pipe or a device has no folder of its own.
-        Some(file) if !file.exists() || file.is_file() => {
-            Some(unfinished_table(file, &profile, &request, quiet)?)
-        }
-        _ => None,
-    };
-    let table = compute(&profile, &request, unfinished.as_mut(), quiet)?;
-    let text_of = |output: &Output| {
-        let source = |language| source_code(&table, (language, &output.class), (&profile, units));
-        match output.format {
-            TableFormat::Text => table_text(&table, &profile, units),
-            TableFormat::Csv => table_csv(&table, units),
-            TableFormat::Json => format!("{:#}\n", table_json(&table, &profile, units)),
+    })
+}
+
+/// Writes the table in each of the forms.
+fn write(outputs: &[Output], table: &ShotTable, profile: &Profile) -> Result<(), Failure> {
+    let units = profile.output().units;
+    for output in outputs {
+        let source = |language| source_code(table, (language, &output.class), (profile, units));
+        let text = match output.format {
+            TableFormat::Text => table_text(table, profile, units),
+            TableFormat::Csv => table_csv(table, units),
+            TableFormat::Json => format!("{:#}\n", table_json(table, profile, units)),
             TableFormat::Java => source(Language::Java),
             TableFormat::Cpp => source(Language::Cpp),
             TableFormat::Python => source(Language::Python),
-        }
-    };
-    for output in &outputs {
+        };
         match output.file {
             None => {
-                print_answer(&text_of(output))?;
+                print_answer(&text)?;
             }
-            Some(file) => {
-                atomic_file::write(file, text_of(output).as_bytes())
-                    .map_err(|error| Failure::io(file.display(), &error))?;
-            }
+            Some(file) => atomic_file::write(file, text.as_bytes())
+                .map_err(|error| Failure::io(file.display(), &error))?,
         }
     }
-    if let Some(unfinished) = unfinished {
-        // What stays is thrown away by the next table.
-        let _ = unfinished.remove();
+    Ok(())
+}
+
+/// Says what was written, and what the forms without text leave out.
+fn print_remarks(
+    options: &TableOptions,
+    outputs: &[Output],
+    table: &ShotTable,
+    profile: &Profile,
+    request: &ShotTableRequest,
+) {
+    for file in &options.output {
+        print_remark(&format!("written: {}", file.display()));
     }
-    if !quiet {
-        for file in &options.output {
-            print_remark(&format!("written: {}", file.display()));
-        }
-        if outputs
-            .iter()
-            .all(|output| output.format != TableFormat::Text)
-        {
-            for note in notes(&table, &profile, units) {
-                print_remark(&note);
-            }
-        }
-        if table.worst().is_some_and(|worst| worst > request.max_loss) {
-            print_remark(&great_loss_warning(&profile, &request));
+    let mut formats = outputs.iter().map(|output| output.format);
+    if formats.all(|format| format != TableFormat::Text) {
+        for note in notes(table, profile, profile.output().units) {
+            print_remark(&note);
         }
     }
-    let missing = missing_places(&table);
-    if missing > 0 && !quiet {
-        print_remark(&format!(
-            "no clean shot goes in from {missing} of the places that were asked for: they have no values (exit code {}); `bankshot best --distance` says what the most probable shot makes there",
-            code::INCOMPLETE
-        ));
+    if table.worst().is_some_and(|worst| worst > request.max_loss) {
+        print_remark(&great_loss_warning(profile, request));
     }
-    Ok(if missing == 0 {
-        code::DONE
-    } else {
-        code::INCOMPLETE
-    })
 }
 
 /// Opens the file beside `output` that keeps what is found, and says that it does.
@@ -249,7 +259,6 @@ fn unfinished_table(
     output: &Path,
     profile: &Profile,
     request: &ShotTableRequest,
-    quiet: bool,
 ) -> Result<UnfinishedTable, Failure> {
     let path = UnfinishedTable::path_beside(output);
     let failure = |error| Failure::io(path.display(), &error);
@@ -262,15 +271,15 @@ fn unfinished_table(
             failure(error)
         }
     })?;
-    if unfinished.has_replaced() && !quiet {
-        print_remark(&format!(
+    if unfinished.has_replaced() {
+        print_hint(&format!(
             "begins anew: what {} had kept was of another table (profile, request or program)",
             path.display()
         ));
     }
     let places = places_of(unfinished.known());
-    if places > 0 && !quiet {
-        print_remark(&format!(
+    if places > 0 {
+        print_hint(&format!(
             "goes on with the {places} places that were computed before ({})",
             path.display()
         ));
@@ -295,7 +304,6 @@ fn compute(
     profile: &Profile,
     request: &ShotTableRequest,
     mut unfinished: Option<&mut UnfinishedTable>,
-    quiet: bool,
 ) -> Result<ShotTable, Failure> {
     let known = match &mut unfinished {
         Some(unfinished) => unfinished.take_known(),
@@ -306,9 +314,8 @@ fn compute(
     let mut keep = |finding: &TableFinding| {
         if matches!(finding, TableFinding::Shot { .. })
             && let Some(words) = forecast.after_a_place()
-            && !quiet
         {
-            print_remark(&words);
+            print_hint(&words);
         }
         if let Some(unfinished) = &mut unfinished
             && !failed
@@ -320,7 +327,7 @@ fn compute(
             ));
         }
     };
-    let progress = ProgressBars::new(quiet);
+    let progress = ProgressBars::new();
     let table = ShotTable::resume((profile, request), &known, &mut keep, &progress)?;
     Ok(table)
 }

@@ -5,7 +5,9 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::plot_files;
 use crate::cli::profile_flags::ProfileOptions;
-use crate::cli::terminal::{print_answer, print_bytes, print_prose, print_remark};
+use crate::cli::terminal::{
+    is_quiet, print_answer, print_bytes, print_hint, print_prose, print_remark,
+};
 use crate::dynamics::{Release, Trace};
 use crate::files::atomic_file;
 use crate::plots::shot_views::{self, MADE_COLOUR, MISSED_COLOUR, ShotPath};
@@ -51,11 +53,11 @@ const INTERVAL_S: f64 = 0.005;
 /// Colour of the error-free shot among others.
 const BLACK: &str = "#000000";
 
-pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
-    let profile = options.profile.load(&[], quiet)?.profile;
+pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
+    let profile = options.profile.load(&[])?.profile;
     let units = profile.output().units;
     let nominal = options.nominal.resolve(&profile)?;
-    if !quiet {
+    if !is_quiet() {
         for warning in options.nominal.warnings_of_flags(&profile, &nominal) {
             print_remark(&warning);
         }
@@ -72,11 +74,11 @@ pub(crate) fn run(options: &TraceOptions, quiet: bool) -> Result<u8, Failure> {
         write_plot(path, options.swarm, &profile, &nominal, &trace)?;
     }
     print(&trace, units, options.json)?;
-    if let (Some(path), false) = (&options.plot, quiet) {
-        print_remark(&format!("plot written to {}", path.display()));
+    if let Some(path) = &options.plot {
+        print_hint(&format!("plot written to {}", path.display()));
     }
-    if let (Some(path), false) = (&options.output, quiet) {
-        print_remark(&format!("trajectory written to {}", path.display()));
+    if let Some(path) = &options.output {
+        print_hint(&format!("trajectory written to {}", path.display()));
     }
     Ok(code::DONE)
 }

@@ -119,8 +119,7 @@ fn other_kind_in_words(advice: &Advice) -> String {
 
 /// Where the sentences do not advise the other kind of shot: how it compares. Empty where they do,
 /// or where one kind cannot be made.
-#[must_use]
-pub fn other_kind_not_advised(advice: &Advice) -> String {
+fn other_kind_not_advised(advice: &Advice) -> String {
     let Some(kinds) = &advice.kinds else {
         return String::new();
     };
@@ -222,6 +221,19 @@ pub fn brief_advice_text(
     court_angle_rad: f64,
     units: UnitSystem,
 ) -> String {
+    let text = player_advice_text(name, advice, observed, court_angle_rad, units);
+    text + &other_kind_not_advised(advice)
+}
+
+/// The same without a word of a kind of shot that is not advised.
+#[must_use]
+pub fn player_advice_text(
+    name: &str,
+    advice: &Advice,
+    observed: Observed,
+    court_angle_rad: f64,
+    units: UnitSystem,
+) -> String {
     let words = ChangeWords {
         units,
         court_angle_rad,
@@ -236,7 +248,6 @@ pub fn brief_advice_text(
         &sentences(name, advice, observed, &words),
         limit,
         &landing_in_words(advice, units),
-        &other_kind_not_advised(advice),
     ]
     .concat()
 }

@@ -1,9 +1,9 @@
 //! The best shots at several pitch angles: for people, as CSV and JSON.
 
-use super::columns::columns;
+use super::columns::{TableColumn, columns};
 use super::notes::{physics_note, speed_limit_in_words};
 use super::table_text::{both_sides, decimal, line, wrapped};
-use crate::best_shot::{NotCleanShot, ShotAtPitch, TableKind, TableShot};
+use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
 use crate::fitting::AngleOverDraws;
 use crate::present::fit_files::fit_json::interval_json;
 use crate::present::json_object::{number, object, provenance};
@@ -278,14 +278,8 @@ pub fn by_pitch_csv(
     profile: &Profile,
     units: UnitSystem,
 ) -> String {
-    let columns = columns(kind, units);
-    // The pitch angle comes first, also where there is no shot.
-    let is_other = |name: &str| name != "pitch_deg";
-    let names: Vec<&str> = columns
-        .iter()
-        .map(|(name, ..)| name.as_str())
-        .filter(|name| is_other(name))
-        .collect();
+    let columns = other_columns(kind, units);
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let mut text = format!("kind,pitch_deg,outcome,{}", names.join(","));
     if !over_draws.is_empty() {
         text += ",draws_probability_mean,draws_probability_low,draws_probability_high";
@@ -295,15 +289,11 @@ pub fn by_pitch_csv(
     for (i, row) in rows.iter().enumerate() {
         let cells: Vec<String> = columns
             .iter()
-            .filter(|(name, ..)| is_other(name))
-            .map(
-                |(name, _, value, size)| match row.shot.as_ref().map(value) {
-                    Some(value) if value.is_finite() => rounded(value / size).to_string(),
-                    None => not_clean_value(row, name, profile)
-                        .map_or_else(String::new, |value| rounded(value / size).to_string()),
-                    Some(_) => String::new(),
-                },
-            )
+            .map(|column| value_of(row, column, profile))
+            .map(|value| match value.filter(|value| value.is_finite()) {
+                Some(value) => rounded(value).to_string(),
+                None => String::new(),
+            })
             .collect();
         text += &format!(
             "{},{},{},{}",
@@ -335,23 +325,19 @@ pub fn by_pitch_json(
     profile: &Profile,
     units: UnitSystem,
 ) -> Value {
-    let columns = columns(kind, units);
+    let columns = other_columns(kind, units);
     let named = |name: &str, value: Value| (name.to_owned(), value);
     let shots = rows.iter().enumerate().map(|(i, row)| {
         let mut record = vec![
+            named("pitch_deg", number(pitch_deg(row))),
             named("has_shot", row.shot.is_some().into()),
             named("kind", kind_of(row).map(ShotKind::name).into()),
             named("outcome", outcome(row).into()),
         ];
-        record.extend(columns.iter().map(|(name, _, value, size)| {
-            let value = row.shot.as_ref().map(value).map(|value| value / size);
-            let value =
-                value.or_else(|| not_clean_value(row, name, profile).map(|value| value / size));
-            let value = value.map_or(Value::Null, number);
-            (name.clone(), value)
+        record.extend(columns.iter().map(|column| {
+            let value = value_of(row, column, profile).map_or(Value::Null, number);
+            (column.name.clone(), value)
         }));
-        record.retain(|(name, _)| name != "pitch_deg");
-        record.insert(0, named("pitch_deg", number(pitch_deg(row))));
         if let Some(angle) = over_draws.get(i) {
             let value = angle.as_ref().map_or(Value::Null, |angle| {
                 object(vec![
@@ -372,19 +358,18 @@ pub fn by_pitch_json(
     object(record)
 }
 
-/// A value (SI) of the most probable shot where no clean one goes in: what is intended, and P.
-fn not_clean_value(row: &ShotAtPitch, column: &str, profile: &Profile) -> Option<f64> {
-    let NotCleanShot {
-        nominal,
-        probability,
-        ..
-    } = row.not_clean?;
-    match column.split('_').next()? {
-        "probability" => Some(probability),
-        "speed" if !column.contains("tolerance") => Some(nominal.speed_m_s),
-        "aim" => Some(nominal.polar_rad - profile.location().angle_rad),
-        "backspin" => Some(nominal.backspin_rad_s),
-        _ => None,
+/// The columns after the pitch angle, which comes first, also where there is no shot.
+fn other_columns(kind: TableKind, units: UnitSystem) -> Vec<TableColumn> {
+    let mut columns = columns(kind, units);
+    columns.retain(|column| column.name != "pitch_deg");
+    columns
+}
+
+/// The value of the shot, or of the most probable one where no clean one goes in.
+fn value_of(row: &ShotAtPitch, column: &TableColumn, profile: &Profile) -> Option<f64> {
+    match &row.shot {
+        Some(shot) => Some(column.of(shot)),
+        None => column.of_not_clean(&row.not_clean?, profile),
     }
 }
 

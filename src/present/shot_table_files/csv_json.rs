@@ -13,7 +13,7 @@ use serde_json::Value;
 pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
     let (long, _) = units.length();
     let columns = columns(table.kind, units);
-    let names: Vec<&str> = columns.iter().map(|(name, ..)| name.as_str()).collect();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     let mut text = format!(
         "kind,distance_{long},court_angle_deg,outcome,{}\n",
         names.join(",")
@@ -27,8 +27,8 @@ pub fn table_csv(table: &ShotTable, units: UnitSystem) -> String {
     {
         let cells: Vec<String> = columns
             .iter()
-            .map(|(_, _, value, size)| match shot.map(value) {
-                Some(value) if value.is_finite() => rounded(value / size).to_string(),
+            .map(|column| match shot.map(|shot| column.of(shot)) {
+                Some(value) if value.is_finite() => rounded(value).to_string(),
                 _ => String::new(),
             })
             .collect();
@@ -67,11 +67,9 @@ pub fn table_json(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Va
             named("outcome", shot.map(|shot| shot.outcome.name()).into()),
             named("is_added", is_added.into()),
         ];
-        record.extend(columns.iter().map(|(name, _, value, size)| {
-            let value = shot
-                .map(value)
-                .map_or(Value::Null, |value| number(value / size));
-            (name.clone(), value)
+        record.extend(columns.iter().map(|column| {
+            let value = shot.map_or(Value::Null, |shot| number(column.of(shot)));
+            (column.name.clone(), value)
         }));
         object(record)
     });

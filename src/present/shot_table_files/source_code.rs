@@ -197,7 +197,7 @@ pub fn source_code(
 }
 
 /// What the time of a shot is not: a robot that moved and led by it missed.
-pub const TIME_IS_NO_LEAD: &str = "is for a launcher that stands still. It is not the lead of one that moves: the air slows the \
+const TIME_IS_NO_LEAD: &str = "is for a launcher that stands still. It is not the lead of one that moves: the air slows the \
      speed that the ball takes over from the launcher too, so speed times time_s leads too far.";
 
 /// A distance inside the table, with few digits.

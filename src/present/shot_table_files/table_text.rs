@@ -43,8 +43,8 @@ fn shot_columns(table: &ShotTable, units: UnitSystem) -> Vec<TextColumn> {
     let mut shown: Vec<TextColumn> = titles
         .into_iter()
         .zip(columns(table.kind, units))
-        .map(|((name, unit, width), (_, decimals, value, size))| {
-            let cell = move |shot: &TableShot| decimal(value(shot) / size, decimals);
+        .map(|((name, unit, width), shown)| {
+            let cell = move |shot: &TableShot| decimal(shown.of(shot), shown.decimals);
             column(name, unit, width, Box::new(cell))
         })
         .collect();

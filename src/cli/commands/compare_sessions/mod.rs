@@ -8,7 +8,7 @@ use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{print_answer, print_hint, print_prose, print_remark};
 use crate::plots::session_changes;
 use crate::present::fit_files::session_changes_text::{SessionSummary, session_changes_text};
 use crate::probability::Progress;
@@ -56,7 +56,54 @@ pub(crate) struct CompareSessionsOptions {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, Failure> {
+/// The pairs of sessions to compare.
+struct Compared {
+    pairs: Vec<[Session; 2]>,
+    /// Whether they are of a file with several shooters.
+    has_several_shooters: bool,
+    exit_code: u8,
+}
+
+pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
+    check_options(options)?;
+    let mut compared = read_sessions(options)?;
+    if options.plot.is_some() && compared.pairs.len() > 1 {
+        return Err(Failure::usage(
+            "--plot: draws the sessions of one shooter; choose with --shooter NAME",
+        ));
+    }
+    for sessions in &mut compared.pairs {
+        let units = options.measured.units_or(sessions[0].units);
+        to_one_release_height(sessions, units);
+    }
+    if !options.json {
+        print_several_places(options, &compared.pairs)?;
+    }
+    if !options.planned.is_empty() {
+        print_hint(
+            "--planned: values count as planned only if they were named before the shots were seen",
+        );
+    }
+    let mut jsons = Vec::new();
+    for (number, sessions) in compared.pairs.iter().enumerate() {
+        if compared.has_several_shooters && !options.json {
+            let space = if number == 0 { "" } else { "\n" };
+            print_prose(&format!("{space}{}\n", sessions[0].profile.shooter().name))?;
+        }
+        jsons.extend(answer(options, sessions, compared.has_several_shooters)?);
+    }
+    if options.json {
+        let all = match compared.has_several_shooters {
+            true => Value::Array(jsons),
+            false => jsons.swap_remove(0),
+        };
+        print_answer(&format!("{all:#}\n"))?;
+    }
+    Ok(compared.exit_code)
+}
+
+/// Refuses options that do not go together, before anything is computed.
+fn check_options(options: &CompareSessionsOptions) -> Result<(), Failure> {
     let after_is_file = options.after.as_ref().is_some_and(|after| !after.is_dir());
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
@@ -69,142 +116,131 @@ pub(crate) fn run(options: &CompareSessionsOptions, quiet: bool) -> Result<u8, F
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
-    let bars = ProgressBars::new(quiet);
-    let (mut code, mut several_shooters) = (code::DONE, false);
-    let mut compared: Vec<[Session; 2]> = match &options.after {
-        Some(after) => {
-            let read = |path| read(path, &options.measured, options.place);
-            vec![[read(&options.before)?, read(after)?]]
-        }
-        None if options.before.is_dir() => {
-            return Err(Failure::usage(format!(
-                "{}: the folder of a fit is one session; name the second one too, or the file of the shots if it has a column session",
-                options.before.display()
-            )));
-        }
-        None => {
-            let file = options.measured.read_sessions(&options.before, &[])?;
-            let several = file.shooters.len() > 1;
-            let wanted = (&options.measured.session[..], options.place);
-            let mut compared = Vec::new();
-            bars.begin("fitting sessions", 2 * file.shooters.len() as u64);
-            for shots in &file.shooters {
-                match fit_by_session(&file, shots, wanted, &bars) {
-                    Ok(sessions) => compared.push(sessions),
-                    // The others can still be compared.
-                    Err(error) if several => {
-                        print_remark(&format!("{}: {}", shots.name, error.message));
-                        code = code::INCOMPLETE;
-                    }
-                    Err(error) => return Err(error),
-                }
-            }
-            bars.end();
-            if compared.is_empty() {
-                return Err(Failure::usage(format!(
-                    "{}: the sessions of no shooter could be compared; the reasons are above",
-                    options.before.display()
-                )));
-            }
-            several_shooters = several;
-            compared
-        }
-    };
-    let units = |session: &Session| options.measured.units_or(session.units);
-    for sessions in &mut compared {
-        let units = units(&sessions[0]);
-        to_one_release_height(sessions, units);
-    }
-    if options.plot.is_some() && compared.len() > 1 {
-        return Err(Failure::usage(
-            "--plot: draws the sessions of one shooter; choose with --shooter NAME",
-        ));
-    }
-    let mut jsons = Vec::new();
-    let mut all = compared.iter().flatten();
-    if !options.json
-        && let Some(session) = all.find(|session| session.places > 1)
-    {
-        let units = units(session);
-        print_prose(&format!(
-            "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {}{}{}; the scatter is that of all.\n\n",
-            session.places,
-            session.place + 1,
-            match session.place_name.as_str() {
-                "" => String::new(),
-                name => format!("{name}, "),
-            },
-            session.profile.location().in_words(units),
-            // Each shooter has a height of their own.
-            if compared.len() == 1 {
-                let (long, metre) = units.length();
-                let height_m = session.profile.shooter().release_height_m;
-                format!(", released {:.2} {long} up", height_m / metre)
-            } else {
-                String::new()
-            }
-        ))?;
-    }
-    if !options.planned.is_empty() && !quiet {
-        print_remark(
-            "--planned: values count as planned only if they were named before the shots were seen",
-        );
-    }
-    for (number, sessions) in compared.iter().enumerate() {
-        check_conditions(sessions)?;
-        for session in sessions {
-            for warning in &session.warnings {
-                let title = session.title();
-                let title = match &session.shooter {
-                    Some(name) if several_shooters => format!("{name}, {title}"),
-                    _ => title,
-                };
-                print_remark(&format!("{title}: warning: {warning}"));
-            }
-        }
-        let changes = planned(changes(sessions, units(&sessions[0])), &options.planned)?;
-        let causes = causes(sessions);
-        if let Some(path) = &options.plot {
-            let [first, second] = sessions.each_ref().map(|session| &session.profile);
-            // The names of two fits may have their sessions.
-            let shooter = match first.shooter().name == second.shooter().name {
-                true => first.shooter().name.as_str(),
-                false => "",
-            };
-            let plot = session_changes::draw(
-                shooter,
-                sessions.each_ref().map(|session| session.name.as_str()),
-                &values_to_draw(&changes),
-                &causes_to_draw(&causes),
-            );
-            plot_files::write_one(path, &plot)?;
-            if !quiet {
-                print_remark(&format!("plot written to {}", path.display()));
-            }
-        }
-        if options.json {
-            jsons.push(json(sessions, &changes, &causes));
-            continue;
-        }
-        if several_shooters {
-            let space = if number == 0 { "" } else { "\n" };
-            print_prose(&format!("{space}{}\n", sessions[0].profile.shooter().name))?;
-        }
-        let summaries = sessions.each_ref().map(|session| SessionSummary {
-            name: &session.name,
-            shots: session.posterior.shots,
-            makes: session.makes,
+    Ok(())
+}
+
+/// Two sessions that are named, or those of each shooter of a file.
+fn read_sessions(options: &CompareSessionsOptions) -> Result<Compared, Failure> {
+    if let Some(after) = &options.after {
+        let read = |path| read(path, &options.measured, options.place);
+        return Ok(Compared {
+            pairs: vec![[read(&options.before)?, read(after)?]],
+            has_several_shooters: false,
+            exit_code: code::DONE,
         });
-        let tested = changes.len() - 1;
-        print_prose(&session_changes_text(summaries, &changes, &causes, tested))?;
+    }
+    let path = options.before.display();
+    if options.before.is_dir() {
+        return Err(Failure::usage(format!(
+            "{path}: the folder of a fit is one session; name the second one too, or the file of the shots if it has a column session"
+        )));
+    }
+    let file = options.measured.read_sessions(&options.before, &[])?;
+    let mut compared = Compared {
+        pairs: Vec::new(),
+        has_several_shooters: file.shooters.len() > 1,
+        exit_code: code::DONE,
+    };
+    let bars = ProgressBars::new();
+    let wanted = (&options.measured.session[..], options.place);
+    bars.begin("fitting sessions", 2 * file.shooters.len() as u64);
+    for shots in &file.shooters {
+        match fit_by_session(&file, shots, wanted, &bars) {
+            Ok(sessions) => compared.pairs.push(sessions),
+            // The others can still be compared.
+            Err(error) if compared.has_several_shooters => {
+                print_remark(&format!("{}: {}", shots.name, error.message));
+                compared.exit_code = code::INCOMPLETE;
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    bars.end();
+    if compared.pairs.is_empty() {
+        return Err(Failure::usage(format!(
+            "{path}: the sessions of no shooter could be compared; the reasons are above"
+        )));
+    }
+    Ok(compared)
+}
+
+/// Says which place is compared, where a session has several.
+fn print_several_places(
+    options: &CompareSessionsOptions,
+    pairs: &[[Session; 2]],
+) -> Result<(), Failure> {
+    let mut all = pairs.iter().flatten();
+    let Some(session) = all.find(|session| session.places > 1) else {
+        return Ok(());
+    };
+    let units = options.measured.units_or(session.units);
+    let name = match session.place_name.as_str() {
+        "" => String::new(),
+        name => format!("{name}, "),
+    };
+    // Each shooter has a height of their own.
+    let height = match pairs.len() {
+        1 => {
+            let (long, metre) = units.length();
+            let height_m = session.profile.shooter().release_height_m;
+            format!(", released {:.2} {long} up", height_m / metre)
+        }
+        _ => String::new(),
+    };
+    print_prose(&format!(
+        "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {name}{}{height}; the scatter is that of all.\n\n",
+        session.places,
+        session.place + 1,
+        session.profile.location().in_words(units),
+    ))?;
+    Ok(())
+}
+
+/// Compares two sessions: prints the answer, or returns it for programs.
+fn answer(
+    options: &CompareSessionsOptions,
+    sessions: &[Session; 2],
+    names_shooter: bool,
+) -> Result<Option<Value>, Failure> {
+    check_conditions(sessions)?;
+    for session in sessions {
+        for warning in &session.warnings {
+            let title = session.title();
+            let title = match &session.shooter {
+                Some(name) if names_shooter => format!("{name}, {title}"),
+                _ => title,
+            };
+            print_remark(&format!("{title}: warning: {warning}"));
+        }
+    }
+    let units = options.measured.units_or(sessions[0].units);
+    let changes = planned(changes(sessions, units), &options.planned)?;
+    let causes = causes(sessions);
+    if let Some(path) = &options.plot {
+        let [first, second] = sessions.each_ref().map(|session| &session.profile);
+        // The names of two fits may have their sessions.
+        let shooter = match first.shooter().name == second.shooter().name {
+            true => first.shooter().name.as_str(),
+            false => "",
+        };
+        let plot = session_changes::draw(
+            shooter,
+            sessions.each_ref().map(|session| session.name.as_str()),
+            &values_to_draw(&changes),
+            &causes_to_draw(&causes),
+        );
+        plot_files::write_one(path, &plot)?;
+        print_hint(&format!("plot written to {}", path.display()));
     }
     if options.json {
-        let all = if several_shooters {
-            Value::Array(jsons)
-        } else {
-            jsons.swap_remove(0)
-        };
-        print_answer(&format!("{all:#}\n"))?;
+        return Ok(Some(json(sessions, &changes, &causes)));
     }
-    Ok(code)
+    let summaries = sessions.each_ref().map(|session| SessionSummary {
+        name: &session.name,
+        shots: session.posterior.shots,
+        makes: session.makes,
+    });
+    let tested = changes.len() - 1;
+    print_prose(&session_changes_text(summaries, &changes, &causes, tested))?;
+    Ok(None)
 }

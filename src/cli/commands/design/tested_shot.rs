@@ -8,7 +8,7 @@ use crate::cli::fit_folder;
 use crate::cli::loaded_profile::load_profile;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::print_remark;
+use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::fitting::nominal_of;
 use crate::measured_shots::source::Source;
@@ -37,7 +37,6 @@ impl TestedShot {
         physics: &PhysicsArg,
         place: Option<u32>,
         named: &NominalOptions,
-        quiet: bool,
     ) -> Result<Self, Failure> {
         if !path.is_dir() {
             if place.is_some() {
@@ -45,16 +44,16 @@ impl TestedShot {
                     "--place: only the folder of a fit has places",
                 ));
             }
-            let profile = load_profile(path, physics, quiet)?;
+            let profile = load_profile(path, physics)?;
             let nominal = if named.is_given(&profile) {
                 let nominal = named.resolve(&profile)?;
                 let warnings = named.warnings_of_flags(&profile, &nominal);
-                for warning in warnings.iter().filter(|_| !quiet) {
+                for warning in warnings.iter().filter(|_| !is_quiet()) {
                     print_remark(warning);
                 }
                 nominal
             } else {
-                best_nominal(&profile, quiet)?
+                best_nominal(&profile)?
             };
             return Ok(Self {
                 probability: probability(&profile, &nominal),
@@ -68,7 +67,7 @@ impl TestedShot {
         let fit = fit_folder::read(path)?;
         let place = fit_folder::index_of_place(place, fit.profiles.len())?;
         let nominal = nominal_of(&fit.posterior.typical().means[place]);
-        if fit.profiles.len() > 1 && !quiet {
+        if fit.profiles.len() > 1 && !is_quiet() {
             print_remark(&format!(
                 "the fit has {} places: tests from place {}, {}",
                 fit.profiles.len(),
@@ -96,9 +95,9 @@ fn probability(profile: &Profile, nominal: &Nominal) -> f64 {
 }
 
 /// The best shot, where no shot is named.
-fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
+fn best_nominal(profile: &Profile) -> Result<Nominal, Failure> {
     let topics = SensitivityTopics::NONE;
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     let (_, shots) = find_kinds(profile, &ShotKind::ALL, topics, &bars)?;
     let best = shots
         .into_iter()
@@ -107,7 +106,7 @@ fn best_nominal(profile: &Profile, quiet: bool) -> Result<Nominal, Failure> {
         .ok_or_else(|| {
             Failure::usage("no clean shot from there; name one with --speed and --pitch")
         })?;
-    if !quiet {
+    if !is_quiet() {
         let (long, metre) = profile.output().units.length();
         print_remark(&format!(
             "no shot is named: tests of the best one, {} at {:.2} {long}/s and {:.1} deg, {:.1} rev/s",

@@ -11,6 +11,7 @@ mod unmeasured_parameters;
 
 use crate::cli::failure::{Failure, code};
 use crate::cli::run_folder;
+use crate::cli::terminal::is_quiet;
 use crate::files::atomic_file::same_file;
 use crate::store::fit::SHOTS_FILE;
 use remarks::{print_sessions, print_sides};
@@ -20,7 +21,7 @@ pub(crate) use failure::failure;
 pub(crate) use options::FitOptions;
 pub(crate) use remarks::report_rejected;
 
-pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &FitOptions) -> Result<u8, Failure> {
     unmeasured_parameters::check_names(&options.free)?;
     let file = options.measured.read(&options.shots)?;
     let out = options.out.clone().unwrap_or_else(|| {
@@ -40,7 +41,7 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
     for shots in &file.shooters {
         report_rejected(&file, shots, file.shooters.len() == 1);
     }
-    if !quiet {
+    if !is_quiet() {
         // Before the fit: a wrong side makes it worthless.
         print_sides(&file.shooters);
         print_sessions(&file);
@@ -52,13 +53,13 @@ pub(crate) fn run(options: &FitOptions, quiet: bool) -> Result<u8, Failure> {
         code::INCOMPLETE
     };
     if let [shots] = &file.shooters[..] {
-        return Ok(one_shooter::fit(&file, shots, &out, options, quiet)?.max(code));
+        return Ok(one_shooter::fit(&file, shots, &out, options)?.max(code));
     }
     // A ring and the air are the same for all, a backspin is not.
     if options.free.iter().any(|name| name == "backspin") {
         file.only_shooter()?;
     }
-    let worst = several_shooters::fit(&file, &out, options, quiet)?;
+    let worst = several_shooters::fit(&file, &out, options)?;
     Ok(worst.max(code))
 }
 

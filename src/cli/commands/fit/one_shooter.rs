@@ -11,13 +11,13 @@ use super::unmeasured_parameters::{
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::run_folder::{self, RunKind};
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::present::fit_files::fit_json::fit_json;
 use crate::present::fit_files::fit_text::fit_text;
 use crate::shooter::implausible_values;
-use crate::store::{self, fit::FIT_FILE};
+use crate::store;
 use serde_json::json;
 use std::path::Path;
 
@@ -27,7 +27,6 @@ pub(super) fn fit(
     shots: &ShooterShots,
     folder: &Path,
     options: &FitOptions,
-    quiet: bool,
 ) -> Result<u8, Failure> {
     run_folder::refuse_other_results(folder, RunKind::Fit)?;
     if folder.join(TABLE_FILE).exists() {
@@ -59,7 +58,7 @@ pub(super) fn fit(
         .collect::<Result<Vec<_>, _>>()?;
     write(folder, file, (shots, &fit, &free), options)?;
     renew_table(file, (shots, &fit), folder, options)?;
-    answer(file, (shots, &fit, &free), options, folder, quiet)?;
+    answer(file, (shots, &fit, &free), options, folder)?;
     Ok(code::DONE)
 }
 
@@ -82,11 +81,9 @@ pub(super) fn answer_drag(
 
 /// Refuses the folder of another shooter, whose name is the same as that of a folder.
 fn refuse_other_shooter(folder: &Path, name: &str) -> Result<(), Failure> {
-    if !folder.join(FIT_FILE).exists() {
-        return Ok(());
-    }
-    match store::fit::shooter(folder)? {
-        other if other != name => Err(Failure::usage(format!(
+    // One that cannot be read is replaced now.
+    match store::fit::shooter(folder) {
+        Ok(other) if other != name => Err(Failure::usage(format!(
             "{}: holds the fit of {other}; name another folder with --out",
             folder.display()
         ))),
@@ -99,7 +96,6 @@ fn answer(
     (shots, fit, free): (&ShooterShots, &ShooterFit, &[UnmeasuredParameter]),
     options: &FitOptions,
     folder: &Path,
-    quiet: bool,
 ) -> Result<(), Failure> {
     let units = options.measured.unit_system();
     let source = file.source(shots);
@@ -112,7 +108,7 @@ fn answer(
             print_prose(&parameter.text)?;
         }
     }
-    if !quiet {
+    if !is_quiet() {
         let warnings = fit.profiles.iter().flat_map(implausible_values);
         for warning in warnings.filter(|warning| warning.key == "location") {
             print_remark(&format!("warning: {warning}"));

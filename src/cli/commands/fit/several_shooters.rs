@@ -10,7 +10,7 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::fitting::{FitWarning, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
@@ -23,25 +23,9 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Fits several shooters side by side: one folder for each, and one table.
-pub(super) fn fit(
-    file: &MeasuredFile,
-    out: &Path,
-    options: &FitOptions,
-    quiet: bool,
-) -> Result<u8, Failure> {
-    let bars = ProgressBars::new(quiet);
-    let mut folders: Vec<PathBuf> = Vec::new();
-    for shots in &file.shooters {
-        let name = run_folder::safe_name(&file.name_of(shots));
-        let mut folder = out.join(&name);
-        let mut number = 1;
-        // Different names can be the same as folders.
-        while folders.contains(&folder) {
-            number += 1;
-            folder = out.join(format!("{name}-{number}"));
-        }
-        folders.push(folder);
-    }
+pub(super) fn fit(file: &MeasuredFile, out: &Path, options: &FitOptions) -> Result<u8, Failure> {
+    let bars = ProgressBars::new();
+    let folders = folders_of(file, out);
     bars.begin("fitting shooters", file.shooters.len() as u64);
     let rows = file
         .shooters
@@ -55,84 +39,108 @@ pub(super) fn fit(
         .collect::<Result<Vec<_>, Failure>>()?;
     bars.end();
     if rows.iter().all(|row| row.result.is_err()) {
-        let tracked: Vec<&ShooterShots> = file
-            .shooters
-            .iter()
-            .filter(|shots| !shots.tracks.is_empty())
-            .collect();
-        if !tracked.is_empty() && options.free.iter().any(|name| is_drag(name)) {
-            answer_drag(
-                file,
-                &tracked,
-                "each shooter has too few shots from a place",
-                options,
-            )?;
-            return Ok(code::INCOMPLETE);
+        return answer_without_fit(file, options);
+    }
+    remove_older(out, &folders)?;
+    for row in &rows {
+        if let Err(error) = &row.result {
+            print_remark(error);
         }
+    }
+    let free = estimate_together(file, &rows, options)?;
+    let shooters = Shooters {
+        places: rows.iter().flat_map(|row| row.places.clone()).collect(),
+        free: free.iter().map(|found| found.found.clone()).collect(),
+    };
+    write_table(out, &shooters, options.measured.unit_system())?;
+    print_table(file, &rows)?;
+    for found in &free {
+        print_prose(&format!("\n{}", found.text))?;
+    }
+    for warning in rows.iter().flat_map(|row| &row.warnings) {
+        print_remark(warning);
+    }
+    print_hints(file, &rows, out, options);
+    match rows.iter().any(|row| row.result.is_err()) {
+        true => Ok(code::INCOMPLETE),
+        false => Ok(code::DONE),
+    }
+}
+
+/// A folder for each shooter. Different names can be the same as folders.
+fn folders_of(file: &MeasuredFile, out: &Path) -> Vec<PathBuf> {
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for shots in &file.shooters {
+        let name = run_folder::safe_name(&file.name_of(shots));
+        let mut folder = out.join(&name);
+        let mut number = 1;
+        while folders.contains(&folder) {
+            number += 1;
+            folder = out.join(format!("{name}-{number}"));
+        }
+        folders.push(folder);
+    }
+    folders
+}
+
+/// What the shots tell where no shooter could be fitted: flights still tell the drag.
+fn answer_without_fit(file: &MeasuredFile, options: &FitOptions) -> Result<u8, Failure> {
+    let tracked = file
+        .shooters
+        .iter()
+        .filter(|shots| !shots.tracks.is_empty());
+    let tracked: Vec<&ShooterShots> = tracked.collect();
+    if tracked.is_empty() || !options.free.iter().any(|name| is_drag(name)) {
         return Err(Failure::usage(format!(
             "{}: no shooter could be fitted",
             options.shots.display()
         )));
     }
-    // An older fit of all shots together, or of shooters who are no longer in the file.
-    for older in fits_within(out)? {
+    let why = "each shooter has too few shots from a place";
+    answer_drag(file, &tracked, why, options)?;
+    Ok(code::INCOMPLETE)
+}
+
+/// Removes an older fit of all shots together, and those of shooters who are no longer in the file.
+fn remove_older(out: &Path, folders: &[PathBuf]) -> Result<(), Failure> {
+    // A list that cannot be read is replaced now.
+    for older in fits_within(out).unwrap_or_default() {
         if !folders.contains(&older) {
             remove(&older)?;
         }
     }
-    if out.join(FIT_FILE).exists() {
-        remove(out)?;
+    match out.join(FIT_FILE).exists() {
+        true => remove(out),
+        false => Ok(()),
     }
-    let mut shooters = Shooters::default();
-    // Places are only named where there are several.
-    let names_places = rows
-        .iter()
-        .any(|row| row.result.as_ref().is_ok_and(|places| places.len() > 1));
+}
+
+/// Prints the table of all shooters. Places are only named where there are several.
+fn print_table(file: &MeasuredFile, rows: &[ShooterRow]) -> Result<(), Failure> {
+    let fitted = || rows.iter().filter_map(|row| row.result.as_ref().ok());
+    let names_places = fitted().any(|places| places.len() > 1);
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
     let place = names_places.then_some("from");
     let header = ["shooter"].into_iter().chain(place);
     table.set_header(header.chain(["shots", "made", "expected", "P of the usual\nshot (95 %)"]));
-    let mut worst = code::DONE;
-    for row in &rows {
-        shooters.places.extend(row.places.clone());
-        match &row.result {
-            Ok(places) => {
-                for place in places {
-                    let from = names_places.then_some(&place.from);
-                    let cells = std::iter::once(&place.shooter).chain(from);
-                    table.add_row(cells.chain(&place.cells));
-                }
-            }
-            Err(error) => {
-                print_remark(error);
-                worst = code::INCOMPLETE;
-            }
-        }
+    for place in fitted().flatten() {
+        let from = names_places.then_some(&place.from);
+        let cells = std::iter::once(&place.shooter).chain(from);
+        table.add_row(cells.chain(&place.cells));
     }
-    let free = estimate_together(file, &rows, options)?;
-    shooters.free = free.iter().map(|found| found.found.clone()).collect();
-    write_table(out, &shooters, options.measured.unit_system())?;
-    let assumptions = match &file.shooters[..] {
-        [first, ..] => {
-            let source = file.source(first);
-            format!(
-                "{} shooters: {}, tracker {} ({}), physics {}\n",
-                file.shooters.len(),
-                source.kind,
-                source.tracker.0,
-                source.tracker.1,
-                source.physics
-            )
-        }
-        [] => String::new(),
-    };
-    print_answer(&format!("{assumptions}{}\n", table.trim_fmt()))?;
-    if file
-        .shooters
-        .iter()
-        .any(|shots| shots.shots.iter().any(|shot| shot.made.is_some()))
-    {
+    let source = file.source(&file.shooters[0]);
+    print_answer(&format!(
+        "{} shooters: {}, tracker {} ({}), physics {}\n{}\n",
+        file.shooters.len(),
+        source.kind,
+        source.tracker.0,
+        source.tracker.1,
+        source.physics,
+        table.trim_fmt()
+    ))?;
+    let mut shots = file.shooters.iter().flat_map(|shooter| &shooter.shots);
+    if shots.any(|shot| shot.made.is_some()) {
         print_prose(
             "made and expected: of these balls, as they were measured. P: of the fitted distribution, so of all balls like them.\n",
         )?;
@@ -142,30 +150,26 @@ pub(super) fn fit(
             "!: the makes and the measured shots do not belong together (see the warning): do not act on that P yet. `bankshot compare-sessions` says whether it is one session.\n",
         )?;
     }
-    for found in &free {
-        print_prose(&format!("\n{}", found.text))?;
+    Ok(())
+}
+
+/// Says what was written, and what to do next.
+fn print_hints(file: &MeasuredFile, rows: &[ShooterRow], out: &Path, options: &FitOptions) {
+    if is_quiet() {
+        return;
     }
-    for warning in rows.iter().flat_map(|row| &row.warnings) {
-        print_remark(warning);
+    print_unused(file);
+    print_remark(&format!(
+        "written: {}, and a folder for each shooter, whose report.html has the tests and the notes on each fit; next: bankshot advise {}",
+        out.join(TABLE_FILE).display(),
+        out.display()
+    ));
+    let mut fits = rows.iter().filter_map(|row| row.fit.as_ref());
+    if options.free.is_empty() && fits.any(|fit| fit.makes.labelled > 0) {
+        print_remark(
+            "before a `bankshot team` with --sweep: the same command with --free hoop_restitution asks the makes about the ring of this gym, on which bank or direct rests",
+        );
     }
-    if !quiet {
-        print_unused(file);
-        print_remark(&format!(
-            "written: {}, and a folder for each shooter, whose report.html has the tests and the notes on each fit; next: bankshot advise {}",
-            out.join(TABLE_FILE).display(),
-            out.display()
-        ));
-        let has_results = rows.iter().any(|row| {
-            let fit = row.fit.as_ref();
-            fit.is_some_and(|fit| fit.makes.labelled > 0)
-        });
-        if has_results && options.free.is_empty() {
-            print_remark(
-                "before a `bankshot team` with --sweep: the same command with --free hoop_restitution asks the makes about the ring of this gym, on which bank or direct rests",
-            );
-        }
-    }
-    Ok(worst)
 }
 
 /// What the shots of all shooters together say of the parameters of `--free`.

@@ -5,18 +5,19 @@ use crate::analysis::miss_breakdown::classify_misses;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::NominalOptions;
-use crate::cli::output_files::{self, OutputForm};
+use crate::cli::output_files::{self, Rendered};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_remark};
+use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_lists::ascending_values;
 use crate::fitting::{AngleOverDraws, best_angles_of_draws};
 use crate::plots;
 use crate::present::best_shot_text::PROFILE_IS_EXACT;
 use crate::present::probability_along_variable::{PointAlong, ProbabilityAlong};
 use crate::probability::{Progress, Sampler, Silent};
-use crate::shooter::{NominalVariable, Profile};
+use crate::shooter::{Nominal, NominalVariable, Profile};
 use crate::store::fit::Fit;
+use serde_json::Value;
 
 /// What `--vary` names: a variable, whether it is the angle from the line to the hoop's centre, and
 /// its values, SI.
@@ -63,49 +64,100 @@ pub(super) fn run(
     options: &ProbabilityOptions,
     (profile, draws): (&Profile, Option<&Fit>),
     vary: &str,
-    quiet: bool,
 ) -> Result<u8, Failure> {
-    let Varied {
-        variable,
-        is_aim,
-        values,
-    } = Varied::parse(vary)?;
-    let start = if is_aim {
-        profile.location().angle_rad
-    } else {
-        0.0
-    };
-    let search = profile.search();
-    let target = options.target.unwrap_or(search.standard_error);
-    let seed = options.seed.unwrap_or(search.seed);
-    let bars = ProgressBars::new(quiet);
-    // Every shot is checked before one is computed.
-    let nominals = values
-        .iter()
-        .map(|value| {
-            let given = (variable, start + value);
-            options.nominal.resolve_with(profile, Some(given))
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
+    let varied = Varied::parse(vary)?;
+    let nominals = varied.shots(options, profile)?;
     if options.plot.is_some() && nominals.len() < 2 {
         return Err(Failure::usage("--plot: --vary needs two values or more"));
     }
-    if !quiet {
-        // One of each kind: the values share them.
-        let mut warnings: Vec<String> = nominals
-            .iter()
-            .flat_map(|nominal| NominalOptions::warnings(profile, nominal))
-            .collect();
-        if variable != NominalVariable::Backspin {
-            let of_flags = |nominal| options.nominal.warnings_of_flags(profile, nominal);
-            warnings.extend(nominals.iter().flat_map(of_flags));
-        }
-        warnings.sort();
-        warnings.dedup();
-        for warning in &warnings {
-            print_remark(warning);
-        }
+    if !is_quiet() {
+        print_warnings(options, profile, varied.variable, &nominals);
     }
+    let target = options.target.unwrap_or(profile.search().standard_error);
+    let along = probability_along(options, (profile, draws), &varied, nominals, target)?;
+    if let Some(path) = &options.plot
+        && let Some(plot) = plots::probability_along_variable::draw(&along)
+    {
+        plot_files::write_one(path, &plot)?;
+    }
+    output_files::deliver(&along, &options.output, options.json)?;
+    output_files::print_written(options.output.iter().chain(&options.plot));
+    let mut points = along.points.iter();
+    Ok(
+        match points.all(|point| point.estimate.standard_error <= target) {
+            true => code::DONE,
+            false => code::IMPRECISE,
+        },
+    )
+}
+
+impl Rendered for ProbabilityAlong<'_> {
+    fn text(&self) -> String {
+        let is_exact = self.points.iter().all(|point| point.over_draws.is_none());
+        let of_profile = if is_exact { PROFILE_IS_EXACT } else { "" };
+        self.in_text() + of_profile
+    }
+
+    fn json(&self) -> Value {
+        self.as_json()
+    }
+
+    fn csv(&self) -> String {
+        self.as_csv()
+    }
+}
+
+impl Varied {
+    /// The shot with each of the values. Every one is checked before one is computed.
+    fn shots(
+        &self,
+        options: &ProbabilityOptions,
+        profile: &Profile,
+    ) -> Result<Vec<Nominal>, Failure> {
+        let start = match self.is_aim {
+            true => profile.location().angle_rad,
+            false => 0.0,
+        };
+        let shot = |value: &f64| {
+            let given = (self.variable, start + value);
+            options.nominal.resolve_with(profile, Some(given))
+        };
+        self.values.iter().map(shot).collect()
+    }
+}
+
+/// Warns of implausible shots, once of each kind: the values share them.
+fn print_warnings(
+    options: &ProbabilityOptions,
+    profile: &Profile,
+    variable: NominalVariable,
+    nominals: &[Nominal],
+) {
+    let of_shots = nominals.iter();
+    let mut warnings: Vec<String> = of_shots
+        .flat_map(|nominal| NominalOptions::warnings(profile, nominal))
+        .collect();
+    if variable != NominalVariable::Backspin {
+        let of_flags = |nominal| options.nominal.warnings_of_flags(profile, nominal);
+        warnings.extend(nominals.iter().flat_map(of_flags));
+    }
+    warnings.sort();
+    warnings.dedup();
+    for warning in &warnings {
+        print_remark(warning);
+    }
+}
+
+/// P of each of the shots.
+fn probability_along<'a>(
+    options: &ProbabilityOptions,
+    (profile, draws): (&'a Profile, Option<&Fit>),
+    varied: &Varied,
+    nominals: Vec<Nominal>,
+    target: f64,
+) -> Result<ProbabilityAlong<'a>, Failure> {
+    let seed = options.seed.unwrap_or(profile.search().seed);
+    let bars = ProgressBars::new();
     bars.begin("values", nominals.len() as u64);
     let mut points = Vec::new();
     let mut of_draws = Vec::new();
@@ -123,7 +175,7 @@ pub(super) fn run(
         if let Some(fit) = draws {
             of_draws.push(Some(match usual_at {
                 Some(place) => {
-                    let given = (variable, nominal.get(variable));
+                    let given = (varied.variable, nominal.get(varied.variable));
                     fit_folder::usual_shot_over_draws((fit, place), profile, given)?
                 }
                 None => fit_folder::shot_over_draws(fit, profile, &nominal)?,
@@ -138,46 +190,16 @@ pub(super) fn run(
         bars.advance(1);
     }
     bars.end();
-    let best_of_draws = best_angles_of_draws(&of_draws);
     let over = AngleOverDraws::of_angles(&of_draws);
     for (point, over) in points.iter_mut().zip(over) {
         point.over_draws = over;
     }
-    let is_exact = points
-        .iter()
-        .all(|point| point.estimate.standard_error <= target);
-    let along = ProbabilityAlong {
+    Ok(ProbabilityAlong {
         profile,
-        variable,
-        best_of_draws,
-        is_aim,
+        variable: varied.variable,
+        best_of_draws: best_angles_of_draws(&of_draws),
+        is_aim: varied.is_aim,
         points,
         is_rest_uncertain: usual_at.is_some(),
-    };
-    let text = || {
-        let of_profile = if draws.is_none() {
-            PROFILE_IS_EXACT
-        } else {
-            ""
-        };
-        along.text() + of_profile
-    };
-    let json = || format!("{:#}\n", along.json());
-    output_files::write(&options.output, |form| match form {
-        OutputForm::Csv => along.csv(),
-        OutputForm::Json => json(),
-        OutputForm::Text => text(),
-    })?;
-    if let Some(path) = &options.plot
-        && let Some(plot) = plots::probability_along_variable::draw(&along)
-    {
-        plot_files::write_one(path, &plot)?;
-    }
-    print_answer(&if options.json { json() } else { text() })?;
-    output_files::print_written(options.output.iter().chain(&options.plot), quiet);
-    Ok(if is_exact {
-        code::DONE
-    } else {
-        code::IMPRECISE
     })
 }

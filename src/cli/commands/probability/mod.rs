@@ -13,7 +13,7 @@ use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::output_files;
 use crate::cli::plot_files::PlotType;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_prose, print_remark};
 use crate::dynamics::Release;
 use crate::present::best_shot_text::PROFILE_IS_EXACT;
 use crate::present::probability_text::answer_text;
@@ -35,8 +35,8 @@ struct Precision {
     seed: u64,
 }
 
-pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failure> {
-    let loaded = options.profile.load(&[], quiet)?;
+pub(crate) fn run(options: &ProbabilityOptions) -> Result<u8, Failure> {
+    let loaded = options.profile.load(&[])?;
     let profile = options.scatter.changed(loaded)?.profile;
     output_files::check(&options.output)?;
     if let Some(path) = &options.plot {
@@ -45,14 +45,14 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     if let Some(vary) = &options.vary {
         let fit = draws.as_ref().map(|(_, fit)| fit);
-        return along_variable::run(options, (&profile, fit), vary, quiet);
+        return along_variable::run(options, (&profile, fit), vary);
     }
     let nominal = options.nominal.resolve(&profile)?;
     if let Some((seed, index)) = options.replay {
         let release = replayed(options.method, &profile, &nominal, seed, index)?;
         return trace::show(&profile, &release, options.json);
     }
-    if !quiet {
+    if !is_quiet() {
         let of_flags = options.nominal.warnings_of_flags(&profile, &nominal);
         let of_shot = NominalOptions::warnings(&profile, &nominal);
         for warning in of_flags.iter().chain(&of_shot) {
@@ -64,7 +64,7 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
         budget: options.budget.unwrap_or(MAX_SHOTS),
         seed: options.seed.unwrap_or(profile.search().seed),
     };
-    let estimate = estimate(options, &profile, &nominal, &precision, quiet)?;
+    let estimate = estimate(options, &profile, &nominal, &precision)?;
     let draws_samples = matches!(options.method, Method::Sobol | Method::MonteCarlo);
     let computed = Computed {
         method: options.method.name(),
@@ -96,11 +96,9 @@ pub(crate) fn run(options: &ProbabilityOptions, quiet: bool) -> Result<u8, Failu
     if estimate.standard_error <= precision.target {
         return Ok(code::DONE);
     }
-    if !quiet {
-        print_remark(
-            "the wanted standard error was not reached; raise --budget, or choose a larger --target",
-        );
-    }
+    print_hint(
+        "the wanted standard error was not reached; raise --budget, or choose a larger --target",
+    );
     Ok(code::IMPRECISE)
 }
 
@@ -131,10 +129,9 @@ fn estimate(
     profile: &Profile,
     nominal: &Nominal,
     precision: &Precision,
-    quiet: bool,
 ) -> Result<Estimate, Failure> {
     check_method(options, profile)?;
-    let bars = ProgressBars::new(quiet);
+    let bars = ProgressBars::new();
     let &Precision {
         target,
         budget,

@@ -45,10 +45,7 @@ pub(super) fn team_page(
     let advised: Vec<&PlayerAdvice> = advised(players).collect();
     let one_place = one_place(&advised);
     let advice = advised.iter().map(|advice| {
-        // That the other kind is no better from there is no news on a page about banking.
-        let lines = advice.text.trim_end().lines();
-        let lines = lines.filter(|line| !line.starts_with("Bank or direct: "));
-        let text = lines.collect::<Vec<_>>().join("\n");
+        let text = advice.text.trim_end().to_owned();
         let mut remarks = Vec::new();
         if one_place.is_none() {
             remarks.push(format!("From {}.", advice.from));

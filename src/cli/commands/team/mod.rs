@@ -57,14 +57,14 @@ pub(crate) struct TeamOptions {
     pub(crate) plan: bool,
 }
 
-pub(crate) fn run(options: &TeamOptions, quiet: bool) -> Result<u8, Failure> {
+pub(crate) fn run(options: &TeamOptions) -> Result<u8, Failure> {
     let players = &options.players;
     match &options.sweep {
-        None => one_place::run((players, options.place), &options.from, quiet),
+        None => one_place::run(players, options.place, &options.from),
         Some(_) if options.from.is_given() => Err(Failure::usage(
             "--distance and --angle: one place for all players; with --sweep they shoot from its places",
         )),
         Some(sweep) if options.plan => over_the_court::plan(players, sweep),
-        Some(sweep) => over_the_court::run(players, sweep, &options.out, quiet),
+        Some(sweep) => over_the_court::run(players, sweep, &options.out),
     }
 }

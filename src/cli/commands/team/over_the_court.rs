@@ -6,7 +6,7 @@ use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
 use super::sureness::{find_hoop_dependence, find_sureness, sureness_s};
 use super::team_csv::team_csv;
-use super::team_profiles::load_players;
+use super::team_profiles::{load_players, warn_of};
 use crate::cli::commands::plan_sweep_time_and_memory::forecast_s;
 use crate::cli::commands::sweep::{compute, run_options};
 use crate::cli::config_files::{read_sweep_without_shooter, read_text, warnings_of_fit};
@@ -15,13 +15,16 @@ use crate::cli::fit_folder;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{print_answer, print_prose, print_remark, time_in_words};
+use crate::cli::terminal::{
+    is_quiet, print_answer, print_hint, print_prose, print_remark, time_in_words,
+};
 use crate::files::atomic_file;
 use crate::fitting::UnseenParameter;
 use crate::plots::player_poster::PlayerPoster;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
 use crate::report::poster_page::{poster_page, posters_page};
+use crate::shooter::Profile;
 use crate::store::fit::Fit;
 use crate::store::shooters::ring_told_by_makes;
 use crate::sweep::SweepConfig;
@@ -29,6 +32,7 @@ use crate::sweep::job_list::{Jobs, Shard};
 use crate::sweep::probability_by_place::PlaceProbabilities;
 use crate::sweep::result_row::ResultRow;
 use crate::sweep::sweep_toml::{SourceTexts, parse_sweep};
+use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -41,16 +45,14 @@ struct PlannedPlayer {
     warnings: String,
     config: SweepConfig,
     texts: SourceTexts,
+    /// The file of the profile, and the profile.
+    player: (PathBuf, Profile),
 }
 
 /// Reads every profile: nothing is computed before.
-fn planned_players(
-    players: &[PathBuf],
-    sweep: &Path,
-    quiet: bool,
-) -> Result<Vec<PlannedPlayer>, Failure> {
+fn planned_players(players: &[PathBuf], sweep: &Path) -> Result<Vec<PlannedPlayer>, Failure> {
     let texts = read_sweep_without_shooter(sweep)?;
-    let players = load_players((players, None), quiet)?.into_iter();
+    let players = load_players(players, None)?.into_iter();
     let planned = players.map(|(path, player)| {
         let name = player.shooter().name.clone();
         let warnings = warnings_of_fit(&path)?.into_iter();
@@ -64,6 +66,7 @@ fn planned_players(
                 .collect(),
             config: parse_sweep(&texts, &sweep.display().to_string())?,
             fit: fit_folder::of_profile(&path)?,
+            player: (path, player),
             name,
             texts,
         })
@@ -73,7 +76,7 @@ fn planned_players(
 
 /// Prints how long it takes.
 pub(super) fn plan(players: &[PathBuf], sweep: &Path) -> Result<u8, Failure> {
-    let planned = planned_players(players, sweep, true)?;
+    let planned = planned_players(players, sweep)?;
     print_answer(&match forecast_in_words(&planned) {
         Some(words) => format!("{words}\n"),
         None => "nothing can be made from any place\n".to_owned(),
@@ -83,7 +86,7 @@ pub(super) fn plan(players: &[PathBuf], sweep: &Path) -> Result<u8, Failure> {
 /// What all players take, from the first one's sweep and fit.
 fn forecast_in_words(players: &[PlannedPlayer]) -> Option<String> {
     let first = &players[0];
-    let sweep_s = forecast_s(&first.config, true)?;
+    let sweep_s = forecast_s(&first.config)?;
     let fitted = players.iter().filter_map(|player| player.fit.as_ref());
     let fitted: Vec<&Fit> = fitted.collect();
     let places = Jobs::new(&first.config).sources.len();
@@ -98,52 +101,24 @@ fn forecast_in_words(players: &[PlannedPlayer]) -> Option<String> {
     Some(format!("{players}: about {time} in all"))
 }
 
-/// Computes what is not yet computed, prints the answer and writes the page, the posters, the maps
-/// and the table to `out`.
-pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> Result<u8, Failure> {
-    let planned = planned_players(paths, sweep, quiet)?;
-    let folder_of = |player: &PlannedPlayer| out.join(run_folder::safe_name(&player.name));
-    let folders: Vec<PathBuf> = planned.iter().map(folder_of).collect();
-    let units = planned[0].config.settings.output.units;
-    let told = ring_told_by_makes(paths)?;
-    let ring = told.unwrap_or(UnseenParameter::HoopRestitution.usual_range());
-    if !quiet && !folders.iter().any(|folder| folder.exists()) {
-        forecast_in_words(&planned)
-            .iter()
-            .for_each(|words| print_remark(words));
-    }
-    let (mut players, mut finished, mut posters) = (Vec::new(), Vec::new(), Vec::new());
-    let count = planned.len();
-    let mut warnings = String::new();
-    // The longest of those that are done: others may have been computed before.
-    let mut time_s: f64 = 0.0;
-    for (number, (player, folder)) in planned.into_iter().zip(&folders).enumerate() {
-        if !quiet {
-            let left_s = time_s * (count - number) as f64;
-            let left = match left_s {
-                0.0 => String::new(),
-                left_s => format!(", about {} left", time_in_words(left_s)),
-            };
-            print_remark(&format!(
-                "player {} of {count}{left}: {}, {}",
-                number + 1,
-                player.name,
-                folder.display()
-            ));
-        }
-        let start = Instant::now();
-        let PlannedPlayer {
-            name,
-            fit,
-            config,
-            texts,
-            warnings: of_player,
-        } = player;
-        warnings += &of_player;
-        let (swept, _) = compute(folder, &config, &texts, run_options(Shard::WHOLE), quiet)?;
+/// The players with their sweeps.
+#[derive(Default)]
+struct Team {
+    players: Vec<PlayerSweep>,
+    /// What the maps are drawn of, for each player.
+    results: Vec<(SweepConfig, BTreeMap<u64, ResultRow>)>,
+    /// Of those that have one.
+    posters: Vec<PlayerPoster>,
+}
+
+impl PlannedPlayer {
+    /// Computes what is not yet computed, and writes the player's pictures.
+    fn sweep(self, team: &mut Team, folder: &Path, ring: (f64, f64)) -> Result<(), Failure> {
+        let (config, fit) = (self.config, self.fit);
+        let (swept, _) = compute(folder, &config, &self.texts, run_options(Shard::WHOLE))?;
         let (rows, _) = swept.union()?;
         let mut places = PlaceProbabilities::of_sweep(&config, &rows);
-        let bars = ProgressBars::new(quiet);
+        let bars = ProgressBars::new();
         let mut advice = None;
         if let Some(fit) = &fit {
             find_sureness(&mut places, &config, fit, &bars)?;
@@ -154,57 +129,121 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path, quiet: bool) -> R
             .map_or(0.0, |fit| fit.usual_probabilities(0).interval().sd);
         find_hoop_dependence(&mut places, &config, ring, &bars)?;
         let own = advice.as_ref().map(|advice| advice.poster.as_str());
-        posters.extend(write_pictures(
-            folder,
-            (&name, own),
-            (&config, &rows),
-            &places,
-        )?);
-        players.push(PlayerSweep {
-            name,
+        let poster = write_pictures(folder, (&self.name, own), (&config, &rows), &places)?;
+        team.posters.extend(poster);
+        team.players.push(PlayerSweep {
+            name: self.name,
             places,
             probability_sd,
             advice,
         });
-        finished.push((config, rows));
+        team.results.push((config, rows));
+        Ok(())
+    }
+}
+
+/// Computes what is not yet computed, prints the answer and writes the page, the posters, the maps
+/// and the table to `out`.
+pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path) -> Result<u8, Failure> {
+    let planned = planned_players(paths, sweep)?;
+    for planned in &planned {
+        let (path, player) = &planned.player;
+        warn_of(path, player)?;
+    }
+    let folder_of = |player: &PlannedPlayer| out.join(run_folder::safe_name(&player.name));
+    let folders: Vec<PathBuf> = planned.iter().map(folder_of).collect();
+    let units = planned[0].config.settings.output.units;
+    let told = ring_told_by_makes(paths)?;
+    let ring = told.unwrap_or(UnseenParameter::HoopRestitution.usual_range());
+    if !is_quiet() && !folders.iter().any(|folder| folder.exists()) {
+        forecast_in_words(&planned)
+            .iter()
+            .for_each(|words| print_remark(words));
+    }
+    let warnings: String = planned
+        .iter()
+        .map(|player| player.warnings.as_str())
+        .collect();
+    let team = sweep_players(planned, &folders, ring)?;
+    let page_file = write_team(out, &team, (&warnings, ring), units)?;
+    let players = &team.players;
+    if !is_quiet() {
+        warn_of_other_players(out, &folders, players);
+    }
+    print_prose(&team_text(players, ring, units))?;
+    print_prose(&notes(players))?;
+    print_hint(&format!(
+        "written: {} (to look at, or to print: the table and the maps); beside it posters.html (a sheet to print for each player), team.csv and team.svg; in each player's folder bank_and_direct.svg and poster.html",
+        page_file.display()
+    ));
+    if let [first, second, ..] = &folders[..] {
+        print_hint(&format!(
+            "next, where one beats the other: bankshot compare {} --against {}",
+            first.display(),
+            second.display()
+        ));
+    }
+    Ok(code::DONE)
+}
+
+/// The players with their sweeps, one after the other.
+fn sweep_players(
+    planned: Vec<PlannedPlayer>,
+    folders: &[PathBuf],
+    ring: (f64, f64),
+) -> Result<Team, Failure> {
+    let count = planned.len();
+    // The longest of those that are done: others may have been computed before.
+    let mut time_s: f64 = 0.0;
+    let mut team = Team::default();
+    for (number, (player, folder)) in planned.into_iter().zip(folders).enumerate() {
+        let left = match time_s * (count - number) as f64 {
+            0.0 => String::new(),
+            left_s => format!(", about {} left", time_in_words(left_s)),
+        };
+        print_hint(&format!(
+            "player {} of {count}{left}: {}, {}",
+            number + 1,
+            player.name,
+            folder.display()
+        ));
+        let start = Instant::now();
+        player.sweep(&mut team, folder, ring)?;
         time_s = time_s.max(start.elapsed().as_secs_f64());
     }
-    let results: Vec<SweepResults<'_>> = finished
+    Ok(team)
+}
+
+/// Writes the maps, the posters, the table and the page, whose file it returns.
+fn write_team(
+    out: &Path,
+    team: &Team,
+    (warnings, ring): (&str, (f64, f64)),
+    units: UnitSystem,
+) -> Result<PathBuf, Failure> {
+    let Team {
+        players,
+        results,
+        posters,
+    } = team;
+    let results: Vec<SweepResults<'_>> = results
         .iter()
-        .zip(&players)
+        .zip(players)
         .map(|((config, rows), player)| {
             SweepResults::new(config, rows).with_chances(player.places.clone())
         })
         .collect();
-    let maps = team_maps::draw(&results, &best_players(&players));
+    let maps = team_maps::draw(&results, &best_players(players));
     plot_files::write(out, maps.as_slice())?;
     let has_posters = !posters.is_empty();
     if has_posters {
-        write(&out.join("posters.html"), &posters_page(&posters))?;
+        write(&out.join("posters.html"), &posters_page(posters))?;
     }
-    write(&out.join("team.csv"), &team_csv(&players, units))?;
-    let page_file = out.join("team.html");
-    let page = team_page(&players, maps, has_posters, (&warnings, ring), units);
-    write(&page_file, &page.html())?;
-    if !quiet {
-        warn_of_other_players(out, &folders, &players);
-    }
-    print_prose(&team_text(&players, ring, units))?;
-    print_prose(&notes(&players))?;
-    if !quiet {
-        print_remark(&format!(
-            "written: {} (to look at, or to print: the table and the maps); beside it posters.html (a sheet to print for each player), team.csv and team.svg; in each player's folder bank_and_direct.svg and poster.html",
-            page_file.display()
-        ));
-        if let [first, second, ..] = &folders[..] {
-            print_remark(&format!(
-                "next, where one beats the other: bankshot compare {} --against {}",
-                first.display(),
-                second.display()
-            ));
-        }
-    }
-    Ok(code::DONE)
+    write(&out.join("team.csv"), &team_csv(players, units))?;
+    let file = out.join("team.html");
+    let page = team_page(players, maps, has_posters, (warnings, ring), units);
+    write(&file, &page.html())?;
+    Ok(file)
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Failure> {

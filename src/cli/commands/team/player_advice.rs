@@ -3,14 +3,15 @@
 use crate::cli::failure::Failure;
 use crate::fitting::advise;
 use crate::present::fit_files::advice_for_team::{ShortAdvice, advice_for_poster, short_advice};
-use crate::present::fit_files::advice_text::brief_advice_text;
+use crate::present::fit_files::advice_text::player_advice_text;
 use crate::probability::Progress;
 use crate::shooter::OutputSettings;
 use crate::store::fit::Fit;
 
 /// What a fitted player's own shots say, at the first place of the fit.
 pub(super) struct PlayerAdvice {
-    /// A paragraph.
+    /// A paragraph. (That the other kind is no better from there is no news on a page about
+    /// banking.)
     pub(super) text: String,
     /// A sentence for the poster; empty where nothing is to be changed.
     pub(super) poster: String,
@@ -40,7 +41,7 @@ impl PlayerAdvice {
             poster += " (You were measured there alone: the map takes your scatter from there.)";
         }
         Ok(Self {
-            text: brief_advice_text(name, &advice, observed, angle, units),
+            text: player_advice_text(name, &advice, observed, angle, units),
             poster,
             short: short_advice(&advice, observed, angle, units),
             from,

@@ -2,15 +2,15 @@
 
 use crate::cli::config_files::{read_text, warnings_of_fit};
 use crate::cli::failure::Failure;
-use crate::cli::loaded_profile::load_profile;
+use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::run_folder;
-use crate::cli::terminal::print_remark;
+use crate::cli::terminal::print_hint;
 use crate::cli::value_parsers::PhysicsArg;
 use crate::shooter::{Profile, implausible_values};
 use crate::store::fit::profile_file;
 use crate::store::shooters::fits_within;
 use crate::sweep::sweep_toml::is_sweep;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The files of the profiles: in place of the folder of a fit its profile, and those of all
 /// shooters in place of the folder of their fits. With a number of a place those of that place.
@@ -36,8 +36,8 @@ fn files_of_players(paths: &[PathBuf], place: Option<u32>) -> Result<Vec<PathBuf
 
 /// The players' profiles. Each has a name of its own, which is also that of its folder.
 pub(super) fn load_players(
-    (paths, place): (&[PathBuf], Option<u32>),
-    quiet: bool,
+    paths: &[PathBuf],
+    place: Option<u32>,
 ) -> Result<Vec<(PathBuf, Profile)>, Failure> {
     let mut players: Vec<(PathBuf, Profile)> = Vec::new();
     for path in files_of_players(paths, place)? {
@@ -47,16 +47,7 @@ pub(super) fn load_players(
                 path = path.display()
             )));
         }
-        let player = load_profile(&path, &PhysicsArg::default(), true)?;
-        if !quiet {
-            let of_fit = warnings_of_fit(&path)?.into_iter();
-            let of_fit = of_fit.map(|words| format!("its fit warned: {words}"));
-            let implausible = implausible_values(&player).into_iter();
-            let implausible = implausible.map(|value| value.to_string());
-            for words in implausible.chain(of_fit) {
-                print_remark(&format!("{}: warning: {words}", player.shooter().name));
-            }
-        }
+        let player = LoadedProfile::read(&path, &PhysicsArg::default())?.profile;
         let name = &player.shooter().name;
         let folder = run_folder::safe_name(name);
         if players
@@ -71,4 +62,16 @@ pub(super) fn load_players(
         players.push((path, player));
     }
     Ok(players)
+}
+
+/// Warns of what is implausible in a player's profile, and of what its fit warned of.
+pub(super) fn warn_of(path: &Path, player: &Profile) -> Result<(), Failure> {
+    let of_fit = warnings_of_fit(path)?.into_iter();
+    let of_fit = of_fit.map(|words| format!("its fit warned: {words}"));
+    let implausible = implausible_values(player).into_iter();
+    let implausible = implausible.map(|value| value.to_string());
+    for words in implausible.chain(of_fit) {
+        print_hint(&format!("{}: warning: {words}", player.shooter().name));
+    }
+    Ok(())
 }
