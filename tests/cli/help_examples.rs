@@ -341,8 +341,8 @@ fn is_done(line: &str, answer: &Answer) -> bool {
 }
 
 /// Every example of the help texts runs, and the bytes of everything that a command prints and
-/// writes, in each format, are those of `golden_bytes.txt`: what changes them on purpose writes the
-/// file anew. `BANKSHOT_GOLDEN=FOLDER` keeps the bytes there and writes the file.
+/// writes, in each format, are those of `golden_bytes.txt`. After a change on purpose, run it with
+/// `BANKSHOT_GOLDEN=FOLDER`: it keeps the bytes in that folder and writes the list again.
 #[test]
 #[ignore = "minutes; `cargo test --test cli campaign_golden -- --ignored`"]
 fn campaign_golden_bytes_of_every_command() {
