@@ -34,6 +34,26 @@ class BankshotWarning(UserWarning):
 _DONE, _IMPRECISE, _USAGE, _INCOMPLETE = 0, 1, 2, 3
 
 
+def ask(
+    request: dict[str, Any],
+    *,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """The answer of the library to a question."""
+    _check_threads(threads)
+    with _watch(progress) as report:
+        answer, notes = _engine.ask(request, threads, report)
+    for note in notes:
+        warnings.warn(note, BankshotWarning, stacklevel=_depth())
+    return answer
+
+
+def _check_threads(threads: int | None) -> None:
+    if threads is not None and threads < 1:
+        raise InputError(f"threads: {threads} must be 1 or more")
+
+
 def run(
     arguments: Sequence[str],
     *,
@@ -43,9 +63,8 @@ def run(
 ) -> bytes:
     """The answer of a command. ``named`` says what to call the files of this call in messages."""
     command = ["bankshot", *arguments]
+    _check_threads(threads)
     if threads is not None:
-        if threads < 1:
-            raise InputError(f"threads: {threads} must be 1 or more")
         command += ["--threads", str(threads)]
     with _watch(progress) as report:
         said = _engine.Command.run(command, report)

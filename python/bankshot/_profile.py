@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import tempfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _engine
-from ._commands import Progress, run, run_json
+from ._commands import Progress, ask
 from ._engine import InputError
-from ._units import SHOT, flags, plain, quantities
+from ._units import SHOT, plain, quantities
 
 if TYPE_CHECKING:
     from ._shots import BestShots, Probability, Trace
@@ -148,9 +146,7 @@ class Profile:
 
     def _set(self, text: str, origin: str | None) -> None:
         self._text, self._origin = text, origin
-        with self._file() as (path, named):
-            run(["check", path], named=named)
-            checked = run_json(["check", path], named=named)
+        checked = self._ask("check")
         self._name: str = checked["shooter"]
         self._distance_m: float = checked["distance_m"]
         self._angle_rad: float = checked["court_angle_rad"]
@@ -202,14 +198,18 @@ class Profile:
         """The same profile with other values, by the keywords of the class."""
         return Profile.from_toml(_engine.text_with(self._text, _items(values)))
 
-    @contextmanager
-    def _file(self) -> Iterator[tuple[str, dict[str, str]]]:
-        """The profile as a file, and what to call it in messages."""
-        with tempfile.TemporaryDirectory(prefix="bankshot-") as folder:
-            path = os.path.join(folder, "profile.toml")
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(self._text)
-            yield path, {path: self._origin or "profile", folder: "folder"}
+    def _ask(
+        self,
+        question: str,
+        *,
+        units: str | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+        **asked: Any,
+    ) -> dict[str, Any]:
+        profile = {"toml": self._text, "origin": self._origin or "profile", "units": units}
+        request = {"question": question, "profile": profile, **asked}
+        return ask(request, threads=threads, progress=progress)
 
     def probability(
         self,
@@ -238,11 +238,11 @@ class Profile:
         """
         from ._shots import Probability
 
-        more = _options(target=target, budget=budget, seed=seed, method=method)
-        with self._file() as (path, named):
-            command = ["probability", path, *more, *flags(quantities(shot, SHOT))]
-            answer = run_json(command, threads=threads, progress=progress, named=named)
-        return Probability._of(answer)
+        effort = {"target": target, "budget": budget, "seed": seed, "method": method}
+        question = {"shot": quantities(shot, SHOT), "effort": effort}
+        return Probability._of(
+            self._ask("probability", threads=threads, progress=progress, **question)
+        )
 
     def best(
         self,
@@ -254,27 +254,15 @@ class Profile:
         """The best direct and bank shots from this place, and what they depend on."""
         from ._shots import BestShots
 
-        with self._file() as (path, named):
-            out = os.path.join(os.path.dirname(path), "out")
-            command = ["best", path, "--out", out, "--units", units]
-            answer = run_json(command, threads=threads, progress=progress, named=named)
-        return BestShots._of(answer)
+        return BestShots._of(
+            self._ask("best_shots", units=units, threads=threads, progress=progress)
+        )
 
     def trace(self, *, units: str = "imperial", **shot: Any) -> Trace:
         """The path of one shot without errors, to its end. ``shot`` as in :meth:`probability`."""
         from ._shots import Trace
 
-        with self._file() as (path, named):
-            table = os.path.join(os.path.dirname(path), "path.csv")
-            command = ["trace", path, "--output", table, "--units", units]
-            answer = run_json([*command, *flags(quantities(shot, SHOT))], named=named)
-            with open(table, encoding="ascii") as file:
-                return Trace._of(answer, file.read())
-
-
-def _options(**options: Any) -> list[str]:
-    given = {name: value for name, value in options.items() if value is not None}
-    return [f"--{name.replace('_', '-')}={value}" for name, value in given.items()]
+        return Trace._of(self._ask("trace", units=units, shot=quantities(shot, SHOT)))
 
 
 def _items(values: Mapping[str, Any]) -> list[tuple[str, Any]]:

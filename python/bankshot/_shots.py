@@ -152,13 +152,11 @@ class Trace:
     raw: Mapping[str, Any] = field(repr=False)
 
     @classmethod
-    def _of(cls, raw: dict[str, Any], table: str) -> Trace:
+    def _of(cls, raw: dict[str, Any]) -> Trace:
         import numpy as np
 
-        header, *lines = table.splitlines()
-        numbers = np.array([[float(cell) for cell in line.split(",")] for line in lines])
-        names = header.split(",")
-        path = {name: np.ascontiguousarray(numbers[:, i]) for i, name in enumerate(names)}
+        points = raw.pop("path")
+        path = {name: np.array([float(point[name]) for point in points]) for name in points[0]}
         return cls(raw["made"], raw["kind"], raw["events"], path, raw)
 
     def to_arrow(self) -> Any:

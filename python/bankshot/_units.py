@@ -126,8 +126,3 @@ def _number(keyword: str, value: Any) -> float:
     if number != number or number in (float("inf"), float("-inf")):
         raise InputError(f"{keyword}: {number} is not a finite number")
     return number
-
-
-def flags(shot: Mapping[str, str]) -> list[str]:
-    """The options of a command for the parts of a shot."""
-    return [f"--{name.replace('_', '-')}={text}" for name, text in shot.items()]

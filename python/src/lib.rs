@@ -1,6 +1,7 @@
 //! The engine of the Python package `bankshot`: what needs Rust, and no more. Everything that users
 //! see is Python.
 
+mod ask;
 mod background;
 mod columns;
 mod commands;
@@ -12,6 +13,8 @@ use pyo3::prelude::*;
 /// The module `bankshot._engine`.
 #[pymodule]
 mod _engine {
+    #[pymodule_export]
+    use super::ask::ask;
     #[pymodule_export]
     use super::columns::{arrow_table, column_names};
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! What a measured shooter should change, and how sure that is.
 
-use super::json::Provenance;
+use super::json::{Answer, Provenance};
 use crate::fitting::{
     Advice, AdviceStep, Interval, Landing, Support, TrainingGain, Values, values_of,
 };
@@ -9,6 +9,7 @@ use crate::store::fit::Fit;
 use serde::Serialize;
 
 /// A release.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Release {
     /// Its speed.
@@ -33,6 +34,7 @@ impl From<Values> for Release {
 }
 
 /// How many shots went in.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Makes {
     /// Shots with a result.
@@ -42,6 +44,7 @@ pub struct Makes {
 }
 
 /// A step from the usual release towards the best one.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Step {
     /// What changes.
@@ -67,6 +70,7 @@ impl From<&AdviceStep> for Step {
 }
 
 /// What the speed and the angle gain, each without the other.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Alone {
     /// The speed.
@@ -78,6 +82,7 @@ pub struct Alone {
 }
 
 /// What a tenth less scatter gains.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Training {
     /// Of what.
@@ -97,6 +102,7 @@ impl From<&TrainingGain> for Training {
 }
 
 /// Where a ball falls to the height of the hoop.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fall {
     /// Below the horizontal.
@@ -118,6 +124,7 @@ impl From<&Landing> for Fall {
 }
 
 /// Where the usual and the advised shot fall.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Falls {
     /// The usual shot.
@@ -127,6 +134,7 @@ pub struct Falls {
 }
 
 /// The best bank shot against the best direct one.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BankOrDirect {
     /// P of the best direct shot.
@@ -140,6 +148,7 @@ pub struct BankOrDirect {
 }
 
 /// The advice for a shooter at one place.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AdviceAnswer {
     /// Who shoots.
@@ -234,7 +243,11 @@ impl AdviceAnswer {
                 bank_is_better: kinds.bank_is_better,
             }),
             place: fit.place_names[place].clone(),
-            provenance: Provenance::of(profile.hash()),
+            provenance: Provenance::of(profile),
         }
     }
+}
+
+impl Answer for AdviceAnswer {
+    const NAME: &'static str = "advice";
 }

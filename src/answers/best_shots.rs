@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::json::{Named, Provenance, si_name};
+use super::json::{Answer, Named, Provenance, si_name};
 use crate::analysis::bank_aim::closed_form_polar_rad;
 use crate::analysis::sensitivity::{Difference, Sensitivity};
 use crate::best_shot::{BestShot, BestShots, Limit, NotCleanShot};
@@ -36,6 +36,7 @@ use crate::shooter::{Profile, ReleaseVariable, ShotKind};
 use serde::Serialize;
 
 /// A gain in P.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Gain {
     /// By how much P is greater.
@@ -54,6 +55,7 @@ impl From<Difference> for Gain {
 }
 
 /// A more probable shot that misses when it has no errors.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NotClean {
     /// Its speed.
@@ -81,6 +83,7 @@ impl From<NotCleanShot> for NotClean {
 }
 
 /// The best shot of a kind.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShotAnswer {
     /// Its speed.
@@ -172,6 +175,7 @@ fn limit_names(shot: &BestShot) -> String {
 }
 
 /// What an error of a variable costs.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorCost {
     /// The variable.
@@ -183,6 +187,7 @@ pub struct ErrorCost {
 }
 
 /// What another backspin gains.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OtherBackspin {
     /// The backspin.
@@ -193,6 +198,7 @@ pub struct OtherBackspin {
 }
 
 /// What another height of the release gains.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OtherHeight {
     /// The height.
@@ -203,6 +209,7 @@ pub struct OtherHeight {
 }
 
 /// What P of a shot depends on.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SensitivityAnswer {
     /// The least and the greatest value of each variable that goes in without errors.
@@ -245,6 +252,7 @@ impl From<&Sensitivity> for SensitivityAnswer {
 }
 
 /// The best shot of a kind with what it depends on.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindAnswer {
     /// The shot.
@@ -269,6 +277,7 @@ impl KindAnswer {
 }
 
 /// The best shots from a place.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BestShotsAnswer {
     /// Who shoots.
@@ -295,8 +304,6 @@ pub struct BestShotsAnswer {
     /// What made the answer.
     #[serde(flatten)]
     pub provenance: Provenance,
-    /// Seed of the samples.
-    pub seed: u64,
     /// Shots of the search's table.
     pub table_shots: u64,
 }
@@ -319,8 +326,7 @@ impl BestShotsAnswer {
             bank: bank.0,
             bank_reason: bank.1,
             bank_minus_direct: bank_minus_direct(best).map(Gain::from),
-            provenance: Provenance::of(profile.hash()),
-            seed: profile.search().seed,
+            provenance: Provenance::of(profile),
             table_shots: best.plan.shots,
         }
     }
@@ -337,4 +343,8 @@ pub fn bank_minus_direct(best: &BestShots) -> Option<Difference> {
         value: bank.probability - direct.probability,
         standard_error: libm::hypot(bank.standard_error, direct.standard_error),
     })
+}
+
+impl Answer for BestShotsAnswer {
+    const NAME: &'static str = "best_shots";
 }

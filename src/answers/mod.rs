@@ -4,7 +4,20 @@
 //! Each question has a file. [`json::in_units`] makes the JSON that the program prints.
 
 pub mod advice;
+pub mod along_variable;
 pub mod best_shots;
+pub mod checks;
+pub mod csv;
+pub mod fit;
 pub mod json;
+pub mod nominal_shot;
 pub mod physics;
 pub mod probability;
+pub mod requests;
+pub mod sample_size;
+#[cfg(test)]
+mod schema;
+pub mod sessions;
+pub mod shots;
+pub mod sweep_status;
+pub mod trace;

@@ -1,6 +1,7 @@
 //! How much of an answer rests on the physics: the best shots, and the advice of a fit, under other
 //! physics.
 
+use super::json::{Answer, Provenance};
 use crate::best_shot::{
     BestShot, BestShotError, ChangeOfP, NoShot, PhysicsChange, PhysicsComparison, PhysicsOf,
     PhysicsRow, SameShot, SameShotProbability, compare_physics, physics_variants, together,
@@ -279,6 +280,7 @@ impl FittedRows {
 }
 
 /// A best shot under a physics, for programs.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum ShotOfRow {
@@ -323,6 +325,7 @@ impl From<&Result<BestShot, NoShot>> for ShotOfRow {
 }
 
 /// A fit under a physics, for programs.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FitOfRow {
     /// P of the usual shot.
@@ -335,7 +338,8 @@ pub struct FitOfRow {
     pub made_z: Option<f64>,
 }
 
-/// A physics and its shots, for programs (SI units).
+/// A physics and its shots, for programs.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PhysicsRowAnswer {
     /// Which physics it is.
@@ -345,16 +349,39 @@ pub struct PhysicsRowAnswer {
     /// The best bank shot.
     pub bank: ShotOfRow,
     /// Where the undisturbed path of the direct shot falls past the hoop's centre.
-    pub aim_past_centre_m: Option<f64>,
+    pub aim_past_centre_short_m: Option<f64>,
     /// P of the shot that is the same in every row.
     pub same_shot_probability: Option<f64>,
     /// The fit.
     pub fit: Option<FitOfRow>,
 }
 
+/// The best shots under each physics, for programs.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PhysicsRows {
+    /// Who shoots.
+    pub shooter: String,
+    /// The index of the row with the physics of the profile.
+    pub base: usize,
+    /// The physics.
+    pub rows: Vec<PhysicsRowAnswer>,
+    /// What made the answer.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+impl Answer for PhysicsRows {
+    const NAME: &'static str = "physics";
+}
+
 impl PhysicsAnswer {
-    /// The rows for programs; `name` says which physics a row is.
-    pub fn rows(&self, name: impl Fn(PhysicsOf) -> String) -> Vec<PhysicsRowAnswer> {
+    /// The answer for programs; `name` says which physics a row is.
+    pub fn for_programs(
+        &self,
+        profile: &Profile,
+        name: impl Fn(PhysicsOf) -> String,
+    ) -> PhysicsRows {
         let of_fit = |i: usize| {
             let fitted = self.fitted.as_ref()?;
             let row = fitted.rows[i].as_ref()?;
@@ -366,14 +393,19 @@ impl PhysicsAnswer {
             })
         };
         let rows = self.comparison.rows.iter().enumerate();
-        rows.map(|(i, row)| PhysicsRowAnswer {
+        let rows = rows.map(|(i, row)| PhysicsRowAnswer {
             physics: name(row.of),
             direct: (&row.direct).into(),
             bank: (&row.bank).into(),
-            aim_past_centre_m: row.aim_past_centre_m,
+            aim_past_centre_short_m: row.aim_past_centre_m,
             same_shot_probability: row.same_shot_p(),
             fit: of_fit(i),
-        })
-        .collect()
+        });
+        PhysicsRows {
+            shooter: profile.shooter().name.clone(),
+            base: self.comparison.base,
+            rows: rows.collect(),
+            provenance: Provenance::of(profile),
+        }
     }
 }

@@ -4,6 +4,7 @@ use super::failure::{Failure, io_in_words, refuse_missing};
 use crate::config::{MAX_FILE_BYTES, MAX_TOML_BYTES, parse_physics};
 use crate::dynamics::Integrator;
 use crate::model::{PRESETS, Physics, Preset};
+use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::shooter::Profile;
 use crate::store::fit;
 use crate::store::shooters::fits_within;
@@ -63,10 +64,11 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// What the fit that wrote a profile warned of: its `fit.json` lies beside it.
+/// What should be said of the fit that wrote a profile, in words: its `fit.json` lies beside it.
 pub(crate) fn warnings_of_fit(profile: &Path) -> Result<Vec<String>, Failure> {
     let folder = fit::folder_of_profile(profile);
-    Ok(folder.map(fit::warnings).transpose()?.unwrap_or_default())
+    let notes = folder.map(fit::notes).transpose()?.unwrap_or_default();
+    Ok(notes.iter().map(fit_note_text).collect())
 }
 
 /// What another physics changes.

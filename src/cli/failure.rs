@@ -7,7 +7,7 @@ use crate::search_space::PlanError;
 use crate::shooter::{IdentityError, ProfileError};
 use crate::store;
 use crate::sweep::SweepFolderError;
-use crate::sweep::sqlite_results::StoreError;
+use crate::sweep::sqlite_results::ResultsError;
 use crate::units::suggestion;
 use std::fmt::Display;
 use std::io::ErrorKind;
@@ -149,12 +149,12 @@ impl From<store::StoreError> for Failure {
     }
 }
 
-impl From<StoreError> for Failure {
-    fn from(error: StoreError) -> Self {
+impl From<ResultsError> for Failure {
+    fn from(error: ResultsError) -> Self {
         Self {
             code: match &error {
-                StoreError::Damaged { .. } => code::DAMAGED,
-                StoreError::Io { .. } => code::IO,
+                ResultsError::Damaged { .. } => code::DAMAGED,
+                ResultsError::Io { .. } => code::IO,
             },
             message: error.to_string(),
         }

@@ -3,11 +3,11 @@
 use super::config_files::{load_physics, read_text};
 use super::failure::{Failure, refuse_missing};
 use super::value_parsers::UnitsArg;
+use crate::answers::fit::FitSource;
 use crate::dynamics::Simulator;
 use crate::fitting::{
-    DragEstimate, FitOptions, FitWarning, PopulationPrior, ShooterFit, ShooterFitError,
-    ShooterTest, Tails, TrackedPoint, Tracker, TrackerNoise, fit_drag_coefficient, fit_shooter,
-    tails_of,
+    DragEstimate, FitNote, FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest,
+    Tails, TrackedPoint, Tracker, TrackerNoise, fit_drag_coefficient, fit_shooter, tails_of,
 };
 use crate::measured_shots::column_map_proposal::{map_proposal, names_sessions};
 use crate::measured_shots::columns::{Columns, Label};
@@ -19,7 +19,6 @@ use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
 use crate::model::{DEFAULT_PRESET, Physics};
-use crate::present::fit_files::fit_json::FitSource;
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
 use std::collections::BTreeSet;
@@ -572,7 +571,7 @@ fn physics_table(name: &str) -> Result<String, Failure> {
 impl MeasuredFile {
     pub(crate) fn source<'a>(&'a self, shots: &'a ShooterShots) -> FitSource<'a> {
         FitSource {
-            kind: shots.source.name(),
+            kind: shots.source,
             file: self.file.display().to_string(),
             file_blake3: self.blake3.clone(),
             tracker: self.tracker.clone(),
@@ -634,7 +633,7 @@ impl MeasuredFile {
         let mut fit = fit_shooter(&test, physics, &self.fit_options(shots))?;
         // Under another physics it is known that the drag is another one.
         if *physics == self.physics {
-            fit.warnings.extend(self.drag_warning(shots));
+            fit.notes.extend(self.drag_note(shots));
         }
         Ok(fit)
     }
@@ -648,13 +647,18 @@ impl MeasuredFile {
         fit_drag_coefficient(&self.physics, &tracks, &self.noise, backspin)
     }
 
-    fn drag_warning(&self, shots: &ShooterShots) -> Option<FitWarning> {
+    fn drag_note(&self, shots: &ShooterShots) -> Option<FitNote> {
         /// So many standard errors are worth a warning: 3 in 1000 of right drags.
         const FAR: f64 = 3.0;
         let found = self.drag_of_flights(&[shots])?;
         let own = self.physics.air.drag_coefficient;
         let is_far = (found.best - own).abs() > FAR * found.standard_error;
-        is_far.then_some(FitWarning::OtherDrag(found, own))
+        is_far.then_some(FitNote::OtherDrag {
+            best: found.best,
+            low: found.interval[0],
+            high: found.interval[1],
+            of_physics: own,
+        })
     }
 
     /// The name of a shooter, or that of the file.

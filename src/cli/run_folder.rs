@@ -2,14 +2,14 @@
 
 use super::failure::{Failure, code};
 use crate::answers::best_shots::BestShotsAnswer;
-use crate::answers::json::in_units;
+use crate::answers::json::{self, Provenance, document};
 use crate::best_shot::BestShots;
 use crate::files::atomic_file;
 use crate::present::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
-use crate::present::json_object;
 use crate::shooter::Profile;
 use crate::store::best_run::{ANSWER_FILE, BestRun};
 use crate::sweep::SweepConfig;
+use serde::Serialize;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -114,7 +114,7 @@ pub(crate) fn of_profile(profile: &Profile) -> Result<PathBuf, Failure> {
             Some(_) => continue,
             None => {}
         }
-        let claim = json_object::object(json_object::provenance(profile.hash()));
+        let claim = json::in_si(&Provenance::of(profile));
         let mut file = tempfile::NamedTempFile::new_in(&folder).map_err(refuse)?;
         writeln!(file, "{claim:#}").map_err(refuse)?;
         match file.persist_noclobber(folder.join(PROVENANCE)) {
@@ -176,6 +176,15 @@ pub(crate) fn prepare(folder: &Path, own: RunKind) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a run was made from.
+#[derive(Serialize)]
+struct RunProvenance<'a> {
+    #[serde(flatten)]
+    provenance: Provenance,
+    table_shots: u64,
+    configuration_si: &'a Profile,
+}
+
 /// Writes the files of a run, with the text of the profile.
 pub(crate) fn write_best_shots(
     folder: &Path,
@@ -184,23 +193,23 @@ pub(crate) fn write_best_shots(
     best: &BestShots,
 ) -> Result<(), Failure> {
     let units = profile.output().units;
-    let json = |value: &serde_json::Value| format!("{value:#}\n").into_bytes();
+    let json = |value: &serde_json::Value| json::text(value).into_bytes();
     let plan = serde_json::to_value(&best.plan).map_err(Failure::bug)?;
-    let configuration = serde_json::to_value(profile).map_err(Failure::bug)?;
-    let mut provenance = json_object::provenance(profile.hash());
-    provenance.push(("seed".to_owned(), profile.search().seed.into()));
-    provenance.push(("table_shots".to_owned(), best.plan.shots.into()));
-    provenance.push(("configuration_si".to_owned(), configuration));
+    let provenance = RunProvenance {
+        provenance: Provenance::of(profile),
+        table_shots: best.plan.shots,
+        configuration_si: profile,
+    };
     let answer = BestRun::of(best, units).sealed(&profile_text);
     let contents = [
         best_shots_csv(profile, best, units),
-        json(&in_units(&BestShotsAnswer::new(profile, best), units)),
+        json(&document(&BestShotsAnswer::new(profile, best), units)),
         curves_csv(best, units),
         sensitivity_csv(best, units),
         profile_text.into_bytes(),
         json(&plan),
         answer.into_bytes(),
-        json(&json_object::object(provenance)),
+        json(&json::in_si(&provenance)),
     ];
     for (name, bytes) in FILES.into_iter().zip(contents) {
         let path = folder.join(name);

@@ -85,6 +85,7 @@ pub struct AdviceStep {
 
 /// Whether shots support a change: it gains at least half a make in 100, its interval lies above 0,
 /// and the side of the change is as clear.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Support {

@@ -2,9 +2,11 @@
 
 use super::draw_probabilities::DrawProbabilities;
 use super::interval::Interval;
+use serde::Serialize;
 
 /// P of the best shot at one pitch angle over the draws of a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AngleOverDraws {
     /// P.
     pub probability: Interval,

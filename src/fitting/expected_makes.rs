@@ -1,5 +1,6 @@
 //! Predicted against observed: each measured shot's chance, and how good these chances are.
 
+use super::fit_note::SurprisingShot;
 use super::measured_release::{Covariance, MeasuredRelease, Values, nominal_of};
 use super::posterior::Draw;
 use crate::dynamics::OutcomeKind;
@@ -7,6 +8,7 @@ use crate::math::normal_distribution::quantile;
 use crate::math::sobol::{ScrambleKey, Sobol};
 use crate::shooter::Profile;
 use rayon::prelude::*;
+use serde::Serialize;
 
 /// Releases that a shot may have had, for each measured one.
 const RELEASES: u32 = 128;
@@ -40,18 +42,20 @@ pub struct ShotChance {
 }
 
 /// Some shots of similar chance.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReliabilityBin {
+    /// The number of shots.
+    pub shots: usize,
     /// Mean chance.
     pub predicted: f64,
     /// The share that went in, and its interval.
     pub observed: Wilson,
-    /// The number of shots.
-    pub shots: usize,
 }
 
 /// A share with Wilson's 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Wilson {
     /// The share.
     pub share: f64,
@@ -134,12 +138,18 @@ impl ExpectedMakes {
 
     /// The three shots with the least chance of what became of them: line, chance of a make, and
     /// whether it went in.
-    pub(super) fn most_surprising(&self) -> Vec<(u64, f64, bool)> {
-        let known = self.shots.iter();
-        let known = known.filter_map(|shot| Some((shot.row, shot.chance, shot.made?)));
-        let mut shots: Vec<(u64, f64, bool)> = known.collect();
-        let of_result = |(_, chance, made): &(u64, f64, bool)| {
-            if *made { *chance } else { 1.0 - chance }
+    pub(super) fn most_surprising(&self) -> Vec<SurprisingShot> {
+        let known = self.shots.iter().filter_map(|shot| {
+            Some(SurprisingShot {
+                row: shot.row,
+                chance: shot.chance,
+                made: shot.made?,
+            })
+        });
+        let mut shots: Vec<SurprisingShot> = known.collect();
+        let of_result = |shot: &SurprisingShot| match shot.made {
+            true => shot.chance,
+            false => 1.0 - shot.chance,
         };
         shots.sort_by(|a, b| of_result(a).total_cmp(&of_result(b)));
         shots.truncate(3);
@@ -461,8 +471,8 @@ mod tests {
         // Each adds 0.8 * 0.6 with a variance of 0.36 * 0.16.
         let expected = 50.0 * 0.48 / (50.0 * 0.36 * 0.16_f64).sqrt();
         let found = summary(wrong.collect());
-        assert_eq!(found.most_surprising()[0].1, 0.8);
-        assert!(!found.most_surprising()[0].2);
+        assert_eq!(found.most_surprising()[0].chance, 0.8);
+        assert!(!found.most_surprising()[0].made);
         assert!(
             (found.calibration_z.unwrap() - expected).abs() < 1e-9,
             "{found:?}"

@@ -1,13 +1,14 @@
 //! Checks of measured shots: before a fit, whether it makes sense; after it, whether the model
 //! holds.
 
-use super::flight_fit::DragEstimate;
+use super::fit_note::FitNote;
 use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
 use super::posterior::{Draw, SpinSource, Tails};
 use super::session_trends::SessionTrend;
 use crate::math::normal_distribution::cdf;
 use crate::model::Physics;
-use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+use crate::shooter::ReleaseVariable;
+use crate::units::Measure;
 use nalgebra::{SMatrix, SVector};
 
 /// Why shots cannot be fitted.
@@ -73,154 +74,6 @@ pub struct ReleaseDifference {
     /// Its standard error, without errors that all shots share.
     pub standard_error: f64,
 }
-
-/// What a fit should be told to a user.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FitWarning {
-    /// The tracker's error is as large as the scatter: value, share of the variance.
-    NoisyTracker(&'static str, f64),
-    /// The population tells more than the shots: value, weight.
-    MostlyPopulation(&'static str, f64),
-    /// The tracker seems to err more, or less, than stated: the ratio of seen to stated variance.
-    OtherNoise(f64),
-    /// The flights reject the drag coefficient of the physics: theirs, and that of the physics.
-    OtherDrag(DragEstimate, f64),
-    /// The shots are not normal: the p-values of Mardia's skewness and kurtosis, and whether the
-    /// means of the sessions differ, which alone can cause it.
-    NotNormal([f64; 2], bool),
-    /// Heavier tails than normal ones were fitted: one over the degrees of freedom, and whether the
-    /// shots show that they are heavier.
-    HeavyTails(f64, bool),
-    /// The aim drifts within the sessions: value, p-value, and by how much from the first shot to
-    /// the last (m/s, rad or rad/s).
-    Drift(&'static str, f64, f64),
-    /// The means of the sessions differ: value, p-value.
-    SessionsDiffer(&'static str, f64),
-    /// The scatter of sessions differs: value, p-value.
-    ScatterDiffers(&'static str, f64),
-    /// The number of makes is not what these shots give: seen, expected, its standard deviation.
-    OtherMakes(usize, f64, f64),
-    /// The chances are too sure: see [`ExpectedMakes::calibration_z`](super::ExpectedMakes). With
-    /// the most surprising shots: line, chance and result.
-    TooSure(f64, Vec<(u64, f64, bool)>),
-    /// Neighbouring shots are alike: value, p-value.
-    SerialCorrelation(&'static str, f64),
-}
-
-impl std::fmt::Display for FitWarning {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::NoisyTracker(name, share) => write!(
-                out,
-                "{name}: {:.0} % of the variance of the measurements is the tracker's error; the shooter's own scatter is what is left of it, and uncertain",
-                100.0 * share
-            ),
-            Self::MostlyPopulation(name, weight) => write!(
-                out,
-                "{name}: {:.0} % of what is known of its scatter comes from the population of shooters, not from these shots",
-                100.0 * weight
-            ),
-            Self::OtherNoise(ratio) => write!(
-                out,
-                "the trajectories scatter {:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE: the error of a position is about so many times what the tracker says",
-                ratio.sqrt()
-            ),
-            Self::OtherDrag(found, own) => write!(
-                out,
-                "the flights fit a drag coefficient of {:.3} (95 % interval {:.3} to {:.3}), the physics has {own:.3}: speeds and angles rest on it; `bankshot fit --free drag_coefficient` shows how to use another",
-                found.best, found.interval[0], found.interval[1]
-            ),
-            Self::NotNormal([skewness, kurtosis], sessions_differ) => write!(
-                out,
-                "the releases are not normal (Mardia: skewness p = {skewness:.4}, kurtosis p = {kurtosis:.4}); {}",
-                if *sessions_differ {
-                    "the sessions differ (see there), which alone can be the reason: fit each with --session"
-                } else {
-                    "look for outliers, or for shots of two kinds"
-                }
-            ),
-            Self::HeavyTails(weight, is_seen) => write!(
-                out,
-                "{} a t distribution with {:.1} degrees of freedom was fitted. profile.toml holds its standard deviations, draws.parquet all of it (`--draws`)",
-                if *is_seen {
-                    "far releases are more frequent than normal ones;"
-                } else {
-                    "the shots do not show more far releases than normal ones have; as asked for,"
-                },
-                1.0 / weight
-            ),
-            Self::OtherMakes(made, expected, sd) => write!(
-                out,
-                "{made} shots went in where {expected:.1} \u{b1} {sd:.1} were expected of the measured releases; {LOOK_AT}"
-            ),
-            Self::TooSure(z, shots) => {
-                let shown = shots.iter().map(|(line, chance, made)| {
-                    let result = if *made { "went in" } else { "missed" };
-                    format!("line {line} (chance {chance:.2}) {result}")
-                });
-                write!(
-                    out,
-                    "the chances of single shots are too sure (Spiegelhalter's z {z:+.1}; above 3 in about 1 of 700 tests if they are right). The most surprising: {}. First suspect the tracker's noise (--tracker FILE with a greater one) and these rows; then look at the place, the height of the release, the columns and the physics",
-                    shown.collect::<Vec<_>>().join(", ")
-                )
-            }
-            Self::Drift(name, p, by) => write!(
-                out,
-                "{name} drifts by {} from the first shot to the last ({}): the last shots differ from the mean, on which P and the advice are based",
-                drift_in_words(name, *by),
-                p_value(*p)
-            ),
-            Self::SessionsDiffer(name, p) => write!(
-                out,
-                "{name} differs between the sessions ({}): the scatter here holds that too, and is wider than that of one session (fit one alone with --session NAME)",
-                p_value(*p)
-            ),
-            Self::ScatterDiffers(name, p) => write!(
-                out,
-                "the scatter of {name} differs between the sessions ({}): this fit describes their mixture, not the latest one (fit one alone with --session NAME; `bankshot compare-sessions` compares two)",
-                p_value(*p)
-            ),
-            Self::SerialCorrelation(name, p) => write!(
-                out,
-                "{name}: a shot is like the one before it ({}); intervals are then too narrow",
-                p_value(*p)
-            ),
-        }
-    }
-}
-
-/// How much and to which side a value drifts.
-fn drift_in_words(name: &str, by: f64) -> String {
-    let size = by.abs();
-    let side = |words: [&'static str; 2]| words[usize::from(by < 0.0)];
-    match name {
-        "pitch" => format!("{:.1} deg {}", size / DEGREE_RAD, side(["up", "down"])),
-        "polar" => format!(
-            "{:.1} deg {}",
-            size / DEGREE_RAD,
-            side(["to the left", "to the right"])
-        ),
-        "speed" => format!(
-            "{:.2} ft/s ({size:.2} m/s) {}",
-            size / FOOT_M,
-            side(["up", "down"])
-        ),
-        _ => format!("{:.2} rev/s {}", size / REV_RAD, side(["up", "down"])),
-    }
-}
-
-/// `p = 0.22`, `p = 0.0031`, or `p < 0.0001`.
-#[must_use]
-pub fn p_value(p: f64) -> String {
-    match p {
-        p if p < 1e-4 => "p < 0.0001".to_owned(),
-        p if p < 0.01 => format!("p = {p:.4}"),
-        p => format!("p = {p:.2}"),
-    }
-}
-
-/// What makes chances wrong.
-const LOOK_AT: &str = "look at the place (a free throw is 13.75 ft or 4.19 m from the hoop's centre) and the height of the release, the columns (units, left and right, what depth is counted from, made), the physics (air, and this ring may be softer or harder) and the tracker's noise (--tracker)";
 
 /// Shots for each unknown.
 const LEAST_SHOTS: usize = 10;
@@ -444,30 +297,36 @@ pub fn tails_of(shots: &[MeasuredRelease], places: usize) -> Tails {
 
 /// What should be said of a fit with these tests of its shots.
 #[must_use]
-pub fn warnings(
+pub fn notes(
     shots: &[MeasuredRelease],
     (shape, trends): (&ShapeTest, &[SessionTrend]),
     typical: &Draw,
     prior_weights: &Values,
     values: usize,
-) -> Vec<FitWarning> {
+) -> Vec<FitNote> {
     /// From this share of the variance on, a user is told.
     const NOISY: f64 = 0.4;
-    let mut warnings = Vec::new();
-    for (i, name) in VALUE_NAMES.iter().enumerate().take(values) {
+    let mut notes = Vec::new();
+    for (i, of) in ReleaseVariable::ALL.into_iter().enumerate().take(values) {
         let noise = shots.iter().map(|shot| shot.noise[(i, i)]).sum::<f64>() / shots.len() as f64;
         let own = typical.sds[i] * typical.sds[i];
         let share = noise / (noise + own);
         if share > NOISY {
-            warnings.push(FitWarning::NoisyTracker(name, share));
+            notes.push(FitNote::NoisyTracker { of, share });
         }
         if prior_weights[i] > 0.25 {
-            warnings.push(FitWarning::MostlyPopulation(name, prior_weights[i]));
+            notes.push(FitNote::MostlyPopulation {
+                of,
+                weight: prior_weights[i],
+            });
         }
     }
     if typical.tail_weight > 0.0 {
         let is_seen = tails_of(shots, typical.means.len()) == Tails::Student;
-        warnings.push(FitWarning::HeavyTails(typical.tail_weight, is_seen));
+        notes.push(FitNote::HeavyTails {
+            degrees_of_freedom: 1.0 / typical.tail_weight,
+            is_seen,
+        });
     } else if shape.skewness_p < WARNING_LEVEL || shape.kurtosis_p < WARNING_LEVEL {
         let sessions_differ = |trend: &SessionTrend| {
             [trend.sessions_p, trend.spreads_p]
@@ -475,26 +334,35 @@ pub fn warnings(
                 .flatten()
                 .any(|p| p < WARNING_LEVEL)
         };
-        warnings.push(FitWarning::NotNormal(
-            [shape.skewness_p, shape.kurtosis_p],
-            trends.iter().any(sessions_differ),
-        ));
+        notes.push(FitNote::NotNormal {
+            skewness_p: shape.skewness_p,
+            kurtosis_p: shape.kurtosis_p,
+            sessions_differ: trends.iter().any(sessions_differ),
+        });
     }
     for trend in trends {
+        let of = trend.of;
         if let Some(p) = trend.sessions_p.filter(|p| *p < WARNING_LEVEL) {
-            warnings.push(FitWarning::SessionsDiffer(trend.name, p));
+            notes.push(FitNote::SessionsDiffer { of, p });
         }
         if let Some(p) = trend.spreads_p.filter(|p| *p < WARNING_LEVEL) {
-            warnings.push(FitWarning::ScatterDiffers(trend.name, p));
+            notes.push(FitNote::ScatterDiffers { of, p });
         }
         if trend.drift_p < WARNING_LEVEL {
-            warnings.push(FitWarning::Drift(trend.name, trend.drift_p, trend.drift));
+            notes.push(FitNote::Drift {
+                of,
+                p: trend.drift_p,
+                by: Measure::si(trend.drift, of.dimension()),
+            });
         }
         if trend.serial_p < WARNING_LEVEL {
-            warnings.push(FitWarning::SerialCorrelation(trend.name, trend.serial_p));
+            notes.push(FitNote::SerialCorrelation {
+                of,
+                p: trend.serial_p,
+            });
         }
     }
-    warnings
+    notes
 }
 
 /// The residuals of tracked flights about the fitted ones.
@@ -534,14 +402,16 @@ impl FlightResiduals {
         }
     }
 
-    /// A warning where flights fit worse, or better, than the tracker's noise says.
+    /// A note where flights fit worse, or better, than the tracker's noise says.
     #[must_use]
-    pub fn warning(&self) -> Option<FitWarning> {
+    pub fn note(&self) -> Option<FitNote> {
         let expected = self.expected.max(1.0);
         let ratio = self.chi_square / expected;
         // Five standard deviations of a chi-square, and a fifth, since outliers are weighed down.
         let tolerance = 0.2 + 5.0 * (2.0 / expected).sqrt();
-        ((ratio - 1.0).abs() > tolerance).then_some(FitWarning::OtherNoise(ratio))
+        ((ratio - 1.0).abs() > tolerance).then_some(FitNote::OtherNoise {
+            scatter_ratio: ratio.sqrt(),
+        })
     }
 }
 
@@ -555,7 +425,7 @@ mod tests {
 
     /// A fit that chooses a t distribution by itself gives the reason, at the level of its choice.
     #[test]
-    fn contract_the_words_on_tails_follow_the_choice() {
+    fn contract_the_note_on_tails_follows_the_choice() {
         let sample = |seed: u64| -> Vec<MeasuredRelease> {
             let mut random = ChaCha12Rng::seed_from_u64(seed);
             let mut normal = || quantile(random.random::<f64>().max(1e-300));
@@ -585,9 +455,8 @@ mod tests {
         };
         let posterior = fit(&shots, 1, &options).unwrap();
         let shape = shape_test(&shots, 1);
-        let all = warnings(&shots, (&shape, &[]), &posterior.typical(), &[0.0; 4], 3);
-        let tails = |warning: &&FitWarning| matches!(warning, FitWarning::HeavyTails(..));
-        let words = all.iter().find(tails).unwrap().to_string();
-        assert!(!words.contains("as asked for"), "{words}");
+        let all = super::notes(&shots, (&shape, &[]), &posterior.typical(), &[0.0; 4], 3);
+        let is_seen = |note: &FitNote| matches!(note, FitNote::HeavyTails { is_seen: true, .. });
+        assert!(all.iter().any(is_seen), "{all:?}");
     }
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 /// Mean, standard deviation and the middle 95 % of some values.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// The mean.

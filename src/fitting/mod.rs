@@ -18,6 +18,7 @@ mod dispersion_posterior;
 mod draw_probabilities;
 mod expected_makes;
 mod fit_checks;
+mod fit_note;
 mod fitted_profile;
 mod flight_fit;
 mod interval;
@@ -48,9 +49,10 @@ pub use expected_makes::{
     expected_makes, made_z_of_releases, wilson_interval,
 };
 pub use fit_checks::{
-    FitWarning, FlightResiduals, ReleaseDifference, ShapeTest, TestError, WARNING_LEVEL,
-    check_releases, check_speed_unit, far_shots, p_value, shape_test, tails_of, warnings,
+    FlightResiduals, ReleaseDifference, ShapeTest, TestError, WARNING_LEVEL, check_releases,
+    check_speed_unit, far_shots, notes, shape_test, tails_of,
 };
+pub use fit_note::{FitNote, SurprisingShot};
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{
     DragEstimate, FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight,

@@ -13,9 +13,11 @@
 //! the population to its middle, above all where the tracker errs as much as they scatter.
 
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+use serde::Serialize;
 
 /// A normal distribution.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Its mean.
     pub mean: f64,

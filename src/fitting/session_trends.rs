@@ -1,14 +1,15 @@
 //! How the shots run over their sessions: whether a value drifts within one, whether a shot is like
 //! the one before it, and whether the sessions differ.
 
-use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
+use super::measured_release::{MeasuredRelease, Values};
 use crate::math::normal_distribution::cdf;
+use crate::shooter::ReleaseVariable;
 
 /// How one value runs over the sessions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SessionTrend {
     /// The value.
-    pub name: &'static str,
+    pub of: ReleaseVariable,
     /// p-value of a drift within the sessions (normal approximation of the correlation with the
     /// order).
     pub drift_p: f64,
@@ -126,7 +127,7 @@ fn trend(
     let p_of = |correlation: f64| 2.0 * (1.0 - cdf(correlation.abs() * free.sqrt()));
     let length = count / groups.len() as f64 - 1.0;
     SessionTrend {
-        name: VALUE_NAMES[i],
+        of: ReleaseVariable::ALL[i],
         drift: length * product / order.max(f64::MIN_POSITIVE),
         drift_p: p_of(product / (squares * order).sqrt().max(f64::MIN_POSITIVE)),
         serial_p: p_of(lagged / squares),

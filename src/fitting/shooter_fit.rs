@@ -3,9 +3,8 @@
 use super::advice::{USUAL_SHOTS, usual_probabilities};
 use super::draw_probabilities::DrawProbabilities;
 use super::expected_makes::{ExpectedMakes, expected_makes};
-use super::fit_checks::{
-    FitWarning, FlightResiduals, ShapeTest, TestError, check_releases, shape_test, warnings,
-};
+use super::fit_checks::{FlightResiduals, ShapeTest, TestError, check_releases, notes, shape_test};
+use super::fit_note::FitNote;
 use super::fitted_profile::{fitted_profile, with_backspin_kept};
 use super::measured_release::{MeasuredRelease, Place, PlaceScatter, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
@@ -44,7 +43,7 @@ pub struct ShooterFit {
     /// How each measured value runs over the sessions.
     pub trends: Vec<SessionTrend>,
     /// What should be said.
-    pub warnings: Vec<FitWarning>,
+    pub notes: Vec<FitNote>,
 }
 
 /// Why a shooter was not fitted.
@@ -125,24 +124,27 @@ pub fn fit_shooter(
         .map(|place| typical.sds_at(place))
         .collect();
     let trends = trends(test.shots, test.sessions, (&typical.means, &sds), values);
-    let mut warnings = warnings(
+    let mut notes = notes(
         test.shots,
         (&shape, &trends),
         &typical,
         &posterior.prior_weights,
         values,
     );
-    warnings.extend(residuals.and_then(|residuals| residuals.warning()));
+    notes.extend(residuals.and_then(|residuals| residuals.note()));
     // Half a shot for the simulated chances themselves.
     let sd = libm::hypot(makes.expected_sd, 0.5);
     if (makes.made as f64 - makes.expected).abs() > FAR_MAKES * sd && makes.labelled > 0 {
-        warnings.push(FitWarning::OtherMakes(
-            makes.made,
-            makes.expected,
-            makes.expected_sd,
-        ));
+        notes.push(FitNote::OtherMakes {
+            made: makes.made,
+            expected: makes.expected,
+            expected_sd: makes.expected_sd,
+        });
     } else if let Some(z) = makes.calibration_z.filter(|z| *z > FAR_CALIBRATION) {
-        warnings.push(FitWarning::TooSure(z, makes.most_surprising()));
+        notes.push(FitNote::TooSure {
+            calibration_z: z,
+            shots: makes.most_surprising(),
+        });
     }
     Ok(ShooterFit {
         name: test.name.to_owned(),
@@ -156,6 +158,6 @@ pub fn fit_shooter(
         residuals,
         shape,
         trends,
-        warnings,
+        notes,
     })
 }

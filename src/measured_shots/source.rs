@@ -2,10 +2,11 @@
 
 use super::column_map_proposal::map_proposal;
 use super::columns::{Columns, Label, Quantity};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// What a file holds of a shot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
     /// Its release.

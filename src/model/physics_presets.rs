@@ -6,7 +6,7 @@
 
 use super::physics::{Air, BoardEdge, ContactLaw, Physics};
 use super::solids::SolidId;
-use crate::units::{FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG};
+use crate::units::{FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, UnitSystem};
 use std::f64::consts::PI;
 
 /// A named physics.
@@ -35,6 +35,19 @@ impl Preset {
     #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         PRESETS.iter().find(|preset| preset.name == name)
+    }
+
+    /// The preset whose printed values a physics has.
+    #[must_use]
+    pub fn of(physics: &Physics) -> Option<&'static Self> {
+        let printed = |physics: &Physics| {
+            let values = physics.values(UnitSystem::default()).into_iter();
+            values.map(|value| value.value).collect::<Vec<_>>()
+        };
+        let own = printed(physics);
+        PRESETS
+            .iter()
+            .find(|preset| printed(&preset.physics()) == own)
     }
 
     /// Its physics.

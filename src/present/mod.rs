@@ -4,10 +4,10 @@
 pub mod best_shot_csv;
 pub mod best_shot_text;
 pub mod fit_files;
-pub mod json_object;
 pub mod physics_text;
 pub mod probability_along_variable;
 pub mod probability_text;
 pub mod sensitivity_rows;
+pub mod shot_note_text;
 pub mod shot_table_files;
 pub mod simulation_files;

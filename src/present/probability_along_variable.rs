@@ -1,31 +1,13 @@
 //! P along one variable of a nominal shot, the others as they are: for people, as CSV and JSON.
 
-use super::fit_files::fit_json::interval_json;
-use super::json_object::{number, object, provenance};
 use crate::analysis::miss_breakdown::MissBreakdown;
-use crate::fitting::{AngleOverDraws, Interval};
-use crate::probability::Estimate;
+use crate::answers::along_variable::{PointAlong, Varied};
 use crate::shooter::{Nominal, NominalVariable, Profile};
-use crate::units::{Unit, UnitSystem, rounded, with_decimals};
+use crate::units::{Unit, UnitSystem, with_decimals};
 use comfy_table::{CellAlignment, Table, presets};
-use serde_json::Value;
 
 /// A loss of P that the sentence counts as none.
 const LEVEL: f64 = 0.01;
-
-/// P of the shot with one value of the variable.
-#[derive(Clone, Debug)]
-pub struct PointAlong {
-    /// The shot.
-    pub nominal: Nominal,
-    /// Its P.
-    pub estimate: Estimate,
-    /// How it is missed.
-    pub misses: MissBreakdown,
-    /// P over the draws of a fit, if one is given, and by how much it is less than where its mean
-    /// is highest.
-    pub over_draws: Option<AngleOverDraws>,
-}
 
 /// P of one nominal shot whose variable has several values.
 #[derive(Clone, Debug)]
@@ -33,9 +15,7 @@ pub struct ProbabilityAlong<'a> {
     /// The shooter and the location.
     pub profile: &'a Profile,
     /// The variable.
-    pub variable: NominalVariable,
-    /// Whether a polar angle is counted from the line to the hoop's centre.
-    pub is_aim: bool,
+    pub varied: Varied,
     /// Whether the draws have the uncertainty of the shot's other values too, not of the scatter
     /// alone.
     pub is_rest_uncertain: bool,
@@ -53,35 +33,26 @@ impl ProbabilityAlong<'_> {
     /// The name of the variable.
     #[must_use]
     pub fn name(&self) -> &'static str {
-        if self.is_aim {
-            "aim"
-        } else {
-            self.variable.name()
-        }
+        self.varied.name()
     }
 
     /// The unit of the variable, that unit in a column's name, and its size in SI units.
     #[must_use]
     pub fn unit(&self) -> Unit {
-        self.units().unit(self.variable.dimension())
+        self.units().unit(self.varied.variable.dimension())
     }
 
     /// The value of the variable of a shot, in its unit.
     #[must_use]
     pub fn value(&self, nominal: &Nominal) -> f64 {
-        let from = if self.is_aim {
-            self.profile.location().angle_rad
-        } else {
-            0.0
-        };
-        (nominal.get(self.variable) - from) / self.unit().size
+        self.varied.value(self.profile, nominal) / self.unit().size
     }
 
     /// The shooter's own value of the variable, in its unit, if the profile has it.
     #[must_use]
     pub fn own_value(&self) -> Option<f64> {
-        let own = self.profile.nominal_overrides().get(self.variable)?;
-        let nominal = Nominal::default().with(self.variable, own);
+        let own = self.profile.nominal_overrides().get(self.varied.variable)?;
+        let nominal = Nominal::default().with(self.varied.variable, own);
         Some(self.value(&nominal))
     }
 
@@ -97,10 +68,6 @@ impl ProbabilityAlong<'_> {
             }
             false => "",
         }
-    }
-
-    fn column(&self) -> String {
-        format!("{}_{}", self.name(), self.unit().suffix)
     }
 
     /// The point with the highest P.
@@ -164,7 +131,7 @@ impl ProbabilityAlong<'_> {
         };
         let others = NominalVariable::ALL
             .into_iter()
-            .filter(|&other| other != self.variable);
+            .filter(|&other| other != self.varied.variable);
         let parts = others.filter_map(|other| {
             let value = first.nominal.get(other);
             let is_always_told = matches!(
@@ -254,7 +221,7 @@ impl ProbabilityAlong<'_> {
         } else {
             "short, long, left, right: how shots are missed; other: all else, such as airballs (CSV and JSON have each).".to_owned()
         };
-        let of_aim = match self.is_aim {
+        let of_aim = match self.varied.is_aim {
             true => " aim: from the line to the hoop's centre, positive to the left.",
             false => "",
         };
@@ -263,84 +230,6 @@ impl ProbabilityAlong<'_> {
             80,
         ) + "\n");
         text
-    }
-
-    /// As CSV, a row for each value.
-    #[must_use]
-    pub fn as_csv(&self) -> String {
-        let mut text = format!("{},probability,standard_error,shots", self.column());
-        let named = MissBreakdown::default().named();
-        for (name, _) in &named {
-            text += &format!(",{name}");
-        }
-        let has_draws = self.points.iter().any(|point| point.over_draws.is_some());
-        if has_draws {
-            text += ",draws_probability_mean,draws_probability_low,draws_probability_high";
-            text += ",draws_less_mean,draws_less_low,draws_less_high";
-        }
-        text.push('\n');
-        for point in &self.points {
-            text += &format!(
-                "{},{},{},{}",
-                rounded(self.value(&point.nominal)),
-                rounded(point.estimate.probability),
-                rounded(point.estimate.standard_error),
-                point.estimate.shots
-            );
-            for (_, share) in point.misses.named() {
-                text += &format!(",{share:.5}");
-            }
-            if let Some(over) = &point.over_draws {
-                for interval in [over.probability, over.less] {
-                    let Interval {
-                        mean, low, high, ..
-                    } = interval;
-                    text += &format!(",{mean:.5},{low:.5},{high:.5}");
-                }
-            }
-            text.push('\n');
-        }
-        text
-    }
-
-    /// As one JSON object.
-    #[must_use]
-    pub fn as_json(&self) -> Value {
-        let named = |name: &str, value: Value| (name.to_owned(), value);
-        let points = self.points.iter().map(|point| {
-            let misses = point.misses.named();
-            let misses = misses.map(|(name, share)| named(name, number(share)));
-            let mut record = vec![
-                (self.column(), number(rounded(self.value(&point.nominal)))),
-                named("probability", number(point.estimate.probability)),
-                named("standard_error", number(point.estimate.standard_error)),
-                named("shots", point.estimate.shots.into()),
-                named("misses", object(misses.into_iter().collect())),
-            ];
-            if let Some(over) = &point.over_draws {
-                record.push(named(
-                    "over_draws",
-                    object(vec![
-                        named("probability", object(interval_json(&over.probability))),
-                        named("less", object(interval_json(&over.less))),
-                    ]),
-                ));
-            }
-            object(record)
-        });
-        let mut record = vec![
-            named("shooter", self.profile.shooter().name.clone().into()),
-            named("variable", self.name().into()),
-            named("points", points.collect()),
-        ];
-        if let Some(ends) = self.best_of_draws {
-            let [low, high] =
-                [ends.0, ends.1].map(|i| number(rounded(self.value(&self.points[i].nominal))));
-            let range = object(vec![named("low", low), named("high", high)]);
-            record.push(named("best_over_draws", range));
-        }
-        record.extend(provenance(self.profile.hash()));
-        object(record)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::units::{Dimension, UnitSystem};
 /// The answer as text.
 #[must_use]
 pub fn answer_text(answer: &ProbabilityAnswer, units: UnitSystem) -> String {
-    let (p, shots, method) = (answer.probability, answer.shots, answer.method);
+    let (p, shots, method) = (answer.probability, answer.shots, answer.method.name());
     let mut text = match answer.standard_error.zip(answer.interval_95) {
         Some((error, (low, high))) => {
             let digits = decimals(error);

@@ -4,11 +4,12 @@ use super::html_table::{HtmlTable, format_cell};
 use super::page::Page;
 use super::page_data::Scene;
 use super::shot_in_words::ReportShot;
+use crate::answers::fit::FitSource;
 use crate::fitting::{ShooterFit, nominal_of};
 use crate::model::league_courts::League;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
-use crate::present::fit_files::fit_json::FitSource;
+use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::present::fit_files::fit_text::tests_text;
 use crate::shooter::ShotKind;
 use crate::store::parameters::parameters;
@@ -50,7 +51,7 @@ pub fn fit_page(
             units,
         },
         tables: [
-            Some(parameter_table(fit, source.kind, units)),
+            Some(parameter_table(fit, source.kind.name(), units)),
             prediction_table(fit),
         ]
         .into_iter()
@@ -80,10 +81,9 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
     } else {
         String::new()
     };
-    let warnings: Vec<String> = fit
-        .warnings
-        .iter()
-        .map(|warning| format!(" Warning: {warning}."))
+    let notes = fit.notes.iter();
+    let warnings: Vec<String> = notes
+        .map(|note| format!(" Warning: {}.", fit_note_text(note)))
         .collect();
     let places = fit.places.iter().zip(&fit.probabilities);
     let chances: Vec<String> = places
@@ -102,7 +102,7 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         "{}, by {} {}.{seen}{}",
         chances.join("; "),
         fit.posterior.shots,
-        source.kind,
+        source.kind.name(),
         warnings.concat()
     )
 }
@@ -156,15 +156,16 @@ fn parameter_table(fit: &ShooterFit, kind: &str, units: UnitSystem) -> HtmlTable
         caption: "What was fitted".to_owned(),
         note: tests_text(fit),
         columns: columns.map(str::to_owned).to_vec(),
-        rows: parameters(&fit.posterior, kind, units)
+        rows: parameters(&fit.posterior, kind)
             .into_iter()
             .map(|parameter| {
+                let parameter = parameter.in_results(units);
                 let interval = parameter.interval;
                 let [mean, low, high] =
                     [interval.mean, interval.low, interval.high].map(|value| format_cell(value, 3));
                 let cells = [
                     parameter.name,
-                    parameter.unit.to_owned(),
+                    parameter.unit.name().to_owned(),
                     mean,
                     low,
                     high,

@@ -1,11 +1,11 @@
 //! The data of a page's script: the shots with their paths, and the court.
 
 use super::shot_in_words::ReportShot;
+use crate::answers::json::in_si;
 use crate::dynamics::{Release, Simulator, StateError};
 use crate::math::vector::Vec3;
 use crate::model::league_courts::Court;
-use crate::present::json_object::number;
-use crate::units::UnitSystem;
+use crate::units::{UnitSystem, rounded};
 use serde_json::{Value, json};
 
 /// Spacing of the points of a path, s.
@@ -85,7 +85,7 @@ impl Scene {
             ("bracket_width_m", physics.bracket_width_m),
             ("ball_radius_m", physics.ball_radius_m),
         ] {
-            record[name] = number(value);
+            record[name] = in_si(&rounded(value));
         }
         record
     }

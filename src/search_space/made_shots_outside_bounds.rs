@@ -14,6 +14,7 @@ const BLOCK: u64 = 4096;
 const POLAR_MARGIN_RAD: f64 = 20.0 * DEGREE_RAD;
 
 /// The result of [`sample_wide`].
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WideSample {
     /// Shots drawn uniformly from a box wider than the bracket.

@@ -4,6 +4,7 @@ use super::release_variable::NominalVariable;
 use serde::{Deserialize, Serialize};
 
 /// A nominal shot: the release without errors.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nominal {
     /// Speed, m/s.

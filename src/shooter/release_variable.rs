@@ -4,6 +4,7 @@ use crate::units::Dimension;
 use serde::{Deserialize, Serialize};
 
 /// The nine random variables of Eq. 23, in the order in which their errors are drawn.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReleaseVariable {
@@ -87,6 +88,7 @@ impl ReleaseVariable {
 }
 
 /// The variables of a nominal shot: what the shooter can intend.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NominalVariable {

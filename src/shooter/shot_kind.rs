@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// The two kinds of nominal shots. The kind depends on the first touch of the error-free flight,
 /// not on the outcome.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShotKind {

@@ -5,8 +5,8 @@ use super::free_parameters::FreeParameter;
 use super::sealed::Sealed;
 use crate::config::parse_profile;
 use crate::fitting::{
-    DrawProbabilities, KnownRelease, Place, Posterior, ShooterFit, SpinSource, VALUE_NAMES, Values,
-    fitted_profile, usual_probabilities,
+    DrawProbabilities, FitNote, KnownRelease, Place, Posterior, ShooterFit, SpinSource,
+    VALUE_NAMES, Values, fitted_profile, usual_probabilities,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::measured_shots::source::Source;
@@ -63,8 +63,8 @@ pub struct Fit {
     pub posterior: Posterior,
     /// At each place: made and all shots with a result.
     pub observed: Vec<(usize, usize)>,
-    /// What the fit warned of.
-    pub warnings: Vec<String>,
+    /// What should be said of the fit.
+    pub notes: Vec<FitNote>,
     /// What was measured.
     pub source: Source,
     /// The name of the tracker, or the path of its file.
@@ -84,7 +84,7 @@ pub(super) struct FitJson {
     parameters: Vec<Parameter>,
     places: Vec<StoredPlace>,
     shots: usize,
-    warnings: Vec<String>,
+    notes: Vec<FitNote>,
     source: StoredSource,
     #[serde(default)]
     pub(super) free: Vec<FreeParameter>,
@@ -154,12 +154,12 @@ pub(super) fn read_json(folder: &Path) -> Result<Sealed<FitJson>, StoreError> {
     Sealed::read(&folder.join(FIT_FILE), AGAIN)
 }
 
-/// What the fit of a folder warned of.
+/// What should be said of the fit of a folder.
 ///
 /// # Errors
 /// Its `fit.json` is damaged.
-pub fn warnings(folder: &Path) -> Result<Vec<String>, StoreError> {
-    Ok(read_json(folder)?.content.warnings)
+pub fn notes(folder: &Path) -> Result<Vec<FitNote>, StoreError> {
+    Ok(read_json(folder)?.content.notes)
 }
 
 /// The name of the shooter whose fit is in a folder.
@@ -181,7 +181,7 @@ impl Fit {
         Self {
             place_names: shots.place_names.clone(),
             observed: (0..fit.places.len()).map(made).collect(),
-            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
+            notes: fit.notes,
             source: shots.source,
             tracker: tracker.to_owned(),
             shooter: Some(shots.name.clone()).filter(|name| !name.is_empty()),
@@ -227,7 +227,7 @@ impl Fit {
             shooter: json.source.names_the_shooter.then(|| json.shooter.clone()),
             units,
             probabilities: Vec::new(),
-            warnings: sealed.content.warnings,
+            notes: sealed.content.notes,
             posterior,
         })
     }

@@ -4,6 +4,7 @@ use crate::fitting::UnseenParameter;
 use serde::{Deserialize, Serialize};
 
 /// What the shots say of a parameter that was not measured.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FreeParameter {
     /// Its name, such as `hoop_restitution`.
@@ -33,6 +34,7 @@ pub struct FreeParameter {
 }
 
 /// A point of a likelihood curve.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// The value, in the unit of the parameter.

@@ -1,19 +1,36 @@
 //! The parameters of a fit, by name, in the units of results.
 
 use crate::fitting::{Draw, Interval, Posterior, SpinSource, VALUE_NAMES, pair_name};
-use crate::units::{Dimension, UnitSystem};
+use crate::shooter::ReleaseVariable;
+use crate::units::{Dimension, UnitName, UnitSystem};
+use serde::Serialize;
 
 /// One parameter.
-#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// Its name, such as `speed_sd`.
     pub name: String,
-    /// Its unit; empty for none.
-    pub unit: &'static str,
+    /// Its unit.
+    pub unit: UnitName,
     /// Its distribution, in that unit.
+    #[serde(flatten)]
     pub interval: Interval,
     /// `measured`, `from landings`, `from trajectories`, `given` or `assumed`.
     pub source: &'static str,
+}
+
+impl Parameter {
+    /// In the unit of results.
+    #[must_use]
+    pub fn in_results(self, units: UnitSystem) -> Self {
+        let unit = self.unit.in_results(units);
+        Self {
+            interval: self.interval.scaled(self.unit.size() / unit.size()),
+            unit,
+            ..self
+        }
+    }
 }
 
 /// Unit and its size in SI units of each of the values.
@@ -40,16 +57,16 @@ pub(crate) fn mean_name(place: usize, value: &str) -> String {
 /// All parameters of a posterior: means (of further places with the number of the place), standard
 /// deviations, correlations, the tail weight (one over the degrees of freedom) where it was fitted,
 /// and the coefficients of the speed's standard deviation where there are several. `kind` is what
-/// was measured: `releases`, `landings` or `trajectories`.
+/// was measured: `releases`, `landings` or `trajectories`. All are in SI units.
 #[must_use]
-pub fn parameters(posterior: &Posterior, kind: &str, units: UnitSystem) -> Vec<Parameter> {
+pub fn parameters(posterior: &Posterior, kind: &str) -> Vec<Parameter> {
     // Releases that the flight model found under a landing or a track were not measured.
     let release_source = match kind {
         "landings" => "from landings",
         "trajectories" => "from trajectories",
         _ => "measured",
     };
-    let of_value = value_units(units);
+    let of_value = |value: usize| ReleaseVariable::ALL[value].dimension();
     let measured = if posterior.spin == SpinSource::Measured {
         4
     } else {
@@ -63,19 +80,18 @@ pub fn parameters(posterior: &Posterior, kind: &str, units: UnitSystem) -> Vec<P
         }
     };
     let mut parameters = Vec::new();
-    let mut add =
-        |name: String, (unit, size): (&'static str, f64), source, value: &dyn Fn(&Draw) -> f64| {
-            parameters.push(Parameter {
-                name,
-                unit,
-                interval: posterior.summary(value).scaled(1.0 / size),
-                source,
-            });
-        };
+    let mut add = |name: String, dimension, source, value: &dyn Fn(&Draw) -> f64| {
+        parameters.push(Parameter {
+            name,
+            unit: UnitName::si(dimension),
+            interval: posterior.summary(value),
+            source,
+        });
+    };
     for place in 0..posterior.draws[0].means.len() {
         for (i, name) in VALUE_NAMES.iter().enumerate() {
             let name = mean_name(place, name);
-            add(name, of_value[i], source(i), &|draw| draw.means[place][i]);
+            add(name, of_value(i), source(i), &|draw| draw.means[place][i]);
         }
     }
     for (i, name) in VALUE_NAMES.iter().enumerate() {
@@ -86,39 +102,33 @@ pub fn parameters(posterior: &Posterior, kind: &str, units: UnitSystem) -> Vec<P
             // mean was given.
             (false, _) => "assumed",
         };
-        add(format!("{name}_sd"), of_value[i], source, &|draw| {
+        add(format!("{name}_sd"), of_value(i), source, &|draw| {
             draw.sds[i]
         });
     }
     for j in 1..measured {
         for i in 0..j {
             let name = format!("corr_{}", pair_name(i, j));
-            add(name, ("", 1.0), release_source, &|draw| {
+            add(name, Dimension::Number, release_source, &|draw| {
                 draw.correlation[(i, j)]
             });
         }
     }
     if posterior.draws.iter().any(|draw| draw.tail_weight > 0.0) {
-        add(
-            "tail_weight".to_owned(),
-            ("", 1.0),
-            release_source,
-            &|draw| draw.tail_weight,
-        );
+        let name = "tail_weight".to_owned();
+        add(name, Dimension::Number, release_source, &|draw| {
+            draw.tail_weight
+        });
     }
-    let metre = units.length().1;
     let coefficients = [
-        ("c10", of_value[0].0, metre),
-        ("c11", "", 1.0),
-        ("c12", units.unit(Dimension::PerSpeed).name, 1.0 / metre),
+        ("c10", Dimension::Speed),
+        ("c11", Dimension::Number),
+        ("c12", Dimension::PerSpeed),
     ];
     if posterior.growth_terms > 0 {
-        for (k, (name, unit, size)) in coefficients
-            .into_iter()
-            .enumerate()
-            .take(posterior.growth_terms + 1)
-        {
-            add(name.to_owned(), (unit, size), release_source, &|draw| {
+        let coefficients = coefficients.into_iter().enumerate();
+        for (k, (name, dimension)) in coefficients.take(posterior.growth_terms + 1) {
+            add(name.to_owned(), dimension, release_source, &|draw| {
                 draw.speed_coefficients[k]
             });
         }

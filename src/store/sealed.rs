@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// The version of the stored files. One of another version is refused.
-const FORMAT_VERSION: u32 = 2;
+/// The version of stored files and of the JSON of answers. A stored file of another version is
+/// refused.
+pub const FORMAT_VERSION: u32 = 3;
 
 /// Largest file that is read, bytes.
 const MAX_BYTES: u64 = 256 << 20;

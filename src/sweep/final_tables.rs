@@ -7,7 +7,7 @@ use super::columns::{self, ColumnType};
 use super::job_list::Jobs;
 use super::result_row::{Cell, ResultRow};
 use super::sweep_toml::SweepConfig;
-use crate::present::json_object::{Record, number, object, provenance};
+use crate::answers::json::{self, Provenance};
 use crate::units::UnitSystem;
 use crate::units::rounded;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -17,6 +17,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -29,13 +30,29 @@ struct Line {
     cells: Vec<Cell>,
 }
 
+/// What the tables were made from.
+#[derive(Clone, Debug, Serialize)]
+struct TablesProvenance {
+    #[serde(flatten)]
+    provenance: Provenance,
+    sweep: String,
+    shooter: String,
+    court: &'static str,
+    standard_error_wanted: f64,
+    places: usize,
+    jobs: usize,
+    jobs_done: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    configuration_si: Option<serde_json::Value>,
+}
+
 /// The result tables of a sweep.
 pub struct ResultTables {
     column_names: Vec<String>,
     /// The names of the places; empty if they have none.
     place_names: Vec<String>,
     lines: Vec<Line>,
-    provenance: Record,
+    provenance: TablesProvenance,
 }
 
 impl ResultTables {
@@ -188,7 +205,9 @@ impl ResultTables {
     }
 
     fn parquet_properties(&self) -> WriterProperties {
-        let metadata = self.provenance.iter().map(|(key, value)| {
+        let provenance = json::in_si(&self.provenance);
+        let metadata = provenance.as_object().into_iter().flatten();
+        let metadata = metadata.map(|(key, value)| {
             let text = value
                 .as_str()
                 .map_or_else(|| value.to_string(), str::to_owned);
@@ -244,30 +263,32 @@ impl ResultTables {
     /// The provenance of the tables as JSON.
     #[must_use]
     pub fn provenance(&self, config: &SweepConfig) -> Vec<u8> {
-        let mut record = self.provenance.clone();
-        let checked = serde_json::to_value(config).unwrap_or_default();
-        record.push(("configuration_si".to_owned(), checked));
-        format!("{:#}\n", object(record)).into_bytes()
+        let answer = TablesProvenance {
+            configuration_si: serde_json::to_value(config).ok(),
+            ..self.provenance.clone()
+        };
+        json::text(&json::in_si(&answer)).into_bytes()
     }
 }
 
-fn provenance_of(config: &SweepConfig, hash: &str, jobs: &Jobs, jobs_done: usize) -> Record {
+fn provenance_of(
+    config: &SweepConfig,
+    hash: &str,
+    jobs: &Jobs,
+    jobs_done: usize,
+) -> TablesProvenance {
     let settings = &config.settings;
-    let mut record = provenance(hash);
-    record.extend([
-        ("sweep".to_owned(), config.name.clone().into()),
-        ("shooter".to_owned(), settings.shooter.name.clone().into()),
-        ("court".to_owned(), config.league.name().into()),
-        ("seed".to_owned(), settings.search.seed().into()),
-        (
-            "standard_error_wanted".to_owned(),
-            number(settings.search.standard_error()),
-        ),
-        ("places".to_owned(), jobs.sources.len().into()),
-        ("jobs".to_owned(), jobs.count().into()),
-        ("jobs_done".to_owned(), jobs_done.into()),
-    ]);
-    record
+    TablesProvenance {
+        provenance: Provenance::new(hash, &settings.physics, settings.search.seed()),
+        sweep: config.name.clone(),
+        shooter: settings.shooter.name.clone(),
+        court: config.league.name(),
+        standard_error_wanted: rounded(settings.search.standard_error()),
+        places: jobs.sources.len(),
+        jobs: jobs.count(),
+        jobs_done,
+        configuration_si: None,
+    }
 }
 
 fn write_column<T: parquet::data_type::DataType>(

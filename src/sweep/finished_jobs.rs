@@ -3,7 +3,7 @@
 use super::folder_error::{SweepFolderError, io_error_at};
 use super::result_row::JobStatus;
 use super::shard_lock::{ShardLock, open_lock};
-use super::sqlite_results::{self, ResultStore, StoreError};
+use super::sqlite_results::{self, ResultStore, ResultsError};
 use super::sweep_folder::{SweepFolder, set_aside};
 use std::collections::BTreeMap;
 use std::fs;
@@ -35,7 +35,7 @@ impl Inventory {
                 .push(rescue(folder, &path, &reason, lock)?);
         }
         let store = match ResultStore::open(&lock.store, folder.hash()) {
-            Err(StoreError::Damaged { path, reason }) => {
+            Err(ResultsError::Damaged { path, reason }) => {
                 inventory
                     .damaged
                     .push(rescue(folder, &path, &reason, lock)?);

@@ -1,6 +1,6 @@
 //! Why a sweep's folder could not be used.
 
-use super::sqlite_results::StoreError;
+use super::sqlite_results::ResultsError;
 use crate::config::ConfigError;
 use crate::shooter::IdentityError;
 use std::io;
@@ -19,7 +19,7 @@ pub enum SweepFolderError {
     },
     /// A store failed.
     #[error(transparent)]
-    Store(#[from] StoreError),
+    Store(#[from] ResultsError),
     /// The folder holds another sweep.
     #[error("{}: holds the results of another sweep; take another folder, or change back:\n{}", .path.display(), .differences.join("\n"))]
     OtherSweep {

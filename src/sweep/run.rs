@@ -11,7 +11,7 @@ use super::folder_error::SweepFolderError;
 use super::job_list::{Jobs, Shard};
 use super::result_row::{JobStatus, ResultRow};
 use super::shard_lock::ShardLock;
-use super::sqlite_results::{ResultStore, StoreError};
+use super::sqlite_results::{ResultStore, ResultsError};
 use super::sweep_folder::SweepFolder;
 use super::sweep_toml::SweepConfig;
 use crate::best_shot::{self, BestShotError, NoShot};
@@ -163,7 +163,7 @@ impl<'a> SweepRun<'a> {
     ///
     /// # Errors
     /// A result cannot be saved; what was saved before is safe.
-    pub fn run(&self, progress: &dyn Progress) -> Result<RunSummary, StoreError> {
+    pub fn run(&self, progress: &dyn Progress) -> Result<RunSummary, ResultsError> {
         let (total, resumed) = self.progress();
         let spots = self
             .shard_spots()
@@ -221,12 +221,12 @@ impl<'a> SweepRun<'a> {
         spots: &[usize],
         at_once: usize,
         pool: &ThreadPool,
-        save: &(dyn Fn(usize, &[ResultRow], f64) -> Result<(), StoreError> + Sync),
-    ) -> Result<(), StoreError> {
+        save: &(dyn Fn(usize, &[ResultRow], f64) -> Result<(), ResultsError> + Sync),
+    ) -> Result<(), ResultsError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
         let first_error = Mutex::new(None);
-        let fail = |error: StoreError| {
+        let fail = |error: ResultsError| {
             stopped.store(true, Ordering::Relaxed);
             if let Ok(mut first_error) = first_error.lock() {
                 first_error.get_or_insert(error);
@@ -308,15 +308,15 @@ impl<'a> SweepRun<'a> {
 }
 
 /// The threads that all spots of a run share.
-fn shared_pool(threads: usize) -> Result<ThreadPool, StoreError> {
+fn shared_pool(threads: usize) -> Result<ThreadPool, ResultsError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|error| no_threads(&error))
 }
 
-fn no_threads(error: &dyn std::fmt::Display) -> StoreError {
-    StoreError::Io {
+fn no_threads(error: &dyn std::fmt::Display) -> ResultsError {
+    ResultsError::Io {
         path: "threads".into(),
         reason: format!("cannot be started: {error}"),
     }

@@ -19,7 +19,7 @@ const BUSY_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Why a store could not be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum StoreError {
+pub enum ResultsError {
     /// The file has other content than was written.
     #[error("{}: damaged: {reason}", .path.display())]
     Damaged {
@@ -39,7 +39,7 @@ pub enum StoreError {
 }
 
 /// Sorts an error of SQLite into damage and failures of the system.
-fn map_sqlite_error(path: &Path, error: &rusqlite::Error) -> StoreError {
+fn map_sqlite_error(path: &Path, error: &rusqlite::Error) -> ResultsError {
     let (path, reason) = (path.to_owned(), error.to_string());
     let damaged = match error {
         rusqlite::Error::SqliteFailure(failure, _) => matches!(
@@ -50,9 +50,9 @@ fn map_sqlite_error(path: &Path, error: &rusqlite::Error) -> StoreError {
         _ => true,
     };
     if damaged {
-        StoreError::Damaged { path, reason }
+        ResultsError::Damaged { path, reason }
     } else {
-        StoreError::Io { path, reason }
+        ResultsError::Io { path, reason }
     }
 }
 
@@ -83,7 +83,7 @@ impl ResultStore {
     ///
     /// # Errors
     /// It is damaged, or cannot be written.
-    pub fn open(path: &Path, configuration: &str) -> Result<Self, StoreError> {
+    pub fn open(path: &Path, configuration: &str) -> Result<Self, ResultsError> {
         let open = || {
             let connection = Connection::open(path)?;
             connection.busy_timeout(BUSY_TIMEOUT)?;
@@ -111,7 +111,7 @@ impl ResultStore {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn begin_spot(&mut self, spot: usize) -> Result<(), StoreError> {
+    pub fn begin_spot(&mut self, spot: usize) -> Result<(), ResultsError> {
         let start = "INSERT OR REPLACE INTO started VALUES (?1)";
         retry_while_busy(|| self.connection.execute(start, [spot as i64]))
             .map(|_| ())
@@ -128,7 +128,7 @@ impl ResultStore {
         spot: usize,
         rows: &[ResultRow],
         seconds: f64,
-    ) -> Result<(), StoreError> {
+    ) -> Result<(), ResultsError> {
         let (configuration, path) = (&self.configuration, &self.path);
         let write = || {
             let transaction = self.connection.transaction()?;
@@ -151,7 +151,7 @@ impl ResultStore {
     ///
     /// # Errors
     /// It cannot be read or written.
-    pub fn count_aborts(&mut self, aborted: bool) -> Result<Vec<(usize, u32)>, StoreError> {
+    pub fn count_aborts(&mut self, aborted: bool) -> Result<Vec<(usize, u32)>, ResultsError> {
         let path = self.path.clone();
         let mut act = || {
             let transaction = self.connection.transaction()?;
@@ -181,7 +181,7 @@ impl ResultStore {
     ///
     /// # Errors
     /// They cannot be written; then none of them is saved.
-    pub fn save_copies(&mut self, rows: &[ResultRow]) -> Result<(), StoreError> {
+    pub fn save_copies(&mut self, rows: &[ResultRow]) -> Result<(), ResultsError> {
         let (configuration, path) = (&self.configuration, &self.path);
         retry_while_busy(|| {
             let transaction = self.connection.transaction()?;
@@ -260,7 +260,7 @@ pub fn read_rows(
     configuration: &str,
     jobs: u64,
     mut receive: impl FnMut(ResultRow),
-) -> Result<ReadReport, StoreError> {
+) -> Result<ReadReport, ResultsError> {
     let mut report = ReadReport::default();
     if std::fs::metadata(path).is_ok_and(|metadata| metadata.len() == 0) {
         // Its process was killed while it was created.
@@ -280,8 +280,8 @@ pub fn read_rows(
             report.damage = Some("a row does not match its checksum".to_owned());
         }
         Err(error) => match map_sqlite_error(path, &error) {
-            StoreError::Damaged { reason, .. } => report.damage = Some(reason),
-            error @ StoreError::Io { .. } => return Err(error),
+            ResultsError::Damaged { reason, .. } => report.damage = Some(reason),
+            error @ ResultsError::Io { .. } => return Err(error),
         },
     }
     if report.damage.is_some() {

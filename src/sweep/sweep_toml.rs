@@ -3,6 +3,7 @@
 use super::court_region::{CourtPlace, MAX_PLACES, Region};
 use super::region_toml::read_region;
 use crate::analysis::sensitivity::SensitivityTopics;
+use crate::answers::json::Provenance;
 use crate::best_shot::ShotKind;
 use crate::config::toml_reader::TableReader;
 use crate::config::{
@@ -268,6 +269,16 @@ impl SweepConfig {
             && is_zero(nominal.rifle_spin_rad_s)
             && (choice.includes(NominalVariable::SideSpin) || is_zero(nominal.side_spin_rad_s))
             && self.settings.shooter.dispersion.is_mirror_symmetric()
+    }
+
+    /// What results of this sweep are made from.
+    ///
+    /// # Errors
+    /// The sweep cannot be serialised.
+    pub fn provenance(&self) -> Result<Provenance, IdentityError> {
+        let settings = &self.settings;
+        let seed = settings.search.seed();
+        Ok(Provenance::new(&self.hash()?, &settings.physics, seed))
     }
 
     /// BLAKE3 of everything that a result depends on: the checked sweep in SI units, and the

@@ -2,10 +2,12 @@
 //! read and results are printed.
 
 mod constants;
+mod measure;
 mod quantity;
 mod unit_system;
 
 pub use constants::{DEGREE_RAD, FOOT_M, INCH_M, POUND_FORCE_N, POUND_KG, REV_RAD, SLUG_KG};
+pub use measure::{Measure, UnitName};
 pub use quantity::{Dimension, QuantityError, parse, suggestion};
 pub(crate) use quantity::{PERCENT, meant_by};
 pub use unit_system::{Unit, UnitSystem};

@@ -373,7 +373,7 @@ fn contract_vary_gives_the_p_of_each_shot() {
     }
     let text = std::fs::read_to_string(&csv).unwrap();
     assert_eq!(text.lines().count(), 4);
-    assert!(text.starts_with("aim_deg,probability,standard_error,shots,short,"));
+    assert!(text.starts_with("aim_deg,probability,standard_error,shots,misses_short,"));
     assert!(
         std::fs::read_to_string(&plot)
             .unwrap()
@@ -389,7 +389,7 @@ fn contract_vary_gives_the_p_of_each_shot() {
     vary(&["--vary", "pitch"]).exits(2).says("has no =");
     vary(&["--vary", "pitch=100 deg"])
         .exits(2)
-        .says("the pitch must be from -90 to 90 deg");
+        .says("--pitch: must be from -90 to 90 deg");
     vary(&["--vary", "pitch=50 deg", "-o", "p.java"])
         .exits(2)
         .says("the name must end in .csv, .json or .txt");

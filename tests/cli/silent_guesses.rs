@@ -364,11 +364,11 @@ fn contract_a_drag_that_the_flights_reject_is_named() {
         &["--physics", heavy.to_str().unwrap(), "--json"],
     )
     .exits(0);
-    let warnings = answer.json()["warnings"].to_string();
-    assert!(warnings.contains("--free drag_coefficient"), "{warnings}");
+    let notes = answer.json()["notes"].to_string();
+    assert!(notes.contains("\"code\":\"other_drag\""), "{notes}");
     let answer = fit(file, &out, &["--json"]).exits(0);
-    let warnings = answer.json()["warnings"].to_string();
-    assert!(!warnings.contains("drag"), "{warnings}");
+    let notes = answer.json()["notes"].to_string();
+    assert!(!notes.contains("drag"), "{notes}");
     // A shot every 14 degrees, 3.4 ft from the next.
     let around = tracks_with(|shot, _, x, y| {
         let angle = 0.24 * (f64::from(shot % 13) - 6.0);

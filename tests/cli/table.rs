@@ -195,7 +195,7 @@ fn regress_a_loss_beside_the_middle_is_found() {
     // At 6 ft a bank shot is better by 0.2.
     let near = &json["shots"][0];
     let [direct, bank] =
-        ["probability", "bank_probability"].map(|name| near[name].as_f64().unwrap());
+        ["probability", "other_kind_probability"].map(|name| near[name].as_f64().unwrap());
     assert!(bank > direct + 0.1, "{bank} {direct}");
     let notes = json["notes"].to_string();
     assert!(notes.contains("A bank shot is better at"), "{notes}");
@@ -332,10 +332,10 @@ fn contract_the_source_of_a_table_interpolates_as_the_table_does() {
     let speeds: Vec<f64> = csv
         .lines()
         .skip(1)
-        .map(|line| line.split(',').nth(4).unwrap().parse().unwrap())
+        .map(|line| line.split(',').nth(7).unwrap().parse().unwrap())
         .collect();
     let middle = 0.25 * speeds[0] + 0.75 * speeds[1];
-    let how = csv.lines().nth(1).unwrap().split(',').nth(3).unwrap();
+    let how = csv.lines().nth(1).unwrap().split(',').nth(5).unwrap();
     assert!(how == "swish" || how == "rim-in", "{how}");
     let java = fs::read_to_string(folder.path().join("Launcher.java")).unwrap();
     assert!(java.contains("public final class Launcher {"));
@@ -616,7 +616,12 @@ fn contract_a_pitch_curve_has_the_best_shot_at_each_angle() {
     let fixed = ["--distances", "12 ft", "--format", "json", "--draft"];
     let table = table(&folder, &fixed).exits(0).json();
     let of_table = &table["shots"][0];
-    for name in ["speed_ft_s", "probability", "aim_deg", "bank_probability"] {
+    for name in [
+        "speed_ft_s",
+        "probability",
+        "aim_deg",
+        "other_kind_probability",
+    ] {
         assert_eq!(shots[2][name], of_table[name], "{name}");
     }
     assert!((shots[1]["pitch_deg"].as_f64().unwrap() - 60.0).abs() < 1e-9);
@@ -759,7 +764,14 @@ fn contract_one_pitch_angle_for_several_distances_has_the_greatest_mean() {
     let json = curve(&files).exits(0).json();
     let all = json.as_array().unwrap();
     let alone = curve(&["--distance", "12 ft", "--json"]).exits(0).json();
-    assert_eq!(all[1]["shots"], alone["shots"]);
+    let mut shots = all[1]["shots"].clone();
+    for shot in shots.as_array_mut().unwrap() {
+        assert_eq!(
+            shot.as_object_mut().unwrap().shift_remove("distance_ft"),
+            Some(12.0.into())
+        );
+    }
+    assert_eq!(shots, alone["shots"]);
     assert_eq!(all[0]["distance_ft"], 9.0);
     let p = |distance: usize, row: usize| {
         all[distance]["shots"][row]["probability"]
@@ -785,6 +797,6 @@ fn contract_one_pitch_angle_for_several_distances_has_the_greatest_mean() {
     assert!(text.replace('\n', " ").contains(&words), "{words}: {text}");
     let csv = fs::read_to_string(folder.path().join("curves.csv")).unwrap();
     assert_eq!(csv.lines().count(), 7);
-    assert!(csv.starts_with("distance_ft,kind,pitch_deg,"), "{csv}");
+    assert!(csv.starts_with("distance_ft,kind,has_shot,"), "{csv}");
     curve(&["--distances", "900 ft"]).exits(2);
 }

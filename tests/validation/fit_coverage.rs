@@ -4,6 +4,7 @@
 //! prior, shots are simulated and fitted; the 95 % intervals must cover the truth in 95 % of the
 //! repetitions, and its rank among the draws must be uniform.
 
+use bankshot::answers::sessions::{Decision, SessionChange};
 use bankshot::dynamics::Simulator;
 use bankshot::fitting::{
     Covariance, Draw, DrawProbabilities, FitOptions, FittedShooter, Interval, MeasuredRelease,
@@ -14,7 +15,6 @@ use bankshot::fitting::{
 };
 use bankshot::math::normal_distribution::quantile;
 use bankshot::model::Preset;
-use bankshot::present::fit_files::session_changes_text::{Decision, SessionChange};
 use bankshot::probability::Silent;
 use bankshot::shooter::Location;
 use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};

@@ -10,6 +10,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::fitting::advise;
 use crate::present::fit_files::advice_text::{advice_text, brief_advice_text};
+use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::store::fit::Fit;
 use crate::store::shooters::fits_within;
 use clap::Args;
@@ -78,8 +79,8 @@ fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Res
         print_answer("\n")?;
     }
     // Advice is no better than the fit that it rests on: these come first.
-    for warning in &fit.warnings {
-        print_remark(&format!("{name}: warning: {warning}"));
+    for note in &fit.notes {
+        print_remark(&format!("{name}: warning: {}", fit_note_text(note)));
     }
     for (place, profile) in fit.profiles.iter().enumerate() {
         if !is_quiet() && shooters * places > 1 {
@@ -95,7 +96,7 @@ fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Res
         let place_name = &fit.place_names[place];
         if options.json {
             let answer = AdviceAnswer::new(fit, place, &advice);
-            print_answer(&json::text(&json::in_units(&answer, units)))?;
+            print_answer(&json::text(&json::document(&answer, units)))?;
             continue;
         }
         if places > 1 {

@@ -76,7 +76,7 @@ pub(crate) fn run(options: &BestOptions) -> Result<u8, Failure> {
     }
     if options.json {
         let answer = BestShotsAnswer::new(&profile, &best);
-        print_answer(&json::text(&json::in_units(&answer, units)))?;
+        print_answer(&json::text(&json::document(&answer, units)))?;
     } else {
         let mut text = answer_in_words(&profile, &best, units);
         text += &best_shots_table(&profile, &best, units);

@@ -1,5 +1,7 @@
 //! `bankshot check`: whether a profile or a sweep is valid.
 
+use crate::answers::checks::{CheckAnswer, Checked, Fault};
+use crate::answers::json::{self, Provenance};
 use crate::cli::config_files::{load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::loaded_profile::LoadedProfile;
@@ -8,11 +10,9 @@ use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::config::parse_profile;
 use crate::model::{PRESETS, Physics, PhysicsValue};
 use crate::search_space::TablePlan;
-use crate::shooter::implausible_values;
 use crate::sweep::sweep_toml::is_sweep;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use clap::Args;
-use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -68,66 +68,74 @@ pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {
 
 /// The answer for programs. The exit code is that of the answer for people.
 fn print_json(options: &CheckOptions) -> Result<u8, Failure> {
+    let (errors, checked, code) = checked(options)?;
+    let (checked, provenance) = checked.unzip();
+    let answer = CheckAnswer {
+        file: options.profile.display().to_string(),
+        is_valid: errors.is_empty(),
+        errors,
+        checked,
+        provenance,
+    };
+    print_answer(&json::text(&json::document(&answer, UnitSystem::default())))?;
+    Ok(code)
+}
+
+/// The faults of a file, what it is of where it has none, and the exit code.
+fn checked(
+    options: &CheckOptions,
+) -> Result<(Vec<Fault>, Option<(Checked, Provenance)>, u8), Failure> {
     let text = read_text(&options.profile)?;
     let origin = options.profile.display().to_string();
-    let of_file = |errors: Vec<Value>, more: Value| {
-        let mut answer = json!({ "file": origin, "is_valid": errors.is_empty(), "errors": errors });
-        if let (Some(answer), Value::Object(more)) = (answer.as_object_mut(), more) {
-            answer.extend(more);
-        }
-        format!("{answer:#}\n")
-    };
-    let refused = |message: &str| vec![json!({ "message": message })];
-    if is_sweep(&text) {
-        return match load_sweep(&options.profile) {
-            Ok((config, _)) => print_answer(&of_file(
-                Vec::new(),
-                json!({ "sweep": config.name, "places": config.places.len() }),
-            )),
-            Err(failure) => {
-                print_answer(&of_file(refused(&failure.message), Value::Null))?;
-                Ok(failure.code)
-            }
+    let refused = |failure: Failure| {
+        let fault = Fault {
+            key: None,
+            message: failure.message,
+            line: None,
+            column: None,
         };
+        (vec![fault], None, failure.code)
+    };
+    if is_sweep(&text) {
+        return Ok(match load_sweep(&options.profile) {
+            Ok((config, _)) => {
+                let provenance = config.provenance()?;
+                let sweep = Checked::Sweep {
+                    places: config.places.len(),
+                    sweep: config.name,
+                };
+                (Vec::new(), Some((sweep, provenance)), code::DONE)
+            }
+            Err(failure) => refused(failure),
+        });
     }
     if let Err(error) = parse_profile(&text, &origin) {
-        let errors = error.diagnostics.iter().map(|diagnostic| {
+        let faults = error.diagnostics.iter().map(|diagnostic| {
             let (line, column) = error.line_and_column(diagnostic);
-            json!({
-                "key": diagnostic.key,
-                "message": diagnostic.message,
-                "line": line,
-                "column": column,
-            })
+            Fault {
+                key: Some(diagnostic.key.clone()),
+                message: diagnostic.message.clone(),
+                line: Some(line),
+                column: Some(column),
+            }
         });
-        print_answer(&of_file(errors.collect(), Value::Null))?;
-        return Ok(code::USAGE);
+        return Ok((faults.collect(), None, code::USAGE));
     }
     let loaded = LoadedProfile::read(&options.profile, &options.physics).and_then(|loaded| {
-        let profile = loaded.profile;
-        TablePlan::for_search(&profile)
-            .map(|_| profile)
-            .map_err(Failure::from)
+        TablePlan::for_search(&loaded.profile)?;
+        Ok(loaded.profile)
     });
-    match loaded {
+    Ok(match loaded {
         Ok(profile) => {
-            let location = profile.location();
-            print_answer(&of_file(
+            let provenance = Provenance::of(&profile);
+            (
                 Vec::new(),
-                json!({
-                    "shooter": profile.shooter().name,
-                    "distance_m": location.distance_m,
-                    "court_angle_rad": location.angle_rad,
-                    "release_height_m": profile.shooter().release_height_m,
-                    "warnings": implausible_values(&profile).iter().map(ToString::to_string).collect::<Vec<_>>(),
-                }),
-            ))
+                Some((Checked::profile(&profile), provenance)),
+                code::DONE,
+            )
         }
-        Err(failure) => {
-            print_answer(&of_file(refused(&failure.message), Value::Null))?;
-            Ok(failure.code)
-        }
-    }
+        Err(failure) => refused(failure),
+    })
 }
 
 /// The preset that a profile's text names.

@@ -76,8 +76,8 @@ pub(crate) fn run(options: &PhysicsOptions) -> Result<u8, Failure> {
         print_hint(&format!("plot written to {}", path.display()));
     }
     if options.json {
-        let rows = answer.rows(|of| physics_name(of, units));
-        print_answer(&json::text(&json::in_si(&rows)))
+        let answer = answer.for_programs(&profile, |of| physics_name(of, units));
+        print_answer(&json::text(&json::document(&answer, units)))
     } else {
         let is_moved = options.profile.place.is_given();
         print_prose(&physics_text(&answer, &profile, is_moved))

@@ -2,6 +2,9 @@
 //! several distances.
 
 use super::table::KindArg;
+use crate::answers::csv::csv;
+use crate::answers::json::document;
+use crate::answers::shots::PitchCurveAnswer;
 use crate::best_shot::{MOST_NODES, ShotAtPitch, TableKind, best_by_pitch};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder::{self, OverDraws};
@@ -17,9 +20,10 @@ use crate::fitting::{AngleOverDraws, nominal_of};
 use crate::plots;
 use crate::plots::best_by_pitch::UsualShot;
 use crate::plots::svg::Plot;
-use crate::present::shot_table_files::by_pitch::{by_pitch_csv, by_pitch_json, by_pitch_text};
+use crate::present::shot_table_files::by_pitch::by_pitch_text;
+use crate::present::shot_table_files::notes::physics_note;
 use crate::present::shot_table_files::pitch_over_distances::{
-    DistanceShots, pitch_over_distances_csv, pitch_over_distances_json, pitch_over_distances_text,
+    DistanceShots, pitch_over_distances_text,
 };
 use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile, SearchSettings};
@@ -168,6 +172,11 @@ impl<'a> Curve<'a> {
         self.draws.as_ref().map_or(&[], |(.., over)| &over.angles)
     }
 
+    fn answer(&self) -> PitchCurveAnswer {
+        let physics = physics_note(self.profile, self.units());
+        PitchCurveAnswer::new(&self.rows, self.angles(), self.kind, self.profile, physics)
+    }
+
     fn plot(&self) -> Option<Plot> {
         let rows = (&self.rows[..], self.angles());
         plots::best_by_pitch::draw(self.profile, self.kind, rows, (self.usual, self.units()))
@@ -211,23 +220,11 @@ impl Rendered for Curve<'_> {
     }
 
     fn json(&self) -> Value {
-        by_pitch_json(
-            &self.rows,
-            self.angles(),
-            self.kind,
-            self.profile,
-            self.units(),
-        )
+        document(&self.answer(), self.units())
     }
 
     fn csv(&self) -> String {
-        by_pitch_csv(
-            &self.rows,
-            self.angles(),
-            self.kind,
-            self.profile,
-            self.units(),
-        )
+        csv(&self.answer().shots, self.units())
     }
 }
 
@@ -238,17 +235,32 @@ struct Curves {
     units: UnitSystem,
 }
 
+impl Curves {
+    fn answers(&self) -> Vec<PitchCurveAnswer> {
+        let answer = |from: &DistanceShots| {
+            let profile = &from.profile;
+            let physics = physics_note(profile, self.units);
+            PitchCurveAnswer::new(&from.shots, &[], self.kind, profile, physics)
+                .from_distance(profile.location().distance_m)
+        };
+        self.from.iter().map(answer).collect()
+    }
+}
+
 impl Rendered for Curves {
     fn text(&self) -> String {
         pitch_over_distances_text(&self.from, self.kind, self.units)
     }
 
     fn json(&self) -> Value {
-        pitch_over_distances_json(&self.from, self.kind, self.units)
+        let answers = self.answers();
+        let documents = answers.iter().map(|answer| document(answer, self.units));
+        documents.collect()
     }
 
     fn csv(&self) -> String {
-        pitch_over_distances_csv(&self.from, self.kind, self.units)
+        let rows = self.answers().into_iter().flat_map(|answer| answer.shots);
+        csv(&rows.collect::<Vec<_>>(), self.units)
     }
 }
 

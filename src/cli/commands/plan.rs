@@ -1,6 +1,8 @@
 //! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
 
 use super::plan_sweep_time_and_memory;
+use crate::answers::checks::PlanAnswer;
+use crate::answers::json::{self, Provenance};
 use crate::cli::config_files::read_text;
 use crate::cli::failure::Failure;
 use crate::cli::loaded_profile::load_profile;
@@ -8,7 +10,6 @@ use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::BatchWorkspace;
 use crate::math::evenly_spaced::CellAxis;
-use crate::present::json_object::{number, object, provenance};
 use crate::probability::MAX_BATCH_BYTES;
 use crate::search_space::{TablePlan, WideSample, sample_wide};
 use crate::shooter::{Nominal, Profile};
@@ -60,7 +61,11 @@ pub(crate) fn run(options: &PlanOptions) -> Result<u8, Failure> {
     let plan = TablePlan::for_search(&profile)?;
     let forecast = forecast(&profile, &plan, options.wide_sample);
     if options.json {
-        return print_answer(&json(&profile, &plan, &forecast)?);
+        let answer = answer(&profile, plan, &forecast);
+        return print_answer(&json::text(&json::document(
+            &answer,
+            profile.output().units,
+        )));
     }
     let misses_makes = forecast
         .wide_sample
@@ -101,23 +106,17 @@ fn forecast(profile: &Profile, plan: &TablePlan, wide_sample: u64) -> Forecast {
     }
 }
 
-fn json(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> Result<String, Failure> {
-    let mut record = provenance(profile.hash());
-    let plan = serde_json::to_value(plan).map_err(Failure::bug)?;
-    let wide_sample = serde_json::to_value(forecast.wide_sample).map_err(Failure::bug)?;
-    let (middle, edge) = forecast.mass_outside;
-    record.extend([
-        ("plan".to_owned(), plan),
-        ("forecast_s".to_owned(), number(forecast.seconds)),
-        (
-            "memory_bytes".to_owned(),
-            number(forecast.memory_bytes.round()),
-        ),
-        ("wide_sample".to_owned(), wide_sample),
-        ("mass_outside_middle".to_owned(), number(middle)),
-        ("mass_outside_edge".to_owned(), number(edge)),
-    ]);
-    Ok(format!("{:#}\n", object(record)))
+fn answer(profile: &Profile, plan: TablePlan, forecast: &Forecast) -> PlanAnswer {
+    let (mass_outside_middle, mass_outside_edge) = forecast.mass_outside;
+    PlanAnswer {
+        provenance: Provenance::of(profile),
+        plan,
+        forecast_s: forecast.seconds,
+        memory_bytes: forecast.memory_bytes.round(),
+        wide_sample: forecast.wide_sample,
+        mass_outside_middle,
+        mass_outside_edge,
+    }
 }
 
 fn text(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> String {

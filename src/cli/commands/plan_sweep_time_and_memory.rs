@@ -1,16 +1,16 @@
 //! `bankshot plan` of a sweep: jobs, time, memory and disk.
 
+use crate::answers::checks::SweepPlanAnswer;
+use crate::answers::json;
 use crate::cli::config_files::load_sweep;
 use crate::cli::failure::Failure;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, time_in_words};
-use crate::present::json_object::{number, object, provenance};
 use crate::probability::MAX_BATCH_BYTES;
 use crate::search_space::{PlanError, TablePlan};
 use crate::sweep::SweepConfig;
 use crate::sweep::job_list::Jobs;
 use crate::sweep::run::mean_spot_time_s;
-use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;
 
@@ -44,17 +44,20 @@ pub(crate) fn run(path: &Path, as_json: bool) -> Result<u8, Failure> {
         + MEMORY_BYTES_PER_JOB * jobs.count() as f64
         + PROGRAM_BYTES;
     if as_json {
-        let mut record = provenance(&config.hash()?);
-        record.extend([
-            ("places".to_owned(), jobs.sources.len().into()),
-            ("computed_places".to_owned(), spots.into()),
-            ("jobs".to_owned(), jobs.count().into()),
-            ("forecast_s".to_owned(), seconds.map_or(Value::Null, number)),
-            ("threads".to_owned(), threads.into()),
-            ("memory_bytes".to_owned(), number(memory.round())),
-            ("disk_bytes".to_owned(), number(disk.round())),
-        ]);
-        return print_answer(&format!("{:#}\n", object(record)));
+        let answer = SweepPlanAnswer {
+            provenance: config.provenance()?,
+            places: jobs.sources.len(),
+            computed_places: spots,
+            jobs: jobs.count(),
+            forecast_s: seconds,
+            threads,
+            memory_bytes: memory.round(),
+            disk_bytes: disk.round(),
+        };
+        return print_answer(&json::text(&json::document(
+            &answer,
+            config.settings.output.units,
+        )));
     }
     let time = seconds.map_or("unknown".to_owned(), |seconds| {
         format!(

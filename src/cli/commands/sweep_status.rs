@@ -1,6 +1,8 @@
 //! `bankshot status`, `missing` and `verify`: the state of a sweep's folder.
 
 use super::sweep_summary::{exit_code, job_summary, missing_shards};
+use crate::answers::json;
+use crate::answers::sweep_status::{JobCounts, StatusAnswer, StoreStatus, VerifyAnswer};
 use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_prose};
@@ -13,7 +15,6 @@ use crate::sweep::run::compute_jobs;
 use crate::sweep::sweep_folder::SweepFolder;
 use crate::sweep::{SweepConfig, is_locked, sqlite_results};
 use clap::Args;
-use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -58,12 +59,13 @@ pub(crate) fn status(options: &StatusOptions) -> Result<u8, Failure> {
         let (computed, seconds) = sqlite_results::job_times(&store);
         let is_running = is_locked(&store.with_extension("lock"));
         let running = if is_running { ", running" } else { "" };
-        stores.push(json!({
-            "file": store.file_name().unwrap_or_default().to_string_lossy(),
-            "computed": computed,
-            "thread_seconds": seconds,
-            "is_running": is_running,
-        }));
+        let file = store.file_name().unwrap_or_default().to_string_lossy();
+        stores.push(StoreStatus {
+            file: file.into_owned(),
+            computed,
+            thread_seconds: seconds,
+            is_running,
+        });
         text.push_str(&format!(
             "{}: {computed} jobs, {:.2} s each{running}\n",
             store.file_name().unwrap_or_default().display(),
@@ -74,11 +76,17 @@ pub(crate) fn status(options: &StatusOptions) -> Result<u8, Failure> {
         text.push_str(&format!("remark: {}\n", one_line(remark)));
     }
     if options.json {
-        let mut answer = jobs_json(&jobs, &rows);
-        answer["sweep"] = config.name.clone().into();
-        answer["stores"] = stores.into();
-        answer["remarks"] = texts(&remarks);
-        print_answer(&format!("{answer:#}\n"))?;
+        let answer = StatusAnswer {
+            jobs: job_counts(&jobs, &rows),
+            sweep: config.name.clone(),
+            stores,
+            remarks: remarks.iter().map(ToString::to_string).collect(),
+            provenance: config.provenance()?,
+        };
+        print_answer(&json::text(&json::document(
+            &answer,
+            config.settings.output.units,
+        )))?;
     } else {
         print_prose(&text)?;
     }
@@ -143,12 +151,18 @@ pub(crate) fn verify(options: &VerifyOptions) -> Result<u8, Failure> {
         text.push_str("incomplete; run the sweep's command again to compute the rest\n");
     }
     if options.json {
-        let mut answer = jobs_json(&jobs, &rows);
-        answer["damaged"] = texts(&remarks);
-        answer["damaged_tables"] = texts(&wrong_tables);
-        answer["recomputed"] = recomputed.into();
-        answer["differing_jobs"] = differing.clone().into();
-        print_answer(&format!("{answer:#}\n"))?;
+        let answer = VerifyAnswer {
+            jobs: job_counts(&jobs, &rows),
+            damaged: remarks.iter().map(ToString::to_string).collect(),
+            damaged_tables: wrong_tables.clone(),
+            recomputed,
+            differing_jobs: differing.clone(),
+            provenance: config.provenance()?,
+        };
+        print_answer(&json::text(&json::document(
+            &answer,
+            config.settings.output.units,
+        )))?;
     } else {
         print_prose(&text)?;
     }
@@ -183,22 +197,18 @@ fn wrong_tables(
 }
 
 /// How many jobs there are, and how many ended how.
-fn jobs_json(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Value {
+fn job_counts(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> JobCounts {
     let count = |status| {
         let with = rows.values().filter(|row| row.status() == Some(status));
         with.count()
     };
-    json!({
-        "jobs": jobs.count(),
-        "done": rows.len(),
-        "found": count(JobStatus::Found),
-        "without_shot": count(JobStatus::NoShot),
-        "failed": count(JobStatus::Failed),
-    })
-}
-
-fn texts(remarks: &[impl ToString]) -> Value {
-    remarks.iter().map(ToString::to_string).collect()
+    JobCounts {
+        jobs: jobs.count(),
+        done: rows.len(),
+        found: count(JobStatus::Found),
+        without_shot: count(JobStatus::NoShot),
+        failed: count(JobStatus::Failed),
+    }
 }
 
 /// Computes some jobs again; returns those whose result differs.

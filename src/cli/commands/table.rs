@@ -1,5 +1,8 @@
 //! `bankshot table`: best shots for a grid of places, for a machine.
 
+use crate::answers::csv::csv;
+use crate::answers::json::{self, document};
+use crate::answers::shots::place_rows;
 use crate::best_shot::{
     ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
 };
@@ -13,9 +16,9 @@ use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_remark, tim
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::files::atomic_file;
-use crate::present::shot_table_files::csv_json::{table_csv, table_json};
 use crate::present::shot_table_files::notes;
 use crate::present::shot_table_files::source_code::{Language, namespace_of, source_code};
+use crate::present::shot_table_files::table_answer::table_answer;
 use crate::present::shot_table_files::table_text::table_text;
 use crate::present::shot_table_files::unfinished::UnfinishedTable;
 use crate::shooter::{Location, NominalVariable, Profile};
@@ -215,8 +218,11 @@ fn write(outputs: &[Output], table: &ShotTable, profile: &Profile) -> Result<(),
         let source = |language| source_code(table, (language, &output.class), (profile, units));
         let text = match output.format {
             TableFormat::Text => table_text(table, profile, units),
-            TableFormat::Csv => table_csv(table, units),
-            TableFormat::Json => format!("{:#}\n", table_json(table, profile, units)),
+            TableFormat::Csv => csv(&place_rows(table), units),
+            TableFormat::Json => {
+                let answer = table_answer(table, profile, units);
+                json::text(&document(&answer, units))
+            }
             TableFormat::Java => source(Language::Java),
             TableFormat::Cpp => source(Language::Cpp),
             TableFormat::Python => source(Language::Python),

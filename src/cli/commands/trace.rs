@@ -1,20 +1,22 @@
 //! `bankshot trace`: one shot with its events, its trajectory and a plot.
 
-use super::trace_text::{outcome_text, trace_csv, trace_json, trace_text};
+use super::trace_text::{outcome_text, trace_text};
+use crate::answers::csv::csv;
+use crate::answers::json::{self, document};
+use crate::answers::requests::INTERVAL_S;
+use crate::answers::trace::{TraceAnswer, points};
 use crate::cli::failure::{Failure, code};
-use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::nominal_shot_flags::{NominalOptions, print_notes};
 use crate::cli::plot_files;
 use crate::cli::profile_flags::ProfileOptions;
-use crate::cli::terminal::{
-    is_quiet, print_answer, print_bytes, print_hint, print_prose, print_remark,
-};
+use crate::cli::terminal::{print_answer, print_bytes, print_hint, print_prose};
 use crate::dynamics::{Release, Trace};
 use crate::files::atomic_file;
 use crate::plots::shot_views::{self, MADE_COLOUR, MISSED_COLOUR, ShotPath};
 use crate::plots::svg::shortened;
 use crate::probability::Sampler;
 use crate::shooter::{Nominal, Profile};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -48,8 +50,6 @@ pub(crate) struct TraceOptions {
     pub(crate) json: bool,
 }
 
-/// Spacing of the trajectory in flight, s.
-const INTERVAL_S: f64 = 0.005;
 /// Colour of the error-free shot among others.
 const BLACK: &str = "#000000";
 
@@ -57,14 +57,10 @@ pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
     let profile = options.profile.load(&[])?.profile;
     let units = profile.output().units;
     let nominal = options.nominal.resolve(&profile)?;
-    if !is_quiet() {
-        for warning in options.nominal.warnings_of_flags(&profile, &nominal) {
-            print_remark(&warning);
-        }
-    }
+    print_notes(options.nominal.request().notes(&profile, &nominal));
     let trace = trace_of(&profile, &profile.release(&nominal))?;
     if let Some(path) = &options.output {
-        let bytes = trace_csv(&trace, units);
+        let bytes = csv(&points(&trace), units).into_bytes();
         if path == Path::new("-") {
             return print_bytes(&bytes);
         }
@@ -73,7 +69,7 @@ pub(crate) fn run(options: &TraceOptions) -> Result<u8, Failure> {
     if let Some(path) = &options.plot {
         write_plot(path, options.swarm, &profile, &nominal, &trace)?;
     }
-    print(&trace, units, options.json)?;
+    print(&profile, &trace, options.json)?;
     if let Some(path) = &options.plot {
         print_hint(&format!("plot written to {}", path.display()));
     }
@@ -90,12 +86,14 @@ fn trace_of(profile: &Profile, release: &Release) -> Result<Trace, Failure> {
 /// Prints the trace of one release.
 pub(crate) fn show(profile: &Profile, release: &Release, as_json: bool) -> Result<u8, Failure> {
     let trace = trace_of(profile, release)?;
-    print(&trace, profile.output().units, as_json)
+    print(profile, &trace, as_json)
 }
 
-fn print(trace: &Trace, units: UnitSystem, as_json: bool) -> Result<u8, Failure> {
+fn print(profile: &Profile, trace: &Trace, as_json: bool) -> Result<u8, Failure> {
+    let units = profile.output().units;
     if as_json {
-        print_answer(&format!("{:#}\n", trace_json(trace, units)))
+        let answer = TraceAnswer::new(profile, trace);
+        print_answer(&json::text(&document(&answer, units)))
     } else {
         print_prose(&trace_text(trace, units))
     }

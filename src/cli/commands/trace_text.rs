@@ -1,10 +1,7 @@
-//! The trace of a shot as text, JSON and CSV.
+//! The trace of a shot as text.
 
 use crate::dynamics::{Ending, EventKind, Outcome, OutcomeKind, Trace};
-use crate::math::vector::Vec3;
-use crate::model::SolidId;
-use crate::present::json_object::{number, object};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, UnitSystem};
 use std::fmt::Write;
 
 /// The outcome of a shot as text.
@@ -94,89 +91,4 @@ fn ending_text(ending: Ending) -> &'static str {
         Ending::TimeLimit => "time limit",
         Ending::Unresolved => "gave up",
     }
-}
-
-/// The outcome and the events of a shot as JSON.
-pub(crate) fn trace_json(trace: &Trace, units: UnitSystem) -> serde_json::Value {
-    let (long, metre) = units.length();
-    let outcome = &trace.outcome;
-    let vector = |v: Vec3<f64>| {
-        let components: [f64; 3] = v.into();
-        serde_json::Value::Array(components.map(|x| number(x / metre)).to_vec())
-    };
-    let events = trace.events.iter().map(|event| {
-        let mut record = vec![
-            ("time_s".to_owned(), number(event.time_s)),
-            (format!("position_{long}"), vector(event.state.position_m)),
-            (
-                format!("velocity_{long}_s"),
-                vector(event.state.velocity_m_s),
-            ),
-        ];
-        let name = match event.kind {
-            EventKind::Release => "release".to_owned(),
-            EventKind::Touch(solid) => format!("touch {}", solid.name()),
-            EventKind::Part {
-                solid,
-                impulse_n_s,
-                duration_s,
-            } => {
-                record.push(("duration_s".to_owned(), number(duration_s)));
-                let impulse: [f64; 3] = impulse_n_s.into();
-                record.push((
-                    "impulse_n_s".to_owned(),
-                    impulse.map(number).to_vec().into(),
-                ));
-                format!("leave {}", solid.name())
-            }
-            EventKind::End => "end".to_owned(),
-        };
-        record.insert(0, ("event".to_owned(), name.into()));
-        object(record)
-    });
-    object(vec![
-        ("made".to_owned(), outcome.verdict.made.into()),
-        ("kind".to_owned(), outcome.kind.name().into()),
-        (
-            "contacts".to_owned(),
-            outcome.verdict.contacts.to_string().into(),
-        ),
-        ("flight_time_s".to_owned(), number(outcome.verdict.time_s)),
-        (
-            format!("apex_above_ring_{long}"),
-            number(outcome.apex_m / metre),
-        ),
-        (
-            "entry_angle_deg".to_owned(),
-            outcome.entry.map_or(serde_json::Value::Null, |e| {
-                number(e.angle_rad / DEGREE_RAD)
-            }),
-        ),
-        ("events".to_owned(), events.collect::<Vec<_>>().into()),
-    ])
-}
-
-/// The trajectory of a shot as CSV.
-pub(crate) fn trace_csv(trace: &Trace, units: UnitSystem) -> Vec<u8> {
-    let (long, metre) = units.length();
-    let mut text = format!(
-        "time_s,x_{long},y_{long},z_above_ring_{long},vx_{long}_s,vy_{long}_s,vz_{long}_s,spin_x_rev_s,spin_y_rev_s,spin_z_rev_s,on_board,on_ring\n"
-    );
-    for sample in &trace.samples {
-        let _ = write!(text, "{}", sample.time_s);
-        let [x, y, z, vx, vy, vz, wx, wy, wz] = sample.state.to_array();
-        for value in [x, y, z, vx, vy, vz] {
-            let _ = write!(text, ",{}", value / metre);
-        }
-        for value in [wx, wy, wz] {
-            let _ = write!(text, ",{}", value / REV_RAD);
-        }
-        let _ = writeln!(
-            text,
-            ",{},{}",
-            u8::from(sample.touches(SolidId::Board)),
-            u8::from(sample.touches(SolidId::Ring))
-        );
-    }
-    text.into_bytes()
 }

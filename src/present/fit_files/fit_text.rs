@@ -1,10 +1,11 @@
 //! The answer of `fit` for people.
 
-use super::fit_json::{FitSource, constant_errors_of};
+use super::fit_note_text::{fit_note_text, p_value};
+use crate::answers::fit::FitSource;
 use crate::fitting::{
-    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, p_value,
-    values_at_height,
+    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, values_at_height,
 };
+use crate::measured_shots::source::Source;
 use crate::store::parameters::{parameters, value_units};
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
 
@@ -48,9 +49,13 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     };
     let mut text = format!(
         "{name}: {} {}, tracker {} ({}), physics {}\n",
-        posterior.shots, source.kind, source.tracker.0, source.tracker.1, source.physics
+        posterior.shots,
+        source.kind.name(),
+        source.tracker.0,
+        source.tracker.1,
+        source.physics
     );
-    if source.kind == "landings" {
+    if source.kind == Source::Landings {
         let (unit, size) = units.short_length();
         text += &format!(
             "depth   counted from the front of the ring: {:.1} {unit} is its centre\n",
@@ -71,7 +76,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             place.release_height_m / metre,
             probability_text(p)
         );
-        if source.kind == "trajectories" {
+        if source.kind == Source::Trajectories {
             text += &at_another_height(fit, index, units);
         }
     }
@@ -156,7 +161,8 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
         "\n{:<24} {:>9} {:>9} {:>9}  {:<5} {}\n",
         "", "mean", "2.5 %", "97.5 %", "unit", "source"
     );
-    for parameter in parameters(posterior, source.kind, units) {
+    for parameter in parameters(posterior, source.kind.name()) {
+        let parameter = parameter.in_results(units);
         let interval = &parameter.interval;
         text += &format!(
             "{:<24} {:>9.3} {:>9.3} {:>9.3}  {:<5} {}\n",
@@ -164,7 +170,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
             interval.mean,
             interval.low,
             interval.high,
-            parameter.unit,
+            parameter.unit.name(),
             parameter.source
         );
     }
@@ -180,8 +186,8 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
     text += &tests_text(fit);
     text += "The intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.";
     text += &of_constant_error(fit, source, units);
-    for warning in &fit.warnings {
-        text += &format!("warning: {warning}\n");
+    for note in &fit.notes {
+        text += &format!("warning: {}\n", fit_note_text(note));
     }
     text
 }
@@ -189,7 +195,7 @@ pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> 
 /// That a constant error of the tracker is in no interval, and what one of the size of its noise
 /// would do where releases were measured.
 fn of_constant_error(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
-    let errors = constant_errors_of(fit, source);
+    let errors = source.constant_errors(fit);
     if errors.is_empty() {
         return " They leave out a constant error of the tracker too.\n".to_owned();
     }
@@ -233,7 +239,7 @@ pub fn tests_text(fit: &ShooterFit) -> String {
                 .spreads_p
                 .map(|p| ("unequal scatter of the sessions", p)),
         ]
-        .map(|test| test.map(|(what, p)| (what, trend.name, p)))
+        .map(|test| test.map(|(what, p)| (what, trend.of.name(), p)))
     });
     let all: Vec<_> = all.flatten().collect();
     let least = all.iter().min_by(|a, b| a.2.total_cmp(&b.2));

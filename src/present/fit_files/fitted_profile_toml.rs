@@ -1,9 +1,10 @@
 //! `profile.toml`: the fitted profile, each value with what is known of it.
 
-use super::fit_json::FitSource;
+use super::fit_note_text::fit_note_text;
+use crate::answers::fit::FitSource;
 use crate::fitting::{PlaceScatter, ShooterFit, SpinSource, VALUE_NAMES};
-use crate::store::parameters::{mean_name, parameters, value_units};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::store::parameters::{Parameter, mean_name, parameters, value_units};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitName, UnitSystem};
 
 /// The text of the profile at a place, by its index. `physics` is the text of its `[physics]`
 /// table.
@@ -16,16 +17,17 @@ pub fn fitted_profile_toml(
     units: UnitSystem,
 ) -> String {
     let (long, metre) = units.length();
-    let listed = parameters(&fit.posterior, source.kind, units);
+    let listed = parameters(&fit.posterior, source.kind.name()).into_iter();
+    let listed: Vec<Parameter> = listed.map(|found| found.in_results(units)).collect();
     let has_several_places = fit.places.len() > 1;
     let comment = |name: &str| {
         let found = listed.iter().find(|parameter| parameter.name == name);
         found.map_or_else(String::new, |parameter| {
             let interval = &parameter.interval;
-            let unit = if parameter.unit.is_empty() {
+            let unit = if parameter.unit == UnitName::None {
                 String::new()
             } else {
-                format!(" {}", parameter.unit)
+                format!(" {}", parameter.unit.name())
             };
             format!(
                 "# {}: {:.3}{unit}, 95 % {:.3} to {:.3}, {}",
@@ -44,7 +46,7 @@ pub fn fitted_profile_toml(
     line(format!(
         "# Fitted by `bankshot fit` to {} {} of {}.",
         fit.posterior.shots,
-        source.kind,
+        source.kind.name(),
         quoted(&source.file)
     ));
     line(format!(
@@ -63,8 +65,8 @@ pub fn fitted_profile_toml(
             }
         ));
     }
-    for warning in &fit.warnings {
-        line(format!("# Warning: {warning}."));
+    for note in &fit.notes {
+        line(format!("# Warning: {}.", fit_note_text(note)));
     }
     line(String::new());
     line("[shooter]".to_owned());

@@ -2,9 +2,8 @@
 
 pub mod advice_for_team;
 pub mod advice_text;
-mod assumptions_json;
 pub mod change_in_words;
-pub mod fit_json;
+pub mod fit_note_text;
 pub mod fit_text;
 pub mod fitted_profile_toml;
 pub mod session_changes_text;

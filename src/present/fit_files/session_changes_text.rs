@@ -1,24 +1,8 @@
 //! What changed between two sessions of a shooter, as text.
 
-use crate::fitting::{
-    Interval, ProbabilityChange, SessionComparison, TWO_SIDED_95, change_of_share,
-};
-use crate::math::normal_distribution::quantile;
+use crate::answers::sessions::{Decision, SessionAnswer, SessionChange, quantile_among};
+use crate::fitting::{Interval, ProbabilityChange, change_of_share};
 use crate::units::with_decimals;
-
-/// What changed in one quantity.
-pub struct SessionChange {
-    /// Such as `P`, `polar_mean`.
-    pub name: String,
-    /// The unit that it is printed in.
-    pub unit: &'static str,
-    /// The size of the unit in SI units.
-    pub size: f64,
-    /// Before and after.
-    pub comparison: SessionComparison,
-    /// The second over the first; of a standard deviation.
-    pub ratio: Option<Interval>,
-}
 
 impl SessionChange {
     /// The name in the table; of a correlation `r speed-pitch`.
@@ -60,45 +44,6 @@ impl SessionChange {
         }
     }
 
-    /// Whether the change is beyond chance although `tested` values were looked at.
-    fn is_certain_among(&self, tested: usize) -> bool {
-        let change = &self.comparison.change;
-        change.mean.abs() > quantile_among(tested) * change.sd
-    }
-
-    /// Whether other draws may turn the verdict on a change among `tested` values.
-    #[must_use]
-    pub fn is_at_the_limit(&self, tested: usize) -> bool {
-        let (z, error) = self.comparison.standard_errors();
-        let decides = match self.name.as_str() {
-            "P" => TWO_SIDED_95,
-            _ => quantile_among(tested),
-        };
-        (z - decides).abs() < 2.0 * error
-    }
-
-    fn is_decided(&self) -> bool {
-        self.comparison.is_decided()
-    }
-
-    /// Whether the change is decided, and else about how many shots in each session would decide
-    /// one of this size: at the 95 % level for P, and with room for the `tested` values that were
-    /// looked at for the others.
-    #[must_use]
-    pub fn decision(&self, tested: usize) -> Decision {
-        let is_p = self.name == "P";
-        let quantile = if is_p {
-            TWO_SIDED_95
-        } else {
-            quantile_among(tested)
-        };
-        match self.comparison.shots_to_decide(quantile) {
-            _ if self.is_decided() && (is_p || self.is_certain_among(tested)) => Decision::Made,
-            Some(shots) => Decision::Needs(shots),
-            None => Decision::Unknown,
-        }
-    }
-
     /// Decimals that show two digits of the change's uncertainty, at most three.
     #[must_use]
     pub fn decimals(&self) -> usize {
@@ -109,33 +54,6 @@ impl SessionChange {
             3
         }
     }
-}
-
-/// Whether a change is beyond chance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Decision {
-    /// It is.
-    Made,
-    /// It is not; about so many shots in each session would decide one of this size.
-    Needs(f64),
-    /// It is less than its own uncertainty, so its size says nothing.
-    Unknown,
-}
-
-/// A change of so many standard errors is beyond chance although `tested` values were looked at
-/// (Bonferroni).
-fn quantile_among(tested: usize) -> f64 {
-    quantile(1.0 - 0.025 / tested as f64)
-}
-
-/// A session.
-pub struct SessionSummary<'a> {
-    /// Its name.
-    pub name: &'a str,
-    /// Its shots.
-    pub shots: usize,
-    /// Made, and all with a result.
-    pub makes: (usize, usize),
 }
 
 /// In points, without a decimal.
@@ -163,17 +81,19 @@ fn without_level(change: &Interval) -> String {
 /// The verdict in words, then the table. The sessions are before and after.
 #[must_use]
 pub fn session_changes_text(
-    sessions: [SessionSummary<'_>; 2],
+    sessions: &[SessionAnswer; 2],
     changes: &[SessionChange],
     causes: &ProbabilityChange,
     tested: usize,
 ) -> String {
-    let makes = sessions.each_ref().map(|session| session.makes);
+    let makes = sessions
+        .each_ref()
+        .map(|session| (session.made, session.with_result));
     let chances = changes.iter().find(|change| change.name == "P");
     let chances = chances.map(|p| [p.comparison.before, p.comparison.after]);
     let [before, after] = [0, 1].map(|i| {
         let session = &sessions[i];
-        let makes = match session.makes {
+        let makes = match makes[i] {
             (_, 0) => String::new(),
             (made, of) => {
                 let percent = 100.0 * made as f64 / of as f64;

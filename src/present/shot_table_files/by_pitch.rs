@@ -1,15 +1,10 @@
 //! The best shots at several pitch angles: for people, as CSV and JSON.
 
-use super::columns::{TableColumn, columns};
 use super::notes::{physics_note, speed_limit_in_words};
 use super::table_text::{both_sides, decimal, line, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
-use crate::fitting::AngleOverDraws;
-use crate::present::fit_files::fit_json::interval_json;
-use crate::present::json_object::{number, object, provenance};
-use crate::shooter::{NominalVariable, Profile, ShotKind};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, rounded};
-use serde_json::Value;
+use crate::shooter::{NominalVariable, Profile};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
 /// A loss of P that the sentence about the angles counts as none.
 const LEVEL: f64 = 0.01;
@@ -266,126 +261,4 @@ fn in_words(
         };
     }
     text
-}
-
-/// The shots as CSV; where no clean shot goes in, the release and P of the most probable one.
-/// P over the draws of a fit may follow, one for each row.
-#[must_use]
-pub fn by_pitch_csv(
-    rows: &[ShotAtPitch],
-    over_draws: &[Option<AngleOverDraws>],
-    kind: TableKind,
-    profile: &Profile,
-    units: UnitSystem,
-) -> String {
-    let columns = other_columns(kind, units);
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    let mut text = format!("kind,pitch_deg,outcome,{}", names.join(","));
-    if !over_draws.is_empty() {
-        text += ",draws_probability_mean,draws_probability_low,draws_probability_high";
-        text += ",draws_less_mean,draws_less_low,draws_less_high";
-    }
-    text += "\n";
-    for (i, row) in rows.iter().enumerate() {
-        let cells: Vec<String> = columns
-            .iter()
-            .map(|column| value_of(row, column, profile))
-            .map(|value| match value.filter(|value| value.is_finite()) {
-                Some(value) => rounded(value).to_string(),
-                None => String::new(),
-            })
-            .collect();
-        text += &format!(
-            "{},{},{},{}",
-            kind_of(row).map_or(kind.name(), ShotKind::name),
-            pitch_deg(row),
-            outcome(row).unwrap_or_default(),
-            cells.join(",")
-        );
-        text += &match over_draws.get(i) {
-            None => String::new(),
-            Some(None) => ",".repeat(6),
-            Some(Some(AngleOverDraws { probability, less })) => {
-                let cells = [probability, less]
-                    .map(|over| format!(",{:.5},{:.5},{:.5}", over.mean, over.low, over.high));
-                cells.concat()
-            }
-        };
-        text += "\n";
-    }
-    text
-}
-
-/// The shots as one JSON object. P over the draws of a fit may be in it, one for each row.
-#[must_use]
-pub fn by_pitch_json(
-    rows: &[ShotAtPitch],
-    over_draws: &[Option<AngleOverDraws>],
-    kind: TableKind,
-    profile: &Profile,
-    units: UnitSystem,
-) -> Value {
-    let columns = other_columns(kind, units);
-    let named = |name: &str, value: Value| (name.to_owned(), value);
-    let shots = rows.iter().enumerate().map(|(i, row)| {
-        let mut record = vec![
-            named("pitch_deg", number(pitch_deg(row))),
-            named("has_shot", row.shot.is_some().into()),
-            named("kind", kind_of(row).map(ShotKind::name).into()),
-            named("outcome", outcome(row).into()),
-        ];
-        record.extend(columns.iter().map(|column| {
-            let value = value_of(row, column, profile).map_or(Value::Null, number);
-            (column.name.clone(), value)
-        }));
-        if let Some(angle) = over_draws.get(i) {
-            let value = angle.as_ref().map_or(Value::Null, |angle| {
-                object(vec![
-                    named("probability", object(interval_json(&angle.probability))),
-                    named("less", object(interval_json(&angle.less))),
-                ])
-            });
-            record.push(named("over_draws", value));
-        }
-        object(record)
-    });
-    let mut record = provenance(profile.hash());
-    record.extend([
-        named("physics", physics_note(profile, units).into()),
-        named("kind", kind.name().into()),
-        named("shots", shots.collect()),
-    ]);
-    object(record)
-}
-
-/// The columns after the pitch angle, which comes first, also where there is no shot.
-fn other_columns(kind: TableKind, units: UnitSystem) -> Vec<TableColumn> {
-    let mut columns = columns(kind, units);
-    columns.retain(|column| column.name != "pitch_deg");
-    columns
-}
-
-/// The value of the shot, or of the most probable one where no clean one goes in.
-fn value_of(row: &ShotAtPitch, column: &TableColumn, profile: &Profile) -> Option<f64> {
-    match &row.shot {
-        Some(shot) => Some(column.of(shot)),
-        None => column.of_not_clean(&row.not_clean?, profile),
-    }
-}
-
-/// The kind of the shot, or of the most probable one that misses without errors.
-fn kind_of(row: &ShotAtPitch) -> Option<ShotKind> {
-    let clean = row.shot.as_ref().map(|shot| shot.kind);
-    clean.or(row.not_clean.map(|shot| shot.kind))
-}
-
-/// The outcome of the shot without errors; `not-clean` where the most probable one misses.
-fn outcome(row: &ShotAtPitch) -> Option<&'static str> {
-    let clean = row.shot.as_ref().map(|shot| shot.outcome.name());
-    clean.or(row.not_clean.map(|_| "not-clean"))
-}
-
-/// The pitch angle without what its conversion cost in the last digits, deg.
-fn pitch_deg(row: &ShotAtPitch) -> f64 {
-    (row.pitch_rad / DEGREE_RAD * 1e9).round() / 1e9
 }

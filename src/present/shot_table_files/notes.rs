@@ -67,7 +67,7 @@ pub(super) fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSyst
 
 /// Ball, hoop and air, so that tables for two balls can be told apart.
 #[must_use]
-pub(super) fn physics_note(profile: &Profile, units: UnitSystem) -> String {
+pub fn physics_note(profile: &Profile, units: UnitSystem) -> String {
     let physics = profile.physics();
     let (unit, size) = units.short_length();
     let air = if physics.air.density_kg_m3 > 0.0 {

@@ -1,13 +1,12 @@
 //! The best shots at several pitch angles from several distances: which one pitch angle suits a
 //! launcher whose angle is fixed.
 
-use super::by_pitch::{by_pitch_csv, by_pitch_json, kind_before_shot};
+use super::by_pitch::kind_before_shot;
 use super::notes::{has_no_reserve, physics_note, speed_limit_in_words};
 use super::table_text::{decimal, line, wrapped};
 use crate::best_shot::{ShotAtPitch, TableKind};
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, UnitSystem};
-use serde_json::{Value, json};
 
 /// The shots from one distance, one for each pitch angle. All distances have the same angles.
 #[derive(Clone, Debug)]
@@ -268,43 +267,4 @@ pub fn pitch_over_distances_text(
         }
     }
     text
-}
-
-/// The shots as CSV: the rows of [`by_pitch_csv`] with the distance before them.
-#[must_use]
-pub fn pitch_over_distances_csv(
-    from: &[DistanceShots],
-    kind: TableKind,
-    units: UnitSystem,
-) -> String {
-    let mut text = String::new();
-    for shots in from {
-        let csv = by_pitch_csv(&shots.shots, &[], kind, &shots.profile, units);
-        let mut lines = csv.lines();
-        let header = lines.next().unwrap_or_default();
-        if text.is_empty() {
-            text += &format!("distance_{},{header}\n", units.length().0);
-        }
-        for row in lines {
-            text += &format!("{},{row}\n", shots.distance(units));
-        }
-    }
-    text
-}
-
-/// The shots as JSON: an array with the object of [`by_pitch_json`] for each distance.
-#[must_use]
-pub fn pitch_over_distances_json(
-    from: &[DistanceShots],
-    kind: TableKind,
-    units: UnitSystem,
-) -> Value {
-    let key = format!("distance_{}", units.length().0);
-    from.iter()
-        .map(|shots| {
-            let mut object = by_pitch_json(&shots.shots, &[], kind, &shots.profile, units);
-            object[&key] = json!(shots.distance(units));
-            object
-        })
-        .collect()
 }

@@ -1,10 +1,9 @@
 //! A table of best shots for people, at most 80 columns wide.
 
-use super::columns::{TableNode, columns, nodes};
 use super::notes::{notes, physics_note, shooter_note, speed_limit_in_words, what_shots};
 use crate::best_shot::{ShotTable, TableShot};
 use crate::shooter::Profile;
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, rounded};
 
 /// A column of the text: two lines of header, a width, and what it says of a shot.
 struct TextColumn {
@@ -24,30 +23,32 @@ fn has_one_angle(table: &ShotTable) -> bool {
 fn shot_columns(table: &ShotTable, units: UnitSystem) -> Vec<TextColumn> {
     let (long, metre) = units.length();
     let speed_unit = format!("{long}/s");
-    // They are the first columns of the CSV.
-    let titles = [
-        ("speed", speed_unit.as_str(), 5),
-        ("pitch", "deg", 5),
-        ("aim", "deg", 6),
-        ("spin", "rev/s", 5),
-        ("time", "s", 4),
-        ("entry", "deg", 5),
-        ("P", "", 5),
-    ];
     let column = |name, unit: &str, width, cell| TextColumn {
         name,
         unit: unit.to_owned(),
         width,
         cell,
     };
-    let mut shown: Vec<TextColumn> = titles
-        .into_iter()
-        .zip(columns(table.kind, units))
-        .map(|((name, unit, width), shown)| {
-            let cell = move |shot: &TableShot| decimal(shown.of(shot), shown.decimals);
-            column(name, unit, width, Box::new(cell))
-        })
-        .collect();
+    let value = |name, unit: &str, width, decimals, value: fn(&TableShot) -> f64, size| {
+        let cell = move |shot: &TableShot| decimal(value(shot) / size, decimals);
+        column(name, unit, width, Box::new(cell))
+    };
+    let mut shown = vec![
+        value("speed", &speed_unit, 5, 2, |s| s.nominal.speed_m_s, metre),
+        value("pitch", "deg", 5, 1, |s| s.nominal.pitch_rad, DEGREE_RAD),
+        value("aim", "deg", 6, 2, |s| s.aim_rad, DEGREE_RAD),
+        value("spin", "rev/s", 5, 2, |s| s.nominal.backspin_rad_s, REV_RAD),
+        value("time", "s", 4, 2, |s| s.time_s.unwrap_or(f64::NAN), 1.0),
+        value(
+            "entry",
+            "deg",
+            5,
+            1,
+            |s| s.entry_rad.unwrap_or(f64::NAN),
+            DEGREE_RAD,
+        ),
+        value("P", "", 5, 3, |s| s.probability, 1.0),
+    ];
     let speed_sides = move |shot: &TableShot| shot.tolerances[0].map(|side| side / metre);
     let pitch_sides = |shot: &TableShot| shot.tolerances[1].map(|side| side / DEGREE_RAD);
     if has_one_angle(table) {
@@ -67,6 +68,30 @@ fn shot_columns(table: &ShotTable, units: UnitSystem) -> Vec<TextColumn> {
     let outcome = |shot: &TableShot| shot.outcome.name().to_owned();
     shown.push(column("goes in", "", 0, Box::new(outcome)));
     shown
+}
+
+/// A node.
+struct TableNode<'a> {
+    /// In units of the results.
+    distance: f64,
+    /// Court angle, deg.
+    angle: f64,
+    is_added: bool,
+    shot: Option<&'a TableShot>,
+}
+
+/// The nodes, angle by angle.
+fn nodes(table: &ShotTable, units: UnitSystem) -> impl Iterator<Item = TableNode<'_>> {
+    let metre = units.length().1;
+    (0..table.angles_rad.len()).flat_map(move |a| {
+        (0..table.distances_m.len()).map(move |d| TableNode {
+            distance: rounded(table.distances_m[d] / metre),
+            angle: rounded(table.angles_rad[a] / DEGREE_RAD),
+            is_added: table.added_distances_m.contains(&table.distances_m[d])
+                || table.added_angles_rad.contains(&table.angles_rad[a]),
+            shot: table.at(a, d),
+        })
+    })
 }
 
 /// The table for people, at most 80 columns wide.

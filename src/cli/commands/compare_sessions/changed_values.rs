@@ -1,18 +1,15 @@
 //! What changed between two fitted sessions.
 
 use super::fitted_sessions::Session;
+use crate::answers::sessions::{Decision, SessionChange};
 use crate::cli::failure::Failure;
 use crate::fitting::{
-    Interval, ProbabilityChange, SessionComparison, SpinSource, VALUE_NAMES, change_of_share,
-    compare_probabilities, compare_sessions, probability_change,
+    Interval, ProbabilityChange, SessionComparison, SpinSource, VALUE_NAMES, compare_probabilities,
+    compare_sessions, probability_change,
 };
 use crate::plots::session_changes::{ChangeCause, ChangedValue};
-use crate::present::fit_files::fit_json::interval_json;
-use crate::present::fit_files::session_changes_text::{Decision, SessionChange};
-use crate::present::json_object::{number, object};
 use crate::store::parameters::value_units;
 use crate::units::UnitSystem;
-use serde_json::{Value, json};
 
 /// Shots that the causes of the change of P are computed with.
 const SHOTS: usize = 65_536;
@@ -155,66 +152,4 @@ pub(super) fn causes_to_draw(causes: &ProbabilityChange) -> Vec<ChangeCause> {
         points: points.scaled(100.0),
     };
     named.map(cause).into()
-}
-
-/// The comparison for programs.
-pub(super) fn json(
-    [before, after]: &[Session; 2],
-    changes: &[SessionChange],
-    causes: &ProbabilityChange,
-) -> Value {
-    let session = |session: &Session| {
-        let (made, labelled) = session.makes;
-        json!({
-            "name": session.name,
-            "shots": session.posterior.shots,
-            "made": made,
-            "with_result": labelled,
-        })
-    };
-    let listed = changes.iter().map(|change| {
-        let comparison = &change.comparison;
-        let decision = change.decision(changes.len() - 1);
-        let interval =
-            |interval: &Interval| object(interval_json(&interval.scaled(1.0 / change.size)));
-        json!({
-            "name": change.name,
-            "unit": change.unit,
-            "before": interval(&comparison.before),
-            "after": interval(&comparison.after),
-            "change": interval(&comparison.change),
-            "probability_of_growth": number(comparison.grew),
-            "ratio": change.ratio.map(|ratio| object(interval_json(&ratio))),
-            "is_decided": decision == Decision::Made,
-            "is_at_the_limit": change.is_at_the_limit(changes.len() - 1),
-            "shots_to_decide": match decision {
-                Decision::Needs(shots) => Some(shots.ceil()),
-                Decision::Made | Decision::Unknown => None,
-            },
-        })
-    });
-    let change_of_makes = (before.makes.1 > 0 && after.makes.1 > 0).then(|| {
-        let change = change_of_share(before.makes, after.makes);
-        let [change, low, high] = [change.share, change.low, change.high].map(|p| 100.0 * p);
-        json!({ "unit": "%", "mean": change, "low": low, "high": high })
-    });
-    let by_scatter = |order: usize| {
-        let by = &causes.by_scatter_first_and_last[order];
-        object(interval_json(&by.scaled(100.0)))
-    };
-    let by_mean = |i: usize| object(interval_json(&causes.by_mean_alone[i].scaled(100.0)));
-    json!({
-        "shooter": before.profile.shooter().name,
-        "before": session(before),
-        "after": session(after),
-        "change_of_makes": change_of_makes,
-        "changes": listed.collect::<Value>(),
-        "change_of_P_by_scatter": object(interval_json(&causes.by_scatter.scaled(100.0))),
-        "change_of_P_by_usual_release": object(interval_json(&causes.by_means.scaled(100.0))),
-        "change_of_P_by_speed_alone": by_mean(0),
-        "change_of_P_by_pitch_alone": by_mean(1),
-        "change_of_P_by_polar_alone": by_mean(2),
-        "change_of_P_by_scatter_first": by_scatter(0),
-        "change_of_P_by_scatter_last": by_scatter(1),
-    })
 }

@@ -7,7 +7,7 @@ use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::fitting::{
-    DrawProbabilities, MeasuredRelease, Place, Posterior, session_names, values_at_height,
+    DrawProbabilities, FitNote, MeasuredRelease, Place, Posterior, session_names, values_at_height,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::probability::Progress;
@@ -35,8 +35,8 @@ pub(super) struct Session {
     pub(super) profile: Profile,
     /// Their name, if the file has it.
     pub(super) shooter: Option<String>,
-    /// What the fit warned of.
-    pub(super) warnings: Vec<String>,
+    /// What should be said of the fit.
+    pub(super) notes: Vec<FitNote>,
     pub(super) units: UnitSystem,
 }
 
@@ -64,7 +64,7 @@ impl Session {
             makes: fit.observed[place],
             profile: fit.profiles.swap_remove(place),
             shooter: fit.shooter,
-            warnings: fit.warnings,
+            notes: fit.notes,
             units: fit.units,
         })
     }

@@ -3,6 +3,8 @@
 mod changed_values;
 mod fitted_sessions;
 
+use crate::answers::json::document;
+use crate::answers::sessions::{SessionAnswer, SessionsAnswer};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
@@ -10,13 +12,14 @@ use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_hint, print_prose, print_remark};
 use crate::plots::session_changes;
-use crate::present::fit_files::session_changes_text::{SessionSummary, session_changes_text};
+use crate::present::fit_files::fit_note_text::fit_note_text;
+use crate::present::fit_files::session_changes_text::session_changes_text;
 use crate::probability::Progress;
 use clap::Args;
 use serde_json::Value;
 use std::path::PathBuf;
 
-use changed_values::{causes, causes_to_draw, changes, json, planned, values_to_draw};
+use changed_values::{causes, causes_to_draw, changes, planned, values_to_draw};
 use fitted_sessions::{Session, check_conditions, fit_by_session, read, to_one_release_height};
 
 #[derive(Args, Debug)]
@@ -204,13 +207,13 @@ fn answer(
 ) -> Result<Option<Value>, Failure> {
     check_conditions(sessions)?;
     for session in sessions {
-        for warning in &session.warnings {
+        for note in &session.notes {
             let title = session.title();
             let title = match &session.shooter {
                 Some(name) if names_shooter => format!("{name}, {title}"),
                 _ => title,
             };
-            print_remark(&format!("{title}: warning: {warning}"));
+            print_remark(&format!("{title}: warning: {}", fit_note_text(note)));
         }
     }
     let units = options.measured.units_or(sessions[0].units);
@@ -232,15 +235,18 @@ fn answer(
         plot_files::write_one(path, &plot)?;
         print_hint(&format!("plot written to {}", path.display()));
     }
-    if options.json {
-        return Ok(Some(json(sessions, &changes, &causes)));
-    }
-    let summaries = sessions.each_ref().map(|session| SessionSummary {
-        name: &session.name,
+    let summaries = sessions.each_ref().map(|session| SessionAnswer {
+        name: session.name.clone(),
         shots: session.posterior.shots,
-        makes: session.makes,
+        made: session.makes.0,
+        with_result: session.makes.1,
     });
+    if options.json {
+        let profile = &sessions[0].profile;
+        let answer = SessionsAnswer::new(profile, summaries, &changes, &causes);
+        return Ok(Some(document(&answer, units)));
+    }
     let tested = changes.len() - 1;
-    print_prose(&session_changes_text(summaries, &changes, &causes, tested))?;
+    print_prose(&session_changes_text(&summaries, &changes, &causes, tested))?;
     Ok(None)
 }

@@ -2,11 +2,10 @@
 
 use super::changes::{FirstSession, in_words, known_after};
 use super::tested_shot::TestedShot;
+use crate::answers::sample_size::{AgainstAnswer, ShotsForDifference};
 use crate::fitting::{Covariance, DesignRow, POWER, SessionError, values_of};
-use crate::present::json_object::number;
 use crate::shooter::ReleaseVariable;
 use crate::units::{DEGREE_RAD, UnitSystem};
-use serde_json::{Value, json};
 
 /// A second session as it is expected: its shots differ from those of the first one.
 pub(super) struct Against {
@@ -136,16 +135,18 @@ impl Against {
         text + "The differences are taken as they are here; where they were measured, chance makes the great ones look greater than they are, so plan for more shots. Each number is for one value alone: several at once need more (`bankshot compare-sessions --planned`). never: the first shots alone leave it too unsure.\n"
     }
 
-    pub(super) fn json(&self) -> Value {
-        let listed = self.differences.iter().map(|difference| {
-            json!({
-                "name": difference.key,
-                "change": number(difference.change),
-                "shots_in_each_of_two": number(difference.in_each),
-                "shots_in_second_session": difference.in_second.map(|shots| number(shots.ceil())),
-            })
-        });
-        json!({ "shooter": self.name, "differences": listed.collect::<Value>() })
+    /// For programs.
+    pub(super) fn answer(&self) -> AgainstAnswer {
+        let of = |difference: &SessionDifference| ShotsForDifference {
+            name: difference.key,
+            change: difference.change,
+            shots_in_each_of_two: difference.in_each,
+            shots_in_second_session: difference.in_second.map(f64::ceil),
+        };
+        AgainstAnswer {
+            shooter: self.name.clone(),
+            differences: self.differences.iter().map(of).collect(),
+        }
     }
 }
 

@@ -1,10 +1,9 @@
 //! How many shots show that a shooter has changed: in two equal sessions, and against a first one.
 
+use crate::answers::sample_size::ShotsForChange;
 use crate::fitting::{DesignRow, POWER, SessionError};
 use crate::present::fit_files::session_changes_text::two_digits;
-use crate::present::json_object::number;
 use crate::store::fit::Fit;
-use serde_json::{Value, json};
 
 /// The smallest and the largest test.
 const LEAST_SHOTS: f64 = 10.0;
@@ -181,21 +180,21 @@ fn further_shots(rows: &[DesignRow], first: &FirstSession, change: f64) -> Optio
 }
 
 /// The shots that show changes of P.
-pub(super) fn changes_json(
+pub(super) fn shots_for_changes_answer(
     rows: &[DesignRow],
     first: Option<&FirstSession>,
     changes: &[f64],
-) -> Value {
-    let listed = changes.iter().map(|points| {
+) -> Vec<ShotsForChange> {
+    let of_change = |points: &f64| {
         let change = points / 100.0;
         let second = first.and_then(|first| further_shots(rows, first, change));
-        json!({
-            "change_of_probability": number(change),
-            "shots_in_second_session": second.map(|shots| number(shots.ceil())),
-            "shots_in_each_of_two": number(shots_in_each(rows, change)),
-        })
-    });
-    listed.collect()
+        ShotsForChange {
+            change_of_probability: change,
+            shots_in_second_session: second.map(f64::ceil),
+            shots_in_each_of_two: shots_in_each(rows, change),
+        }
+    };
+    changes.iter().map(of_change).collect()
 }
 
 /// "5, 10 or 20".

@@ -9,6 +9,7 @@ mod text_json;
 mod tracker;
 
 use self::designed_tests::DesignedTests;
+use crate::answers::json::{self, document};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::{print_answer, print_prose};
 
@@ -17,7 +18,8 @@ pub(crate) use options::DesignOptions;
 pub(crate) fn run(options: &DesignOptions) -> Result<u8, Failure> {
     let tests = DesignedTests::simulate(options)?;
     if options.json {
-        return print_answer(&format!("{:#}\n", tests.json(&options.change)));
+        let answer = document(&tests.answer(&options.change), tests.units);
+        return print_answer(&json::text(&answer));
     }
     print_prose(&tests.text(options))
 }

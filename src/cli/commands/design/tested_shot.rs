@@ -6,7 +6,7 @@ use crate::best_shot::find_kinds;
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
 use crate::cli::loaded_profile::load_profile;
-use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::nominal_shot_flags::{NominalOptions, print_notes};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
@@ -47,10 +47,7 @@ impl TestedShot {
             let profile = load_profile(path, physics)?;
             let nominal = if named.is_given(&profile) {
                 let nominal = named.resolve(&profile)?;
-                let warnings = named.warnings_of_flags(&profile, &nominal);
-                for warning in warnings.iter().filter(|_| !is_quiet()) {
-                    print_remark(warning);
-                }
+                print_notes(named.request().notes(&profile, &nominal));
                 nominal
             } else {
                 best_nominal(&profile)?

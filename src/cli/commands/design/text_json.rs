@@ -1,15 +1,17 @@
 //! What tests of each size tell, for people and for programs.
 
 use super::against::Against;
-use super::changes::{MOST_SHOTS, changes_json, least_change, shots_for, shots_for_changes};
+use super::changes::{
+    MOST_SHOTS, least_change, shots_for, shots_for_changes, shots_for_changes_answer,
+};
 use super::designed_tests::{DesignedTests, Target};
 use super::options::DesignOptions;
+use crate::answers::json::Provenance;
+use crate::answers::sample_size::{FirstSessionAnswer, SampleSizeAnswer, SizeAnswer, TargetAnswer};
 use crate::fitting::{DesignRow, TWO_SIDED_95};
 use crate::present::fit_files::session_changes_text::two_digits;
-use crate::present::json_object::number;
 use crate::shooter::ShotKind;
 use crate::units::{DEGREE_RAD, UnitSystem};
-use serde_json::{Value, json};
 
 /// Simulated tests of each size: `48`, or `48 (12 of 970 shots)` where large sizes have fewer.
 fn repetitions_in_words(rows: &[DesignRow], usual: u64) -> String {
@@ -147,39 +149,40 @@ impl DesignedTests {
     }
 
     /// For programs.
-    pub(super) fn json(&self, changes: &[f64]) -> Value {
+    pub(super) fn answer(&self, changes: &[f64]) -> SampleSizeAnswer {
         let first = self.first.as_ref();
-        let listed = self.rows.iter().map(|row| {
-            let [speed, pitch, polar] = row.sd_errors.map(number);
-            json!({
-                "shots": row.shots,
-                "repetitions": row.repetitions,
-                "speed_sd_relative_error": speed,
-                "pitch_sd_relative_error": pitch,
-                "polar_sd_relative_error": polar,
-                "probability_error": number(row.probability_error),
-                "simulation_error": number(row.simulation_error),
-                "counting_error": number(row.counting_error),
-                "least_change_of_probability": number(least_change(row, first)),
-            })
+        let tests = self.rows.iter().map(|row| {
+            let [speed, pitch, polar] = row.sd_errors;
+            SizeAnswer {
+                shots: row.shots,
+                repetitions: row.repetitions,
+                speed_sd_relative_error: speed,
+                pitch_sd_relative_error: pitch,
+                polar_sd_relative_error: polar,
+                probability_error: row.probability_error,
+                simulation_error: row.simulation_error,
+                counting_error: row.counting_error,
+                least_change_of_probability: least_change(row, first),
+            }
         });
-        json!({
-            "shooter": self.shot.profile.shooter().name,
-            "probability": number(self.shot.probability),
-            "tracker": self.tracker.name.0,
-            "tracker_noise": self.tracker.name.1,
-            "changes": changes_json(&self.rows, first, changes),
-            "first_session": first.map(|first| json!({
-                "shots": first.shots,
-                "probability_error": number(first.p.error()),
-                "sd_relative_error": number(first.scatter.error()),
-            })),
-            "tests": listed.collect::<Value>(),
-            "target": self.target.as_ref().map(|target| json!({
-                "probability_error": number(target.points / 100.0),
-                "shots": target.shots,
-            })),
-            "against": self.against.as_ref().map(Against::json),
-        })
+        SampleSizeAnswer {
+            shooter: self.shot.profile.shooter().name.clone(),
+            probability: self.shot.probability,
+            tracker: self.tracker.name.0.clone(),
+            tracker_noise: self.tracker.name.1.clone(),
+            changes: shots_for_changes_answer(&self.rows, first, changes),
+            first_session: first.map(|first| FirstSessionAnswer {
+                shots: first.shots,
+                probability_error: first.p.error(),
+                sd_relative_error: first.scatter.error(),
+            }),
+            tests: tests.collect(),
+            target: self.target.as_ref().map(|target| TargetAnswer {
+                probability_error: target.points / 100.0,
+                shots: target.shots,
+            }),
+            against: self.against.as_ref().map(Against::answer),
+            provenance: Provenance::of(&self.shot.profile),
+        }
     }
 }

@@ -1,7 +1,9 @@
 //! The files of a fit.
 
 use super::options::FitOptions;
-use super::unmeasured_parameters::{UnmeasuredParameter, with_free};
+use super::unmeasured_parameters::{UnmeasuredParameter, found_values};
+use crate::answers::fit::FitAnswer;
+use crate::answers::json::document;
 use crate::cli::failure::Failure;
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::plot_files;
@@ -10,7 +12,6 @@ use crate::files::atomic_file;
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::measured_shots;
-use crate::present::fit_files::fit_json::fit_json;
 use crate::present::fit_files::fitted_profile_toml::fitted_profile_toml;
 use crate::present::fit_files::shots_table::shots_csv;
 use crate::report::fit_page::fit_page;
@@ -36,7 +37,8 @@ pub(super) fn write(
         .collect();
     let draws = draws_parquet(&fit.posterior, &fit.probabilities, units).map_err(Failure::bug)?;
     let rows = shots_csv(fit, &labels, &shots.rejected, units);
-    let json = with_free(fit_json(fit, &source, units), free);
+    let answer = FitAnswer::new(fit, &source, found_values(free));
+    let json = document(&answer, units);
     let sealed = seal(json, &[(DRAWS_FILE, &draws), (SHOTS_FILE, &rows)]);
     let mut contents: Vec<(String, Vec<u8>)> = vec![
         (FIT_FILE.to_owned(), sealed.into_bytes()),

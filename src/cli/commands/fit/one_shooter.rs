@@ -6,15 +6,16 @@ use super::options::FitOptions;
 use super::remarks::{print_place_scatter, print_unused};
 use super::shooters_table::{TABLE_FILE, renew_table};
 use super::unmeasured_parameters::{
-    UnmeasuredParameter, check_shots, drag, estimate, is_drag, with_free,
+    UnmeasuredParameter, check_shots, drag, estimate, found_values, is_drag,
 };
+use crate::answers::fit::FitAnswer;
+use crate::answers::json::{self, document};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
-use crate::present::fit_files::fit_json::fit_json;
 use crate::present::fit_files::fit_text::fit_text;
 use crate::shooter::implausible_values;
 use crate::store;
@@ -100,8 +101,8 @@ fn answer(
     let units = options.measured.unit_system();
     let source = file.source(shots);
     if options.json {
-        let json = with_free(fit_json(fit, &source, units), free);
-        print_answer(&format!("{json:#}\n"))?;
+        let answer = FitAnswer::new(fit, &source, found_values(free));
+        print_answer(&json::text(&document(&answer, units)))?;
     } else {
         print_prose(&fit_text(fit, &source, units))?;
         for parameter in free {

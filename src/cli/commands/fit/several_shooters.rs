@@ -11,9 +11,10 @@ use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
-use crate::fitting::{FitWarning, Place, ShooterFit};
+use crate::fitting::{FitNote, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
+use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::probability::Progress;
 use crate::store::fit::FIT_FILE;
 use crate::store::shooters::{ShooterPlace, Shooters, fits_within};
@@ -133,7 +134,7 @@ fn print_table(file: &MeasuredFile, rows: &[ShooterRow]) -> Result<(), Failure> 
     print_answer(&format!(
         "{} shooters: {}, tracker {} ({}), physics {}\n{}\n",
         file.shooters.len(),
-        source.kind,
+        source.kind.name(),
         source.tracker.0,
         source.tracker.1,
         source.physics,
@@ -247,8 +248,8 @@ struct PlaceRow {
 
 /// Whether the makes and the measured shots of a fit do not belong together.
 fn is_doubted(fit: &ShooterFit) -> bool {
-    let mut warnings = fit.warnings.iter();
-    warnings.any(|warning| matches!(warning, FitWarning::OtherMakes(..)))
+    let mut notes = fit.notes.iter();
+    notes.any(|note| matches!(note, FitNote::OtherMakes { .. }))
 }
 
 fn fit_one(
@@ -324,9 +325,9 @@ fn fit_one(
         result: Ok(places),
         is_doubted: is_doubted(&fit),
         warnings: fit
-            .warnings
+            .notes
             .iter()
-            .map(|warning| format!("{name}: warning: {warning}"))
+            .map(|note| format!("{name}: warning: {}", fit_note_text(note)))
             .collect(),
         fit: Some(fit),
     })

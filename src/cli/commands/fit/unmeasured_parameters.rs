@@ -7,7 +7,6 @@ use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::{Preset, SolidId};
 use crate::store::free_parameters::{CurvePoint, FreeParameter};
 use crate::units::{REV_RAD, rounded};
-use serde_json::{Value, json};
 
 /// Refuses names that `--free` does not know.
 pub(super) fn check_names(free: &[String]) -> Result<(), Failure> {
@@ -50,13 +49,10 @@ pub(super) struct UnmeasuredParameter {
     pub(super) found: FreeParameter,
 }
 
-/// The fit for programs, with the parameters that `--free` asked for.
-pub(super) fn with_free(mut fit: Value, free: &[UnmeasuredParameter]) -> Value {
-    if !free.is_empty() {
-        let found = free.iter().map(|parameter| &parameter.found);
-        fit["free"] = json!(found.collect::<Vec<_>>());
-    }
-    fit
+/// What `--free` found, as data.
+pub(super) fn found_values(free: &[UnmeasuredParameter]) -> Vec<FreeParameter> {
+    let found = free.iter().map(|parameter| &parameter.found);
+    found.cloned().collect()
 }
 
 /// What the shots of one or more shooters say of a parameter that was not measured, and how to use

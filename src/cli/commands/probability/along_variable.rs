@@ -2,32 +2,33 @@
 
 use super::options::ProbabilityOptions;
 use crate::analysis::miss_breakdown::classify_misses;
+use crate::answers::along_variable::{AlongAnswer, PointAlong, Varied};
+use crate::answers::csv::csv;
+use crate::answers::json::document;
+use crate::answers::nominal_shot::{ShotNote, notes_of_shot};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
-use crate::cli::nominal_shot_flags::NominalOptions;
+use crate::cli::nominal_shot_flags::print_notes;
 use crate::cli::output_files::{self, Rendered};
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_lists::ascending_values;
 use crate::fitting::{AngleOverDraws, best_angles_of_draws};
 use crate::plots;
 use crate::present::best_shot_text::PROFILE_IS_EXACT;
-use crate::present::probability_along_variable::{PointAlong, ProbabilityAlong};
+use crate::present::probability_along_variable::ProbabilityAlong;
 use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{Nominal, NominalVariable, Profile};
 use crate::store::fit::Fit;
 use serde_json::Value;
 
-/// What `--vary` names: a variable, whether it is the angle from the line to the hoop's centre, and
-/// its values, SI.
-struct Varied {
-    variable: NominalVariable,
-    is_aim: bool,
+/// What `--vary` names: a variable and its values, SI.
+struct VariedValues {
+    of: Varied,
     values: Vec<f64>,
 }
 
-impl Varied {
+impl VariedValues {
     /// From `pitch=45 deg to 60 deg by 1 deg`.
     fn parse(text: &str) -> Result<Self, Failure> {
         let names = || {
@@ -53,8 +54,7 @@ impl Varied {
                 ))
             })?;
         Ok(Self {
-            variable,
-            is_aim,
+            of: Varied { variable, is_aim },
             values: ascending_values("vary", list.trim(), variable.dimension())?,
         })
     }
@@ -65,14 +65,12 @@ pub(super) fn run(
     (profile, draws): (&Profile, Option<&Fit>),
     vary: &str,
 ) -> Result<u8, Failure> {
-    let varied = Varied::parse(vary)?;
+    let varied = VariedValues::parse(vary)?;
     let nominals = varied.shots(options, profile)?;
     if options.plot.is_some() && nominals.len() < 2 {
         return Err(Failure::usage("--plot: --vary needs two values or more"));
     }
-    if !is_quiet() {
-        print_warnings(options, profile, varied.variable, &nominals);
-    }
+    print_notes(notes(options, profile, varied.of.variable, &nominals));
     let target = options.target.unwrap_or(profile.search().standard_error);
     let along = probability_along(options, (profile, draws), &varied, nominals, target)?;
     if let Some(path) = &options.plot
@@ -91,6 +89,11 @@ pub(super) fn run(
     )
 }
 
+fn answer(along: &ProbabilityAlong<'_>) -> AlongAnswer {
+    let best = along.best_of_draws;
+    AlongAnswer::new(along.profile, along.varied, &along.points, best)
+}
+
 impl Rendered for ProbabilityAlong<'_> {
     fn text(&self) -> String {
         let is_exact = self.points.iter().all(|point| point.over_draws.is_none());
@@ -99,60 +102,55 @@ impl Rendered for ProbabilityAlong<'_> {
     }
 
     fn json(&self) -> Value {
-        self.as_json()
+        document(&answer(self), self.profile.output().units)
     }
 
     fn csv(&self) -> String {
-        self.as_csv()
+        csv(&answer(self).points, self.profile.output().units)
     }
 }
 
-impl Varied {
+impl VariedValues {
     /// The shot with each of the values. Every one is checked before one is computed.
     fn shots(
         &self,
         options: &ProbabilityOptions,
         profile: &Profile,
     ) -> Result<Vec<Nominal>, Failure> {
-        let start = match self.is_aim {
+        let start = match self.of.is_aim {
             true => profile.location().angle_rad,
             false => 0.0,
         };
         let shot = |value: &f64| {
-            let given = (self.variable, start + value);
-            options.nominal.resolve_with(profile, Some(given))
+            let given = (self.of.variable, start + value);
+            options.nominal.resolve_with(profile, given)
         };
         self.values.iter().map(shot).collect()
     }
 }
 
-/// Warns of implausible shots, once of each kind: the values share them.
-fn print_warnings(
+/// What is doubtful about the shots.
+fn notes(
     options: &ProbabilityOptions,
     profile: &Profile,
     variable: NominalVariable,
     nominals: &[Nominal],
-) {
-    let of_shots = nominals.iter();
-    let mut warnings: Vec<String> = of_shots
-        .flat_map(|nominal| NominalOptions::warnings(profile, nominal))
-        .collect();
+) -> Vec<ShotNote> {
+    let of_shots = |nominal| notes_of_shot(profile, nominal);
+    let mut notes: Vec<ShotNote> = nominals.iter().flat_map(of_shots).collect();
     if variable != NominalVariable::Backspin {
-        let of_flags = |nominal| options.nominal.warnings_of_flags(profile, nominal);
-        warnings.extend(nominals.iter().flat_map(of_flags));
+        let request = options.nominal.request();
+        let of_flags = |nominal| request.notes(profile, nominal);
+        notes.extend(nominals.iter().flat_map(of_flags));
     }
-    warnings.sort();
-    warnings.dedup();
-    for warning in &warnings {
-        print_remark(warning);
-    }
+    notes
 }
 
 /// P of each of the shots.
 fn probability_along<'a>(
     options: &ProbabilityOptions,
     (profile, draws): (&'a Profile, Option<&Fit>),
-    varied: &Varied,
+    varied: &VariedValues,
     nominals: Vec<Nominal>,
     target: f64,
 ) -> Result<ProbabilityAlong<'a>, Failure> {
@@ -162,7 +160,7 @@ fn probability_along<'a>(
     let mut points = Vec::new();
     let mut of_draws = Vec::new();
     // The usual shot of a fit is uncertain in its other values too.
-    let usual_at = draws.filter(|_| !options.nominal.has_flags());
+    let usual_at = draws.filter(|_| !options.nominal.request().is_given());
     let usual_at = usual_at.and_then(|fit| {
         let mut places = fit.profiles.iter();
         places.position(|of| {
@@ -175,7 +173,7 @@ fn probability_along<'a>(
         if let Some(fit) = draws {
             of_draws.push(Some(match usual_at {
                 Some(place) => {
-                    let given = (varied.variable, nominal.get(varied.variable));
+                    let given = (varied.of.variable, nominal.get(varied.of.variable));
                     fit_folder::usual_shot_over_draws((fit, place), profile, given)?
                 }
                 None => fit_folder::shot_over_draws(fit, profile, &nominal)?,
@@ -196,9 +194,8 @@ fn probability_along<'a>(
     }
     Ok(ProbabilityAlong {
         profile,
-        variable: varied.variable,
+        varied: varied.of,
         best_of_draws: best_angles_of_draws(&of_draws),
-        is_aim: varied.is_aim,
         points,
         is_rest_uncertain: usual_at.is_some(),
     })

@@ -1,39 +1,12 @@
 //! The options of `bankshot probability`.
 
+use crate::answers::probability::{Effort, Method};
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::value_parsers::{sample, standard_error};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
-
-/// The methods of computing P.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Method {
-    /// Scrambled Sobol points.
-    Sobol,
-    /// Plain random samples.
-    MonteCarlo,
-    /// Eq. 25 on four grids shifted from line to line (four errors only).
-    Grid,
-    /// Eq. 25 as printed in the paper, on one common grid (four errors only).
-    PaperGrid,
-}
-
-impl Method {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Sobol => "sobol",
-            Self::MonteCarlo => "monte-carlo",
-            Self::Grid => "grid",
-            Self::PaperGrid => "paper-grid",
-        }
-    }
-
-    pub(crate) fn is_grid(self) -> bool {
-        matches!(self, Self::Grid | Self::PaperGrid)
-    }
-}
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -91,4 +64,16 @@ pub(crate) struct ProbabilityOptions {
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl ProbabilityOptions {
+    pub(super) fn effort(&self) -> Effort {
+        Effort {
+            method: self.method,
+            target: self.target,
+            budget: self.budget,
+            seed: self.seed,
+            grid: self.grid,
+        }
+    }
 }

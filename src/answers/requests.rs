@@ -1,0 +1,216 @@
+//! Questions as data, for other programs: what is asked goes in, the answer for programs comes out.
+//!
+//! ```
+//! use bankshot::answers::requests::Request;
+//! use bankshot::probability::Silent;
+//!
+//! let toml = std::fs::read_to_string("configs/free_throw.toml")?;
+//! let request: Request = serde_json::from_value(serde_json::json!({
+//!     "question": "probability",
+//!     "profile": { "toml": toml, "units": "metric" },
+//!     "shot": { "speed": "24.4 ft/s", "pitch": "52 deg", "backspin": "3 rev/s" },
+//!     "effort": { "target": 0.01 },
+//! }))?;
+//! let answered = request.answer(&Silent)?;
+//! assert_eq!(answered.document["answer"], "probability");
+//! assert!(answered.document["nominal"]["speed_m_s"].as_f64().unwrap() > 7.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use super::best_shots::BestShotsAnswer;
+use super::checks::{CheckAnswer, Checked};
+use super::json::{Provenance, document, in_units};
+use super::nominal_shot::{FieldError, NominalRequest, ShotNote, notes_of_shot};
+use super::probability::Effort;
+use super::trace::{TraceAnswer, points};
+use crate::best_shot::{self, BestShotError};
+use crate::config::{ConfigError, parse_profile};
+use crate::dynamics::StateError;
+use crate::probability::Progress;
+use crate::search_space::{PlanError, TablePlan};
+use crate::shooter::{Profile, ProfileError, implausible_values, nominal_values_not_fixed};
+use crate::units::UnitSystem;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// A profile as it is asked about.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProfileRequest {
+    /// The text of the profile.
+    pub toml: String,
+    /// What to call it in messages.
+    #[serde(default)]
+    pub origin: String,
+    /// The units of the answer; else those of the profile.
+    #[serde(default)]
+    pub units: Option<UnitSystem>,
+}
+
+/// A question about a profile.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "question", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Request {
+    /// Whether the profile is valid.
+    Check {
+        /// The profile.
+        profile: ProfileRequest,
+    },
+    /// The best direct and the best bank shot.
+    BestShots {
+        /// The profile.
+        profile: ProfileRequest,
+    },
+    /// P of a nominal shot.
+    Probability {
+        /// The profile.
+        profile: ProfileRequest,
+        /// The shot.
+        #[serde(default)]
+        shot: NominalRequest,
+        /// How P is computed.
+        #[serde(default)]
+        effort: Effort,
+    },
+    /// The path of a nominal shot without errors.
+    Trace {
+        /// The profile.
+        profile: ProfileRequest,
+        /// The shot.
+        #[serde(default)]
+        shot: NominalRequest,
+    },
+}
+
+/// What should be said beside an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Note {
+    /// Of the profile, in words.
+    Profile(String),
+    /// Of the shot.
+    Shot(ShotNote),
+    /// The wanted standard error was not reached.
+    Imprecise,
+}
+
+/// An answer for programs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answered {
+    /// The answer: see [`document`]. That of `trace` has the points of the path in `path`.
+    pub document: Value,
+    /// What should be said.
+    pub notes: Vec<Note>,
+}
+
+/// Why a question has no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum RequestError {
+    /// The profile is not valid.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The profile cannot be as it is asked for.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+    /// Fields that are wrong.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Fields(Vec<FieldError>),
+    /// The search cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The search cannot be made.
+    #[error(transparent)]
+    Search(#[from] BestShotError),
+    /// The release is none.
+    #[error(transparent)]
+    State(#[from] StateError),
+}
+
+impl ProfileRequest {
+    /// The profile, and what should be said of it.
+    fn read(&self) -> Result<(Profile, Vec<Note>), RequestError> {
+        let mut profile = parse_profile(&self.toml, &self.origin)?;
+        if let Some(units) = self.units {
+            profile = profile.with(|settings| settings.output.units = units)?;
+        }
+        let implausible = implausible_values(&profile).into_iter();
+        let notes = implausible.map(|value| value.to_string());
+        let notes = notes.chain(nominal_values_not_fixed(&profile, &[]));
+        let notes = notes.map(Note::Profile).collect();
+        Ok((profile, notes))
+    }
+}
+
+impl Request {
+    /// The answer.
+    ///
+    /// # Errors
+    /// What is asked is wrong or not possible.
+    pub fn answer(&self, progress: &dyn Progress) -> Result<Answered, RequestError> {
+        match self {
+            Self::Check { profile } => check(profile),
+            Self::BestShots { profile } => {
+                let (profile, notes) = profile.read()?;
+                let best = best_shot::find(&profile, progress)?;
+                let answer = BestShotsAnswer::new(&profile, &best);
+                let document = document(&answer, profile.output().units);
+                Ok(Answered { document, notes })
+            }
+            Self::Probability {
+                profile,
+                shot,
+                effort,
+            } => probability(profile, shot, effort, progress),
+            Self::Trace { profile, shot } => trace(profile, shot),
+        }
+    }
+}
+
+fn check(request: &ProfileRequest) -> Result<Answered, RequestError> {
+    let (profile, notes) = request.read()?;
+    TablePlan::for_search(&profile)?;
+    let answer = CheckAnswer {
+        file: request.origin.clone(),
+        is_valid: true,
+        errors: Vec::new(),
+        checked: Some(Checked::profile(&profile)),
+        provenance: Some(Provenance::of(&profile)),
+    };
+    let document = document(&answer, profile.output().units);
+    Ok(Answered { document, notes })
+}
+
+fn probability(
+    profile: &ProfileRequest,
+    shot: &NominalRequest,
+    effort: &Effort,
+    progress: &dyn Progress,
+) -> Result<Answered, RequestError> {
+    let (profile, mut notes) = profile.read()?;
+    let nominal = shot.resolve(&profile).map_err(RequestError::Fields)?;
+    let faulty = |error| RequestError::Fields(vec![error]);
+    effort.check(&profile).map_err(faulty)?;
+    let of_request = shot.notes(&profile, &nominal).into_iter();
+    let of_shot = of_request.chain(notes_of_shot(&profile, &nominal));
+    notes.extend(of_shot.map(Note::Shot));
+    let (answer, _) = effort.probability(&profile, &nominal, None, progress)?;
+    if answer.target_met == Some(false) {
+        notes.push(Note::Imprecise);
+    }
+    let document = document(&answer, profile.output().units);
+    Ok(Answered { document, notes })
+}
+
+/// Spacing of the points of a path in flight, s.
+pub const INTERVAL_S: f64 = 0.005;
+
+fn trace(profile: &ProfileRequest, shot: &NominalRequest) -> Result<Answered, RequestError> {
+    let (profile, mut notes) = profile.read()?;
+    let nominal = shot.resolve(&profile).map_err(RequestError::Fields)?;
+    notes.extend(shot.notes(&profile, &nominal).into_iter().map(Note::Shot));
+    let release = profile.release(&nominal);
+    let trace = profile.simulator().trace(&release, INTERVAL_S)?;
+    let units = profile.output().units;
+    let mut document = document(&TraceAnswer::new(&profile, &trace), units);
+    document["path"] = in_units(&points(&trace), units);
+    Ok(Answered { document, notes })
+}
