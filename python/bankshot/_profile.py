@@ -239,7 +239,7 @@ class Profile:
         from ._shots import Probability
 
         effort = {"target": target, "budget": budget, "seed": seed, "method": method}
-        question = {"shot": quantities(shot, SHOT), "effort": effort}
+        question: dict[str, Any] = {"shot": quantities(shot, SHOT), "effort": effort}
         return Probability._of(
             self._ask("probability", threads=threads, progress=progress, **question)
         )

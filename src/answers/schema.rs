@@ -7,7 +7,8 @@ use super::{
 };
 use crate::store::sealed::FORMAT_VERSION;
 use crate::units::UnitSystem;
-use schemars::{JsonSchema, SchemaGenerator};
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 /// Adds the schema of an answer.
@@ -16,7 +17,8 @@ fn add<A: Answer + JsonSchema>(
     defs: &mut Map<String, Value>,
     units: UnitSystem,
 ) {
-    let mut generator = SchemaGenerator::default();
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    let mut generator = settings.into_generator();
     let mut schema = A::json_schema(&mut generator).to_value();
     let mut inner: Map<String, Value> = generator.take_definitions(true);
     if !A::IS_SI {
