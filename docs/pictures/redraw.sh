@@ -13,13 +13,13 @@ if [ $# -eq 0 ]; then
   cargo build --release --bin bankshot
   cargo run --release --example draw_half_court
   figures=$(mktemp -d)
-  "$bankshot" figures --out "$figures" --quiet >/dev/null
+  "$bankshot" figures -o "$figures" --quiet >/dev/null
   cp "$figures"/*.svg docs/pictures
   rm -r "$figures"
 fi
 draw tutorial_before '24.15 ft/s' '51.1 deg' '2.5 rev/s'
 draw tutorial_after '24.37 ft/s' '54.6 deg' '2.5 rev/s'
 fit=$(mktemp -d)
-"$bankshot" fit docs/data/gym_sensor.csv --out "$fit" --quiet >/dev/null
+"$bankshot" fit docs/data/gym_sensor.csv -o "$fit" --quiet >/dev/null
 cp "$fit/plots/make_zone.svg" "$fit/plots/reliability.svg" "$folder"
 rm -r "$fit"

@@ -82,26 +82,26 @@ class Fit:
             for p in self.parameters.values()
         ]
         header = ("parameter", "mean", "95 % interval", "unit", "source")
-        return _tables.html(f"{self.shooter}: P {self.probability}", header, rows)
+        return _tables.html(f"{self.shooter}: probability {self.probability}", header, rows)
 
 
 @dataclass(frozen=True)
 class Advice:
     """What to change, step by step, and what to train.
 
-    ``causes`` has the gain of each step over those before it; ``advised`` is the release after the
-    steps that are sure alone, and ``advised_gain`` what they gain.
+    ``causes`` has the gain of each step over those before it; ``suggested`` is the release after the
+    supported steps alone, and ``suggested_gain`` what they gain.
     """
 
     kind: str
-    usual: Mapping[str, float]
+    current: Mapping[str, float]
     best: Mapping[str, float]
-    usual_probability: Estimate
+    current_probability: Estimate
     best_probability: Estimate
     gain: Estimate
     causes: Mapping[str, Estimate]
-    advised: Mapping[str, float] | None
-    advised_gain: Estimate | None
+    suggested: Mapping[str, float] | None
+    suggested_gain: Estimate | None
     training: Mapping[str, Estimate]
     raw: Mapping[str, Any] = field(repr=False)
 
@@ -109,14 +109,14 @@ class Advice:
     def _of(cls, raw: dict[str, Any]) -> Advice:
         return cls(
             kind=raw["kind"],
-            usual=raw["usual"],
+            current=raw["current"],
             best=raw["best"],
-            usual_probability=Estimate._of(raw["usual_probability"]),
+            current_probability=Estimate._of(raw["current_probability"]),
             best_probability=Estimate._of(raw["best_probability"]),
             gain=Estimate._of(raw["gain"]),
             causes={cause["cause"]: Estimate._of(cause) for cause in raw["causes"]},
-            advised=raw["advised"],
-            advised_gain=Estimate._of(raw["advised_gain"]) if raw["advised_gain"] else None,
+            suggested=raw["suggested"],
+            suggested_gain=Estimate._of(raw["suggested_gain"]) if raw["suggested_gain"] else None,
             training={part["less_scatter_of"]: Estimate._of(part) for part in raw["training"]},
             raw=raw,
         )
@@ -133,8 +133,8 @@ class Advice:
         )
 
     def _repr_html_(self) -> str:
-        rows = [("P now", str(self.usual_probability)), ("P at best", str(self.best_probability))]
-        rows += [("gain as advised", str(self.advised_gain))]
+        rows = [("now", str(self.current_probability)), ("at best", str(self.best_probability))]
+        rows += [("suggested change", str(self.suggested_gain))]
         rows += [(f"step: {name}", str(estimate)) for name, estimate in self.causes.items()]
         rows += [(f"steadier {name}", str(estimate)) for name, estimate in self.training.items()]
         return _tables.html(f"the best {self.kind} shot", ("", "mean (95 % interval)"), rows)

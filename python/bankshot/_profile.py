@@ -99,7 +99,7 @@ class Profile:
     physics : str or Physics
         The ball and the hoop; ``ncaa`` and the like for players, ``paper`` for the paper's model.
     nominal : mapping
-        The usual shot: ``speed``, ``pitch`` and so on.
+        The current shot: ``speed``, ``pitch`` and so on.
     search : mapping
         Keys of the table ``[search]``.
 

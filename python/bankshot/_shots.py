@@ -53,7 +53,7 @@ class Probability:
         return _tables.arrow([{**record, "shots": self.shots, **self.nominal}])
 
     def _repr_html_(self) -> str:
-        rows = [("P", f"{self.probability:.4f} ± {self.standard_error:.4f}")]
+        rows = [("probability", f"{self.probability:.4f} ± {self.standard_error:.4f}")]
         rows += [(name.replace("_", " "), f"{share:.3f}") for name, share in self.shares.items()]
         return _tables.html("one nominal shot", ("", "share of all shots"), rows)
 
@@ -109,7 +109,7 @@ class BestShots:
         """The better of both."""
         found = [shot for shot in (self.direct, self.bank) if shot is not None]
         if not found:
-            raise ValueError("; ".join(self.reasons.values()) or "no clean shot")
+            raise ValueError("; ".join(self.reasons.values()) or "no shot goes in")
         return max(found, key=lambda shot: shot.probability)
 
     @property
@@ -127,13 +127,13 @@ class BestShots:
         rows: list[tuple[str, ...]] = []
         for kind, shot in (("direct", self.direct), ("bank", self.bank)):
             if shot is None:
-                rows.append((kind, self.reasons.get(kind, "no clean shot"), "", "", ""))
+                rows.append((kind, self.reasons.get(kind, "no shot goes in"), "", "", ""))
                 continue
             speed = next(key for key in shot.values if key.startswith("speed"))
             p = f"{shot.probability:.4f} ± {shot.standard_error:.4f}"
             rest = (shot[speed], shot["pitch_deg"], shot["backspin_rev_s"])
             rows.append((kind, p, *(f"{value:.2f}" for value in rest)))
-        header = ("shot", "P", "speed", "pitch (deg)", "backspin (rev/s)")
+        header = ("shot", "probability", "speed", "pitch (deg)", "backspin (rev/s)")
         return _tables.html(f"best shots of {self.shooter}", header, rows)
 
 

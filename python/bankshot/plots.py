@@ -53,7 +53,7 @@ def path(trace: Trace, ax: Axes | None = None) -> Axes:
 
 
 def make_zone(fit: Fit, points: int = 160, ax: Axes | None = None) -> Axes:
-    """The make zone of a shooter: the speeds and pitch angles with which an otherwise usual shot goes in,
+    """The make zone of a shooter: the speeds and pitch angles with which an otherwise average shot goes in,
     and the measured shots, those that were made filled.
 
     ``points`` is the number of simulated shots along each axis.
@@ -91,7 +91,7 @@ def make_zone(fit: Fit, points: int = 160, ax: Axes | None = None) -> Axes:
     ax.scatter(speed[made], pitch[made], s=18, color=_BLUE, label="made")
     ax.scatter(speed[~made], pitch[~made], s=18, edgecolor=_INK, facecolor="none", label="missed")
     ax.set(xlabel=f"speed ({unit.replace('_', '/')})", ylabel="pitch (deg)")
-    ax.set_title("shaded: goes in with the usual aim and spin", fontsize=10)
+    ax.set_title("shaded: goes in with the average aim and spin", fontsize=10)
     ax.legend(frameon=False)
     return ax
 

@@ -62,7 +62,7 @@ pub(crate) fn from_table(table: &NominalProbabilities, nominal: &Nominal) -> Vec
         .collect()
 }
 
-/// The same by Sobol points, for errors that a table does not have.
+/// Curves by Sobol points, for errors that a table does not have.
 pub(crate) fn from_samples(
     profile: &Profile,
     sampler: &Sampler<'_>,

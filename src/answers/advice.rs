@@ -123,14 +123,14 @@ impl From<&Landing> for Fall {
     }
 }
 
-/// Where the usual and the advised shot fall.
+/// Where the current and the suggested shot fall.
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Falls {
-    /// The usual shot.
-    pub usual: Fall,
-    /// The advised one.
-    pub advised: Fall,
+    /// The current shot.
+    pub current: Fall,
+    /// The suggested shot.
+    pub suggested: Fall,
 }
 
 /// The best bank shot against the best direct one.
@@ -142,7 +142,7 @@ pub struct BankOrDirect {
     /// P of the best bank shot.
     pub bank: Interval,
     /// The difference, draw by draw.
-    pub bank_less_direct: Interval,
+    pub bank_minus_direct: Interval,
     /// The share of the draws in which the bank shot is better.
     pub bank_is_better: f64,
 }
@@ -157,12 +157,12 @@ pub struct AdviceAnswer {
     pub distance_m: f64,
     /// From the court's long axis.
     pub court_angle_rad: f64,
-    /// The kind of the usual shot.
+    /// The kind of the current shot.
     pub kind: ShotKind,
-    /// The usual release.
-    pub usual: Release,
-    /// P of the usual shot.
-    pub usual_probability: Interval,
+    /// The current release.
+    pub current: Release,
+    /// P of the current shot.
+    pub current_probability: Interval,
     /// Its numerical standard error.
     pub numerical_standard_error: f64,
     /// How many of the measured shots went in.
@@ -172,19 +172,19 @@ pub struct AdviceAnswer {
     /// P of the best shot.
     pub best_probability: Option<Interval>,
     /// P after the suggested steps.
-    pub advised_probability: Interval,
-    /// P of the best shot less that of the usual one, draw by draw.
+    pub suggested_probability: Interval,
+    /// P of the best shot minus P of the current one, draw by draw.
     pub gain: Option<Interval>,
     /// The share of the draws in which that is positive.
     pub gain_is_positive: f64,
-    /// The steps from the usual to the best release.
+    /// The steps from the current to the best release.
     pub causes: Vec<Step>,
     /// The release after the suggested steps.
-    pub advised: Option<Release>,
+    pub suggested: Option<Release>,
     /// What the suggested steps gain together.
-    pub advised_gain: Option<Interval>,
+    pub suggested_gain: Option<Interval>,
     /// What speed and angle gain alone, where both are suggested.
-    pub advised_alone: Option<Alone>,
+    pub suggested_alone: Option<Alone>,
     /// What to train, largest gain first.
     pub training: Vec<Training>,
     /// Where direct shots fall.
@@ -209,8 +209,8 @@ impl AdviceAnswer {
             distance_m: profile.location().distance_m,
             court_angle_rad: profile.location().angle_rad,
             kind: advice.kind,
-            usual: advice.usual.into(),
-            usual_probability: advice.usual_probability,
+            current: advice.usual.into(),
+            current_probability: advice.usual_probability,
             numerical_standard_error: advice.numerical_standard_error,
             observed: Makes { shots, made },
             best: advice
@@ -218,28 +218,28 @@ impl AdviceAnswer {
                 .as_ref()
                 .map(|best| values_of(&best.nominal).into()),
             best_probability: advice.best_probability,
-            advised_probability: advice.advised_probability,
+            suggested_probability: advice.advised_probability,
             gain: advice.gain,
             gain_is_positive: advice.gain_is_positive,
             causes: steps.map_or_else(Vec::new, |steps| {
                 steps.steps.iter().map(Step::from).collect()
             }),
-            advised: steps.map(|steps| steps.advised.into()),
-            advised_gain: steps.map(|steps| steps.gain),
-            advised_alone: steps.and_then(|steps| steps.alone).map(|alone| Alone {
+            suggested: steps.map(|steps| steps.advised.into()),
+            suggested_gain: steps.map(|steps| steps.gain),
+            suggested_alone: steps.and_then(|steps| steps.alone).map(|alone| Alone {
                 speed: alone.speed,
                 pitch: alone.pitch,
                 speed_is_better: alone.speed_is_better,
             }),
             training: advice.training.iter().map(Training::from).collect(),
             landings: advice.landings.as_ref().map(|[usual, advised]| Falls {
-                usual: usual.into(),
-                advised: advised.into(),
+                current: usual.into(),
+                suggested: advised.into(),
             }),
             bank_or_direct: advice.kinds.as_ref().map(|kinds| BankOrDirect {
                 direct: kinds.probabilities[ShotKind::Direct as usize],
                 bank: kinds.probabilities[ShotKind::Bank as usize],
-                bank_less_direct: kinds.difference,
+                bank_minus_direct: kinds.difference,
                 bank_is_better: kinds.bank_is_better,
             }),
             place: fit.place_names[place].clone(),

@@ -120,7 +120,7 @@ pub struct ShotAnswer {
     pub aim_past_centre_short_m: Option<f64>,
     /// Where the ball's centre meets the board: to the right, facing it.
     pub board_aim_across_short_m: Option<f64>,
-    /// The same above the hoop.
+    /// Height above the hoop of the ball's centre at the board.
     pub board_aim_above_hoop_short_m: Option<f64>,
     /// The highest point of the ball's centre.
     pub apex_above_floor_m: f64,

@@ -101,7 +101,7 @@ pub struct PlanAnswer {
     pub wide_sample: Option<WideSample>,
     /// Upper bound of the probability beyond the table, in the middle of it.
     pub mass_outside_middle: f64,
-    /// The same at its lower edge.
+    /// Probability beyond the table for a shot at its lower edge.
     pub mass_outside_edge: f64,
 }
 

@@ -394,7 +394,7 @@ pub struct FitAnswer {
     /// Rows that were kept out.
     pub rejected: Vec<Rejected>,
     /// Columns of releases beside the landings.
-    pub measured_less_from_landings: Vec<Difference>,
+    pub measured_minus_from_landings: Vec<Difference>,
     /// What should be said.
     pub notes: Vec<FitNote>,
     /// How the draws were made.
@@ -450,7 +450,7 @@ impl FitAnswer {
             constant_errors: constant_error_answers(fit, source),
             shots: posterior.shots,
             rejected: rejected.collect(),
-            measured_less_from_landings: source.differences.iter().map(difference).collect(),
+            measured_minus_from_landings: source.differences.iter().map(difference).collect(),
             notes: fit.notes.clone(),
             sampler: SamplerAnswer {
                 draws: posterior.draws.len(),

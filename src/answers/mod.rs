@@ -18,6 +18,6 @@ pub mod sample_size;
 #[cfg(test)]
 mod schema;
 pub mod sessions;
-pub mod shots;
 pub mod sweep_status;
+pub mod table_rows;
 pub mod trace;

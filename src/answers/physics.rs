@@ -328,10 +328,10 @@ impl From<&Result<BestShot, NoShot>> for ShotOfRow {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FitOfRow {
-    /// P of the usual shot.
-    pub usual_probability: Interval,
-    /// P of the advised shot.
-    pub advised_probability: Option<Interval>,
+    /// P of the current shot.
+    pub current_probability: Interval,
+    /// P of the suggested shot.
+    pub suggested_probability: Option<Interval>,
     /// What the advice gains.
     pub gain: Option<Interval>,
     /// By how many standard deviations the makes differ from what is expected.
@@ -386,8 +386,8 @@ impl PhysicsAnswer {
             let fitted = self.fitted.as_ref()?;
             let row = fitted.rows[i].as_ref()?;
             Some(FitOfRow {
-                usual_probability: row.usual,
-                advised_probability: row.advised.map(|[advised, _]| advised),
+                current_probability: row.usual,
+                suggested_probability: row.advised.map(|[advised, _]| advised),
                 gain: row.advised.map(|[_, gain]| gain),
                 made_z: fitted.made_z[i],
             })

@@ -13,9 +13,9 @@ pub struct SizeAnswer {
     pub repetitions: u64,
     /// How far the scatter of the speed is known, as a share of it: one standard deviation.
     pub speed_sd_relative_error: f64,
-    /// The same of the pitch angle.
+    /// Relative error of the standard deviation of the release angle.
     pub pitch_sd_relative_error: f64,
-    /// The same of the polar angle.
+    /// Relative error of the standard deviation of the direction.
     pub polar_sd_relative_error: f64,
     /// How far P is known by the fit.
     pub probability_error: f64,

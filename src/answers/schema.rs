@@ -3,7 +3,7 @@
 use super::json::{Answer, in_results};
 use super::{
     advice, along_variable, best_shots, checks, fit, physics, probability, sample_size, sessions,
-    shots, sweep_status, trace,
+    sweep_status, table_rows, trace,
 };
 use crate::store::sealed::FORMAT_VERSION;
 use crate::units::UnitSystem;
@@ -73,8 +73,8 @@ fn schema(units: UnitSystem) -> Value {
     add::<best_shots::BestShotsAnswer>(&mut all, &mut defs, units);
     add::<probability::ProbabilityAnswer>(&mut all, &mut defs, units);
     add::<along_variable::AlongAnswer>(&mut all, &mut defs, units);
-    add::<shots::PitchCurveAnswer>(&mut all, &mut defs, units);
-    add::<shots::TableAnswer>(&mut all, &mut defs, units);
+    add::<table_rows::PitchCurveAnswer>(&mut all, &mut defs, units);
+    add::<table_rows::TableAnswer>(&mut all, &mut defs, units);
     add::<physics::PhysicsRows>(&mut all, &mut defs, units);
     add::<trace::TraceAnswer>(&mut all, &mut defs, units);
     add::<fit::FitAnswer>(&mut all, &mut defs, units);

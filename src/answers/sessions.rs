@@ -11,7 +11,7 @@ use serde::Serialize;
 /// What changed in one quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SessionChange {
-    /// Such as `P`, `polar_mean`.
+    /// Such as `probability`, `polar_mean`.
     pub name: String,
     /// The unit of results.
     pub unit: &'static str,
@@ -64,7 +64,7 @@ impl SessionChange {
 
     /// That of P is what a comparison is made for: it is one test.
     fn is_probability(&self) -> bool {
-        self.name == "P"
+        self.name == "probability"
     }
 
     fn quantile(&self, tested: usize) -> f64 {
@@ -120,7 +120,7 @@ pub struct ChangeOfMakes {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChangeAnswer {
-    /// Such as `P`, `polar_mean`.
+    /// Such as `probability`, `polar_mean`.
     pub name: String,
     /// The unit of the three intervals.
     pub unit: &'static str,
@@ -157,25 +157,25 @@ pub struct SessionsAnswer {
     /// P first.
     pub changes: Vec<ChangeAnswer>,
     /// By the scatter.
-    #[serde(rename = "change_of_P_by_scatter")]
+    #[serde(rename = "change_of_probability_by_scatter")]
     pub by_scatter: Interval,
     /// By the means.
-    #[serde(rename = "change_of_P_by_usual_release")]
-    pub by_usual_release: Interval,
+    #[serde(rename = "change_of_probability_by_mean_release")]
+    pub by_mean_release: Interval,
     /// By the mean of the speed alone.
-    #[serde(rename = "change_of_P_by_speed_alone")]
+    #[serde(rename = "change_of_probability_by_speed_alone")]
     pub by_speed_alone: Interval,
     /// By the mean pitch angle alone.
-    #[serde(rename = "change_of_P_by_pitch_alone")]
+    #[serde(rename = "change_of_probability_by_pitch_alone")]
     pub by_pitch_alone: Interval,
     /// By the mean polar angle alone.
-    #[serde(rename = "change_of_P_by_polar_alone")]
+    #[serde(rename = "change_of_probability_by_polar_alone")]
     pub by_polar_alone: Interval,
     /// By the scatter at the old means.
-    #[serde(rename = "change_of_P_by_scatter_first")]
+    #[serde(rename = "change_of_probability_by_scatter_first")]
     pub by_scatter_first: Interval,
     /// By the scatter at the new means.
-    #[serde(rename = "change_of_P_by_scatter_last")]
+    #[serde(rename = "change_of_probability_by_scatter_last")]
     pub by_scatter_last: Interval,
     /// What made the answer.
     #[serde(flatten)]
@@ -224,7 +224,7 @@ impl SessionsAnswer {
             after,
             changes: changes.iter().map(change).collect(),
             by_scatter: percent(&causes.by_scatter),
-            by_usual_release: percent(&causes.by_means),
+            by_mean_release: percent(&causes.by_means),
             by_speed_alone,
             by_pitch_alone,
             by_polar_alone,

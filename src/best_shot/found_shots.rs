@@ -89,7 +89,7 @@ impl NotCleanShot {
     #[must_use]
     pub fn in_words(&self) -> String {
         format!(
-            "{:.2} m/s ({:.2} ft/s), {:.1} deg up",
+            "{:.2} m/s ({:.2} ft/s), {:.1} deg",
             self.nominal.speed_m_s,
             self.nominal.speed_m_s / FOOT_M,
             self.nominal.pitch_rad / DEGREE_RAD
@@ -139,7 +139,7 @@ pub enum NoShot {
     #[error("no {} shot within the limits can go in from this place", .0.name())]
     Impossible(ShotKind),
     /// No shot near the most probable one goes in without errors.
-    #[error("no clean {} shot: the most probable ones from this place, P {:.4} ({}), miss when they have no errors", .0.kind.name(), .0.probability, .0.in_words())]
+    #[error("no exact {} shot goes in from this place; the most probable release ({:.1} of 100, {}) misses without scatter", .0.kind.name(), 100.0 * .0.probability, .0.in_words())]
     NotClean(NotCleanShot),
 }
 

@@ -124,7 +124,7 @@ impl PhysicsOf {
 pub struct PhysicsVariant {
     /// Which it is.
     pub of: PhysicsOf,
-    /// It.
+    /// The physics itself.
     pub physics: Physics,
 }
 
@@ -133,7 +133,7 @@ pub struct PhysicsVariant {
 pub struct PhysicsRow {
     /// Which it is.
     pub of: PhysicsOf,
-    /// It.
+    /// The physics itself.
     pub physics: Physics,
     /// The best direct shot.
     pub direct: Result<BestShot, NoShot>,
@@ -212,7 +212,7 @@ pub struct PhysicsComparison {
 }
 
 impl PhysicsComparison {
-    /// The same with another shot that is the same in every row.
+    /// The comparison with another shot that is the same in every row.
     #[must_use]
     pub fn with_same_shot(
         mut self,
@@ -226,7 +226,7 @@ impl PhysicsComparison {
         self
     }
 
-    /// The same with how far towards each row the gym may be.
+    /// The comparison with how far towards each row the gym may be.
     #[must_use]
     pub fn with_possible_shares(mut self, shares: &[f64]) -> Self {
         for (row, share) in self.rows.iter_mut().zip(shares) {

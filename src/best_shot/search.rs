@@ -38,10 +38,10 @@ const MOST_OPTIMA: usize = 3;
 const PROMISING_MARGIN: f64 = 0.03;
 /// Two optima nearer than this, in pitch, are taken for the same one.
 const SAME_OPTIMUM_RAD: f64 = 0.05;
-/// The same for a fixed pitch angle: in direction, and relative in speed.
+/// Optima this near are one where the pitch angle is fixed: in direction, and relative in speed.
 const SAME_DIRECTION_RAD: f64 = 0.02;
 const SAME_SPEED: f64 = 0.02;
-/// The same for a side spin, rad/s.
+/// Optima this near in side spin are one, rad/s.
 const SAME_SIDE_SPIN_RAD_S: f64 = 6.0;
 /// A loss of P that is none by chance.
 const LEAST_LOSS: f64 = 0.01;
@@ -51,7 +51,7 @@ const COMPARISON_FACTOR: u32 = 8;
 const MAX_WINDOWS: u32 = 4;
 /// Fraction of a window's half width over which the parabola about its best shot is taken.
 const PARABOLA_REACH: f64 = 0.3;
-/// The same where P comes from samples, whose differences are less exact than those of a table.
+/// Reach of a parabola where P comes from samples, which are less exact than a table.
 const SAMPLED_PARABOLA_REACH: f64 = 0.7;
 
 /// Finds the best direct and the best bank shot of a profile, on the current rayon pool.

@@ -2,18 +2,18 @@
 //! own in its file.
 
 use super::commands::advise::AdviseOptions;
+use super::commands::angles::AnglesOptions;
 use super::commands::best::BestOptions;
 use super::commands::check::CheckOptions;
 use super::commands::compare::CompareOptions;
-use super::commands::compare_sessions::CompareSessionsOptions;
-use super::commands::design::DesignOptions;
 use super::commands::fit::FitOptions;
+use super::commands::map::MapOptions;
 use super::commands::new::NewOptions;
 use super::commands::physics::PhysicsOptions;
-use super::commands::pitch_curve::PitchCurveOptions;
 use super::commands::plan::PlanOptions;
-use super::commands::probability::ProbabilityOptions;
 use super::commands::report::ReportOptions;
+use super::commands::sample_size::SampleSizeOptions;
+use super::commands::shot::ShotOptions;
 use super::commands::simulate::SimulateOptions;
 use super::commands::sweep::{MergeOptions, SweepOptions};
 use super::commands::sweep_status::{MissingOptions, StatusOptions, VerifyOptions};
@@ -22,7 +22,7 @@ use super::commands::team::TeamOptions;
 use super::commands::trace::TraceOptions;
 use super::value_parsers::instruction_set;
 use crate::dynamics::InstructionSet;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 
 const EXIT_CODES: &str = "\
@@ -40,96 +40,161 @@ Exit codes:
 
 Examples:
   bankshot best configs/free_throw.toml
-  bankshot probability configs/errors_in_all_nine_variables.toml
-  bankshot plan configs/three_pointer.toml
-  bankshot sweep configs/quick_sweep.toml
-  bankshot trace configs/free_throw.toml --speed '24.3 ft/s' --pitch '52 deg' \
-    --backspin '3 rev/s'
-  bankshot simulate releases.csv --output outcomes.csv";
+  bankshot fit docs/data/gym_sensor.csv
+  bankshot advise results/gym-sensor-fit
+  bankshot sweep configs/quick_sweep.toml";
 
-/// How to shoot a basketball, given your own errors: a parallel batch probability engine.
+/// Find the best basketball shot for a player's own scatter.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXIT_CODES, max_term_width = 80)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Number of threads, at most 4 for each core [default: one for each]; no result depends on it.
+    /// Number of threads, at most 4 per core [default: one per core]. Does not change results.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Vector instructions [default: the best of this machine]; no result depends on them.
+    /// Vector instructions [default: the best of this machine]. Does not change results.
     #[arg(long, global = true, value_name = "SET", value_parser = instruction_set, hide = true)]
     pub(crate) simd: Option<InstructionSet>,
-    /// No progress bar and no remarks on standard error.
+    /// Print no progress and no remarks.
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
+    /// Print all details, not only what can change the decision.
+    #[arg(long, alias = "verbose", global = true)]
+    pub(crate) details: bool,
 }
+
+/// The commands by what people do with them, as the help of the program lists them.
+pub(crate) const GROUPS: [(&str, &[&str]); 7] = [
+    ("Start", &["new", "check"]),
+    ("Shots", &["best", "angles", "shot", "trace", "physics"]),
+    (
+        "Measured players",
+        &["fit", "advise", "compare", "sample-size"],
+    ),
+    ("Court", &["sweep", "team", "map"]),
+    ("Launchers", &["table"]),
+    ("Output", &["report"]),
+    (
+        "Plumbing (`bankshot help --all` lists these)",
+        &[
+            "simulate",
+            "status",
+            "verify",
+            "merge",
+            "missing",
+            "schema",
+            "completions",
+            "man",
+            "figures",
+        ],
+    ),
+];
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Find the best direct and the best bank shot from the profile's location.
+    /// Find the best direct and the best bank shot from a place.
     Best(BestOptions),
-    /// Find the best shot at each of several pitch angles: how much the angle matters.
-    PitchCurve(PitchCurveOptions),
+    /// Find the best shot at each of several release angles.
+    #[command(alias = "pitch-curve")]
+    Angles(AnglesOptions),
     /// Write a commented file to edit: a player, a launcher, a sweep, or a physics.
     New(NewOptions),
-    /// Say who of a team should bank from where, and who is best from where; posters to print.
+    /// Compare players, from one place or over the whole court; posters to print.
     Team(TeamOptions),
     /// Make a table of best shots over distances and angles, for a machine.
     Table(TableOptions),
-    /// Fit a profile to measured shots: releases, landings of a gym sensor, or tracked
-    /// trajectories.
+    /// Fit a player's profile to measured shots: releases, landings or tracked flights.
     Fit(FitOptions),
-    /// Say what a measured shooter should change and train, and how sure that is.
+    /// Suggest what to change and what to train, with 95 % intervals.
     Advise(AdviseOptions),
-    /// Say what changed between two sessions of a shooter.
-    CompareSessions(CompareSessionsOptions),
-    /// Say what a shooting test of some size will tell.
-    Design(DesignOptions),
-    /// Draw maps of bank and direct shots: over the court of a sweep, or over speed and pitch at
-    /// one location.
+    /// Compare two sessions of one player.
+    #[command(alias = "compare-sessions")]
     Compare(CompareOptions),
-    /// Check a profile or a sweep and list everything that is wrong with it.
+    /// Estimate how many shots a test needs.
+    #[command(alias = "design")]
+    SampleSize(SampleSizeOptions),
+    /// Draw maps of bank and direct shots.
+    Map(MapOptions),
+    /// Check a profile or a sweep, and list everything that is wrong with it.
     Check(CheckOptions),
-    /// Compare the best shots under the presets of physics and under single changes of it.
+    /// Check how much the result depends on ball, hoop and air.
     Physics(PhysicsOptions),
-    /// Say what `best` or `sweep` would simulate, how long it takes and how much memory it needs.
-    /// For a profile, also check that the search range misses no makes.
+    /// Estimate time, memory and disk of `best` or `sweep`.
+    #[command(hide = true)]
     Plan(PlanOptions),
-    /// Compute the probability of making one nominal shot, under up to nine errors.
-    Probability(ProbabilityOptions),
+    /// Compute how often one shot goes in.
+    #[command(alias = "probability")]
+    Shot(ShotOptions),
     /// Simulate the releases of a CSV or Parquet file.
+    #[command(hide = true)]
     Simulate(SimulateOptions),
-    /// Find the best shots at every place of a region; run the same command again to continue.
+    /// Find the best shots at every place of a region; run it again to continue.
     Sweep(SweepOptions),
     /// Show the progress of a sweep.
+    #[command(hide = true)]
     Status(StatusOptions),
     /// Check every result of a sweep, and compute some of them again.
+    #[command(hide = true)]
     Verify(VerifyOptions),
     /// Print the shards of a sweep with missing jobs, in the form of `sbatch --array`.
+    #[command(hide = true)]
     Missing(MissingOptions),
     /// Join the shards of a sweep into its tables.
+    #[command(hide = true)]
     Merge(MergeOptions),
-    /// Write one HTML page of a run: the answer, tables, maps, and the shots in a view that you can
-    /// turn.
+    /// Write one HTML page of a result, with tables, maps and a view of the shots.
     Report(ReportOptions),
     /// Simulate one shot and list its events.
     Trace(TraceOptions),
     /// Print the JSON schema of profiles and sweeps, for editors of TOML.
+    #[command(hide = true)]
     Schema,
     /// Print a completion script for a shell.
+    #[command(hide = true)]
     Completions {
         /// The shell.
         shell: clap_complete::Shell,
     },
     /// Draw the paper's Figs. 7 to 15.
+    #[command(hide = true)]
     Figures {
         /// Folder of the figures.
-        #[arg(long, value_name = "DIR", default_value = "figures")]
+        #[arg(
+            long = "output",
+            short = 'o',
+            alias = "out",
+            value_name = "DIR",
+            default_value = "figures"
+        )]
         out: PathBuf,
     },
     /// Print the manual page of the program or of a command.
+    #[command(hide = true)]
     Man {
         /// The command.
         command: Option<String>,
     },
+}
+
+/// The command line, with the commands in groups. With `all` the plumbing is listed too.
+pub(crate) fn command(all: bool) -> clap::Command {
+    let command = Arguments::command();
+    let about = |name: &str| {
+        let found = command.find_subcommand(name);
+        let about = found.and_then(clap::Command::get_about);
+        about.map_or_else(String::new, ToString::to_string)
+    };
+    let mut listed = String::new();
+    let count = if all { GROUPS.len() } else { GROUPS.len() - 1 };
+    for (title, names) in &GROUPS[..count] {
+        listed += &format!("{title}:\n");
+        for name in *names {
+            listed += &format!("  {name:<12} {}\n", about(name));
+        }
+        listed += "\n";
+    }
+    command.help_template(format!(
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{listed}Options:\n{{options}}{{after-help}}"
+    ))
 }

@@ -1,18 +1,17 @@
 //! The folder of a fit, read again.
 
 use super::failure::{Failure, refuse_missing};
+use super::loaded_profile::LoadedProfile;
 use super::measured_shots_flags::MeasuredShotsOptions;
 use super::terminal::print_remark;
-use crate::best_shot::{ShotAtPitch, TableShot};
+use crate::best_shot::{BestShots, ShotAtPitch, TableShot};
 use crate::fitting::{
-    AngleOverDraws, Draw, DrawProbabilities, Interval, Values, WeightedShots, best_angles_of_draws,
-    values_of,
+    AngleOverDraws, Draw, DrawProbabilities, Values, WeightedShots, best_angles_of_draws, values_of,
 };
-use crate::present::fit_files::fit_text::probability_text;
+use crate::present::best_shot_text::KindsOverDraws;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 use crate::store::fit::{FIT_FILE, Fit, SHOTS, folder_of_profile};
 use crate::store::shooters::fits_within;
-use crate::units::{DEGREE_RAD, with_decimals};
 use std::path::Path;
 
 /// Reads the folder of a fit.
@@ -24,12 +23,12 @@ pub(crate) fn read(folder: &Path) -> Result<Fit, Failure> {
     let place = folder.display();
     Err(Failure::usage(match &fits_within(folder)?[..] {
         [] => format!(
-            "{place}: holds no fit (it has no {FIT_FILE}); name a folder that `bankshot fit` wrote"
+            "{place}: is not the folder of a fit (it has no {FIT_FILE}); name a folder that `bankshot fit` wrote"
         ),
         several => {
             let names = several.iter().map(|name| name.display().to_string());
             format!(
-                "{place}: holds a fit of each shooter; name one: {}",
+                "{place}: has a fit for each shooter; name one: {}",
                 names.collect::<Vec<_>>().join(", ")
             )
         }
@@ -71,7 +70,7 @@ pub(crate) fn refuse_options_of_files(
 
 /// Why a shot has no P over the draws of a fit.
 const NO_OTHER_SPIN: &str =
-    "--draws: a fit knows backspin alone; this shot has side spin or rifle spin";
+    "--draws: a fit has backspin only, and this shot has side spin or rifle spin";
 
 /// P of a nominal shot from the profile's location over draws of the scatter.
 pub(crate) fn probability_over_draws(
@@ -107,24 +106,29 @@ pub(crate) fn bank_gain_over_draws(
     Ok(p(bank)?.minus(&p(direct)?))
 }
 
-/// Reads the folder of `--draws`, with a warning where its fit is that of another shooter.
-pub(crate) fn read_draws_of<'a>(
-    folder: Option<&'a Path>,
-    profile: &Profile,
-) -> Result<Option<(&'a Path, Fit)>, Failure> {
-    let Some(folder) = folder else {
-        return Ok(None);
+/// The fit whose draws say how far the scatter is known: that of `--draws`, else the one that the
+/// profile was written by, unless its scatter was changed.
+pub(crate) fn draws_for(
+    given: Option<&Path>,
+    loaded: &LoadedProfile,
+    is_scatter_changed: bool,
+) -> Result<Option<Fit>, Failure> {
+    let Some(folder) = given else {
+        return match is_scatter_changed {
+            true => Ok(None),
+            false => of_profile(loaded.path()),
+        };
     };
-    let fit = read(folder)?;
+    let (fit, profile) = (read(folder)?, &loaded.profile);
     let shooter = &fit.profiles[0].shooter().name;
     if *shooter != profile.shooter().name {
         print_remark(&format!(
-            "warning: the draws in {} are those of {shooter}, and the profile is that of {}",
+            "warning: the draws in {} are for {shooter}, the profile is for {}",
             folder.display(),
             profile.shooter().name
         ));
     }
-    Ok(Some((folder, fit)))
+    Ok(Some(fit))
 }
 
 /// P of a nominal shot over the draws of a fit.
@@ -169,42 +173,37 @@ pub(crate) fn usual_shot_over_draws(
     Ok(sample.probabilities(&here, |draw| draw.means[0], |draw| draw.factor_at(0)))
 }
 
-/// P of a nominal shot over the draws of a fit, in words.
-pub(crate) fn text_over_draws((folder, fit): (&Path, &Fit), p: &DrawProbabilities) -> String {
-    format!("{}: {}\n", which_draws(folder, fit), probability_text(p))
-}
-
-/// P of the best shot of each kind over the draws of a fit, and of bank less direct, in words.
+/// P of the best shot of each kind over the draws of a fit.
 pub(crate) fn kinds_over_draws(
-    (folder, fit): (&Path, &Fit),
+    fit: &Fit,
     profile: &Profile,
-    nominals: &[(ShotKind, &Nominal)],
-) -> Result<String, Failure> {
-    let mut text = format!("{}:\n", which_draws(folder, fit));
+    best: &BestShots,
+) -> Result<KindsOverDraws, Failure> {
     let mut by_kind = Vec::new();
-    for (kind, nominal) in nominals {
-        let p = probability_over_draws(&fit.posterior.draws, profile, nominal, SHOTS)?;
-        text += &format!("{}: {}\n", kind.name(), probability_text(&p));
-        by_kind.push((*kind, p));
+    for (kind, shot) in best.by_kind() {
+        if let Ok(shot) = shot {
+            let p = probability_over_draws(&fit.posterior.draws, profile, &shot.nominal, SHOTS)?;
+            by_kind.push((kind, p));
+        }
     }
-    if let [(ShotKind::Direct, direct), (ShotKind::Bank, bank)] = &by_kind[..] {
-        let difference = bank.minus(direct);
-        let points = difference.interval().scaled(100.0);
-        let sure = 100.0 * difference.share_positive();
-        text += &format!(
-            "bank less direct, draw by draw: {:+.1} points (95 %: {:+.1} to {:+.1}); bank is the better one in {sure:.0} of 100 draws\n",
-            points.mean, points.low, points.high
-        );
-    }
-    text += "P above uses the typical scatter. P is not linear in it, so the mean over the draws can differ by some tenths of a point.\n";
-    Ok(text)
+    let bank_is_better = match &by_kind[..] {
+        [(ShotKind::Direct, direct), (ShotKind::Bank, bank)] => {
+            Some(bank.minus(direct).share_positive())
+        }
+        _ => None,
+    };
+    let intervals = by_kind.iter().map(|(kind, p)| (*kind, p.interval()));
+    Ok(KindsOverDraws {
+        probabilities: intervals.collect(),
+        bank_is_better,
+    })
 }
 
 /// P of the best shot at each pitch angle over the draws of a fit.
 pub(crate) struct OverDraws {
     pub(crate) angles: Vec<Option<AngleOverDraws>>,
     /// The first and the last of the angles between which the best one lies in 95 of 100 draws.
-    best: Option<(usize, usize)>,
+    pub(crate) best: Option<(usize, usize)>,
 }
 
 /// P of the best shot at each pitch angle over the draws of a fit.
@@ -223,57 +222,4 @@ pub(crate) fn angles_over_draws(
         best: best_angles_of_draws(&angles),
         angles: AngleOverDraws::of_angles(&angles),
     })
-}
-
-/// The same in words.
-pub(crate) fn angles_in_words(
-    (folder, fit): (&Path, &Fit),
-    rows: &[ShotAtPitch],
-    over_draws: &OverDraws,
-) -> String {
-    let angles = rows.iter().zip(&over_draws.angles);
-    let angles: Vec<(f64, AngleOverDraws)> = angles
-        .filter_map(|(row, angle)| Some((row.pitch_rad / DEGREE_RAD, (*angle)?)))
-        .collect();
-    let mean = |(_, angle): &(f64, AngleOverDraws)| angle.probability.mean;
-    let best = angles.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
-    let Some((best_deg, _)) = best else {
-        return String::new();
-    };
-    let mut text = format!(
-        "{}:\npitch (deg), P (95 %), points less than at {best_deg:.1} deg, draw by draw (95 %). That angle has the greatest mean.\n",
-        which_draws(folder, fit)
-    );
-    for (pitch_deg, angle) in &angles {
-        let [mean, low, high] = percents(&angle.probability);
-        let [less, least, most] = percents(&angle.less);
-        text += &format!(
-            "{pitch_deg:>5.1}  {mean:>5.1} ({low:>4.1} to {high:>4.1})  {less:>5.1} ({least:>+5.1} to {most:>+5.1})\n"
-        );
-    }
-    if let Some((low, high)) = over_draws.best {
-        let [low, high] = [low, high].map(|i| rows[i].pitch_rad / DEGREE_RAD);
-        text += &format!(
-            "The best of these angles: {} in 95 of 100 draws.\n",
-            match low < high {
-                true => format!("from {low:.1} to {high:.1} deg"),
-                false => format!("{low:.1} deg"),
-            }
-        );
-    }
-    text
-}
-
-/// Mean and ends in percent.
-fn percents(interval: &Interval) -> [f64; 3] {
-    [interval.mean, interval.low, interval.high].map(|p| with_decimals(100.0 * p, 1))
-}
-
-/// Which draws an interval is over, and what it leaves out.
-fn which_draws(folder: &Path, fit: &Fit) -> String {
-    format!(
-        "over {} draws of the scatter in {}, the intended release being exact (the interval of P that `fit` prints has the uncertain means too; any other one is numerical)",
-        fit.posterior.draws.len(),
-        folder.display()
-    )
 }

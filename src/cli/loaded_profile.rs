@@ -18,6 +18,11 @@ pub(crate) struct LoadedProfile {
 }
 
 impl LoadedProfile {
+    /// The file.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Reads and checks a profile, without a warning.
     pub(crate) fn read(path: &Path, physics: &PhysicsArg) -> Result<Self, Failure> {
         // The folder of a fit or of a run holds its profile.
@@ -41,7 +46,7 @@ impl LoadedProfile {
         }
     }
 
-    /// The same, with warnings of what is implausible in it, and of what another physics changes.
+    /// Reads a profile, with warnings of implausible values and of what another physics changes.
     /// `fixed` are nominal values that the command itself fixes.
     pub(crate) fn read_and_warn(
         path: &Path,

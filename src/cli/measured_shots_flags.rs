@@ -44,22 +44,22 @@ pub(crate) struct MeasuredShotsOptions {
     /// maps, one a line.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
-    /// Only the shots of this shooter, of a file with several.
+    /// Fit only this player, for a file with several.
     #[arg(long, value_name = "NAME")]
     pub(crate) shooter: Option<String>,
-    /// Only the shots of this session, of a file with a column session; may be repeated.
-    /// `compare-sessions` takes two, and compares them.
+    /// Fit only this session, for a file with a column "session". Repeatable; `compare` compares
+    /// two.
     #[arg(long, value_name = "NAME")]
     pub(crate) session: Vec<String>,
-    /// Order of day and month in dates of sessions such as 03/04/2025, which do not say it.
+    /// Order of day and month in dates such as 03/04/2025.
     #[arg(long, value_name = "ORDER")]
     pub(crate) dates: Option<DatesArg>,
-    /// The value of a make in the column of the results, such as 1: all other rows, blanks too, are
+    /// The value of a make in the results column, such as 1; all other rows, also blank ones, are
     /// misses.
     #[arg(long, value_name = "VALUE")]
     pub(crate) made: Option<String>,
-    /// Coordinates of trajectories: hoop (x along the court from the hoop's centre, y to the right
-    /// of who faces the hoop) or court_94x50 (from a corner). z is upwards.
+    /// Coordinates of trajectories: hoop (x from the hoop's centre along the court, y to the right
+    /// as you face the hoop) or court_94x50 (from a corner). z is up from the floor.
     #[arg(long, value_name = "FRAME", default_value = "hoop")]
     pub(crate) frame: String,
     /// Instead of --frame: where the hoop's centre is in the coordinates of the file, and the
@@ -73,20 +73,18 @@ pub(crate) struct MeasuredShotsOptions {
     /// Angle of the place on the court [default: 0 deg].
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub(crate) angle: Option<String>,
-    /// Height of the release above the floor. Of a file with several shooters it may be repeated,
-    /// one for each: 'Ana=6.9 ft'.
+    /// Height of the release above the floor. With several players, repeatable, one for each:
+    /// 'Ana=6.9 ft'.
     #[arg(long, value_name = "[NAME=]LENGTH")]
     pub(crate) release_height: Vec<String>,
-    /// Backspin, where it was not measured [default: that of the population, 2.5 rev/s give or take
-    /// 0.25].
+    /// Backspin, if it was not measured [default: 2.5 rev/s with a standard deviation of 0.25].
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// Distribution of the releases about the aim: normal, student (heavier tails, as heavy as the
-    /// shots ask for), or auto (student where the kurtosis of the shots is too great for normal
-    /// ones).
+    /// Distribution of the releases: normal, student (heavier tails), or auto (student if the shots
+    /// have too many outliers for a normal distribution).
     #[arg(long, value_name = "NAME", default_value = "auto")]
     pub(crate) tails: TailsArg,
-    /// Seed of the posterior's draws.
+    /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Units of the results [default: those of the fit for its folder, else imperial].
@@ -306,7 +304,7 @@ impl MeasuredShotsOptions {
         self.read_sessions(path, &self.session)
     }
 
-    /// The same of other sessions; of all, if none is named.
+    /// Reads the shots of some sessions; of all, if none is named.
     pub(crate) fn read_sessions(
         &self,
         path: &Path,
@@ -316,7 +314,7 @@ impl MeasuredShotsOptions {
         let refuse = |message: String| Failure::usage(format!("{}: {message}", path.display()));
         if path.extension().is_some_and(|end| end == "toml") {
             return Err(refuse(
-                "this is a profile or a sweep, not a table of shots; give a CSV or Parquet file"
+                "is a profile or a sweep, not measured shots; name a CSV or Parquet file, or the folder of a fit"
                     .to_owned(),
             ));
         }

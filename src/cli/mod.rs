@@ -24,11 +24,11 @@ mod value_lists;
 mod value_parsers;
 
 use crate::probability::Progress;
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches};
 use command_line::{Arguments, Command};
 use commands::{
-    advise, best, check, compare, compare_sessions, design, figures, fit, new, physics,
-    pitch_curve, plan, probability, report, simulate, sweep, sweep_status, table, team, trace,
+    advise, angles, best, check, compare, figures, fit, map, new, physics, plan, report,
+    sample_size, shot, simulate, sweep, sweep_status, table, team, trace,
 };
 use failure::{Failure, code};
 use std::ffi::OsString;
@@ -43,11 +43,18 @@ pub fn main() -> ExitCode {
     ExitCode::from(main_with(std::env::args_os()))
 }
 
-/// The same with other arguments than those of the process, the first of which is the name of the
+/// Runs the program with other arguments than those of the process; the first is the name of the
 /// program. Returns the exit code.
 #[must_use]
 pub fn main_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    if is_help_of_all(&arguments) {
+        return match command_line::command(true).print_help() {
+            Ok(()) => code::DONE,
+            Err(_) => code::IO,
+        };
+    }
+    let arguments = match parsed(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             let printed = error.print();
@@ -62,12 +69,30 @@ pub fn main_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone
     run_caught(&arguments)
 }
 
+/// The arguments, read.
+fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<Arguments, clap::Error> {
+    let command = command_line::command(false);
+    let matches = command.try_get_matches_from(arguments)?;
+    Arguments::from_arg_matches(&matches)
+}
+
+/// Whether all commands are asked for: `bankshot help --all`.
+fn is_help_of_all(arguments: &[OsString]) -> bool {
+    let words: Vec<&str> = arguments
+        .iter()
+        .skip(1)
+        .filter_map(|word| word.to_str())
+        .collect();
+    words == ["help", "--all"] || words == ["--help", "--all"]
+}
+
 /// Runs a command inside another program: its answer is returned instead of printed. The first
 /// argument is the name of the program. One command runs at a time; `progress` may end it with
 /// [`stop`].
 #[must_use]
 pub fn answer_of(arguments: &[String], progress: Arc<dyn Progress + Send>) -> CommandAnswer {
-    embedded_session::run(progress, || match Arguments::try_parse_from(arguments) {
+    let arguments = arguments.iter().map(OsString::from);
+    embedded_session::run(progress, || match parsed(arguments) {
         Ok(arguments) => run_caught(&arguments),
         Err(error) => {
             let text = error.render().to_string();
@@ -104,25 +129,26 @@ fn run_caught(arguments: &Arguments) -> u8 {
 
 fn run(arguments: &Arguments) -> Result<u8, Failure> {
     terminal::set_quiet(arguments.quiet);
+    terminal::set_details(arguments.details);
     if let Some(instructions) = arguments.simd {
         instructions.use_by_default();
     }
     let pool = thread_pool(arguments.threads)?;
     pool.install(|| match &arguments.command {
         Command::Best(options) => best::run(options),
-        Command::Compare(options) => compare::run(options),
+        Command::Map(options) => map::run(options),
         Command::Fit(options) => fit::run(options),
         Command::Advise(options) => advise::run(options),
-        Command::CompareSessions(options) => compare_sessions::run(options),
-        Command::Design(options) => design::run(options),
+        Command::Compare(options) => compare::run(options),
+        Command::SampleSize(options) => sample_size::run(options),
         Command::New(options) => new::run(options),
         Command::Team(options) => team::run(options),
         Command::Table(options) => table::run(options),
         Command::Check(options) => check::run(options),
-        Command::PitchCurve(options) => pitch_curve::run(options),
+        Command::Angles(options) => angles::run(options),
         Command::Physics(options) => physics::run(options),
         Command::Plan(options) => plan::run(options),
-        Command::Probability(options) => probability::run(options),
+        Command::Shot(options) => shot::run(options),
         Command::Simulate(options) => simulate::run(options),
         Command::Sweep(options) => sweep::run(options),
         Command::Status(options) => sweep_status::status(options),

@@ -1,8 +1,9 @@
 //! Files that `--output` names, beside what a command prints.
 
 use super::failure::{Failure, code};
-use super::terminal::{print_answer, print_hint};
+use super::terminal::{print_answer, print_hint, print_text};
 use crate::files::atomic_file;
+use crate::present::layout::TextAnswer;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -46,7 +47,7 @@ pub(crate) fn check(paths: &[PathBuf]) -> Result<(), Failure> {
 
 /// An answer in each of its forms.
 pub(crate) trait Rendered {
-    fn text(&self) -> String;
+    fn text(&self) -> TextAnswer;
     fn json(&self) -> Value;
     fn csv(&self) -> String;
 }
@@ -62,12 +63,15 @@ pub(crate) fn deliver(
         let content = match form_of(path)? {
             OutputForm::Csv => answer.csv(),
             OutputForm::Json => json(),
-            OutputForm::Text => answer.text(),
+            OutputForm::Text => answer.text().text(true),
         };
         atomic_file::write(path, content.as_bytes())
             .map_err(|error| Failure::io(path.display(), &error))?;
     }
-    print_answer(&if is_json { json() } else { answer.text() })?;
+    match is_json {
+        true => print_answer(&json())?,
+        false => print_text(&answer.text())?,
+    };
     Ok(())
 }
 

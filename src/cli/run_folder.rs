@@ -159,7 +159,7 @@ pub(crate) fn refuse_other_results(folder: &Path, own: RunKind) -> Result<(), Fa
         let (command, file) = kind.command_and_file();
         if kind != own && folder.join(file).exists() {
             return Err(Failure::usage(format!(
-                "{}: holds the results of `bankshot {command}`; name another folder",
+                "{}: has the results of `bankshot {command}`; name another folder",
                 folder.display()
             )));
         }

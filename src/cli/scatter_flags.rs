@@ -9,10 +9,10 @@ use toml_edit::{Item, Value};
 /// The flag of changed errors.
 #[derive(Args, Debug)]
 pub(crate) struct ScatterOptions {
-    /// Make an error of the profile smaller or greater, such as 'speed=-20%': speed, pitch, polar
+    /// Change the scatter of the profile, such as 'speed=-20%' (20 % less): speed, pitch, polar
     /// or backspin; may be repeated.
     #[arg(long, value_name = "ERROR=PERCENT")]
-    scatter: Vec<String>,
+    pub(crate) scatter: Vec<String>,
 }
 
 /// The errors that can be changed, with their keys in a profile.
@@ -26,17 +26,6 @@ const ERRORS: [(&str, &[&str]); 4] = [
 const MOST_PERCENT: f64 = 900.0;
 
 impl ScatterOptions {
-    /// That errors are not those of the profile, a line; empty where they are.
-    pub(crate) fn in_words(&self) -> String {
-        match &self.scatter[..] {
-            [] => String::new(),
-            changed => format!(
-                "The scatter is not that of the profile: --scatter {}.\n",
-                changed.join(" --scatter ")
-            ),
-        }
-    }
-
     /// The profile with changed errors, each in the unit that it is written in.
     pub(crate) fn changed(&self, loaded: LoadedProfile) -> Result<LoadedProfile, Failure> {
         let mut factors: Vec<(usize, f64)> = Vec::new();
@@ -91,7 +80,7 @@ fn scaled(item: &Item, factor: f64) -> Option<Value> {
 fn error_and_factor(text: &str) -> Result<(usize, f64), Failure> {
     let refuse = |what: &str| {
         Failure::usage(format!(
-            "--scatter: '{text}' {what}; write speed, pitch, polar or backspin, = and a change from -100 to {MOST_PERCENT} %, as in 'speed=-20%'"
+            "--scatter: '{text}' {what}; write one of speed, pitch, polar and backspin, as in 'speed=-20%' (20 % less; from -100 % to {MOST_PERCENT} %)"
         ))
     };
     let (name, percent) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
@@ -99,7 +88,7 @@ fn error_and_factor(text: &str) -> Result<(usize, f64), Failure> {
     let number = number.ok_or_else(|| refuse("is none of the four"))?;
     let percent = percent.trim();
     if !units::PERCENT.iter().any(|unit| percent.ends_with(unit)) {
-        return Err(refuse("is not in percent"));
+        return Err(refuse("has no %"));
     }
     let share = units::parse(percent.trim_start_matches('+'), Dimension::Number)
         .map_err(|_| refuse("has no number of percent"))?;

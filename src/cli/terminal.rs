@@ -2,8 +2,10 @@
 
 use super::embedded_session;
 use super::failure::{Failure, code};
+use crate::present::layout::TextAnswer;
 use crate::shooter::is_control_or_direction;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Prints an answer. A closed reader (`| head -1`) is not a failure.
@@ -107,6 +109,38 @@ pub(crate) fn set_quiet(quiet: bool) {
 /// See [`set_quiet`].
 pub(crate) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
+}
+
+/// Whether the user wants everything that is known.
+static DETAILS: AtomicBool = AtomicBool::new(false);
+
+/// Sets whether the user wants everything that is known.
+pub(crate) fn set_details(details: bool) {
+    DETAILS.store(details, Ordering::Relaxed);
+}
+
+/// See [`set_details`].
+pub(crate) fn has_details() -> bool {
+    DETAILS.load(Ordering::Relaxed)
+}
+
+/// Prints an answer in text.
+pub(crate) fn print_text(answer: &TextAnswer) -> Result<u8, Failure> {
+    print_answer(&answer.text(has_details()))
+}
+
+/// Prints where an answer was saved and what comes next.
+pub(crate) fn print_next(saved: Option<&Path>, next: &str) {
+    print_hint("");
+    if let Some(folder) = saved {
+        print_hint(&format!("Saved: {}", folder.display()));
+    }
+    let more = if has_details() { "" } else { "More: --details" };
+    match next {
+        "" if more.is_empty() => {}
+        "" => print_hint(more),
+        next => print_hint(format!("Next:  {next:<50} {more}").trim_end()),
+    }
 }
 
 /// Prints a remark that the user may not want.

@@ -45,7 +45,7 @@ pub(crate) fn standard_error(text: &str) -> Result<f64, String> {
 pub(crate) fn points(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.1..=50.0).contains(&value) => Ok(value),
-        _ => Err("must be a number of points from 0.1 to 50".to_owned()),
+        _ => Err("must be a number from 0.1 to 50, in makes per 100".to_owned()),
     }
 }
 

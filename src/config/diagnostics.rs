@@ -29,7 +29,7 @@ pub(super) enum Problem {
 }
 
 impl Diagnostic {
-    /// The same, of a sort.
+    /// The diagnostic as one of a kind.
     pub(super) fn of(mut self, problem: Problem) -> Self {
         self.problem = problem;
         self

@@ -351,7 +351,7 @@ const TABLES: [(&str, &str, &[Key]); 7] = [
     ("location", "From where.", LOCATION),
     (
         "nominal",
-        "A shot: that of `probability` and `trace`, and what `best` keeps fixed.",
+        "A shot: that of `shot` and `trace`, and what `best` keeps fixed.",
         NOMINAL,
     ),
     ("search", "How the best shot is sought.", SEARCH),

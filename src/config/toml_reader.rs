@@ -435,9 +435,9 @@ impl<'t, 'i> TableReader<'t, 'i> {
                         meant.rsplit('.').next().unwrap_or_default()
                     )
                 }
-                None => String::new(),
+                None => format!("; known are {known_names}"),
             };
-            let message = format!("is not a key here; known are {known_names}{hint}");
+            let message = format!("is an unknown key{hint}");
             let shown: String = name.chars().take(60).collect();
             diagnostics.push(Diagnostic {
                 span: key.span(),

@@ -81,13 +81,13 @@ impl ReleaseWithoutSpeed {
         Self::at(release.position_m(), release)
     }
 
-    /// The same for a release whose position is known.
+    /// State of a release whose position is known.
     pub(crate) fn at(position_m: Vec3<f64>, release: &Release) -> Self {
         let pitch = libm::sincos(release.pitch_rad);
         Self::of(position_m, pitch, libm::sincos(release.polar_rad), release)
     }
 
-    /// The same with known sines and cosines of both angles.
+    /// State of a release with known sines and cosines of both angles.
     fn of(
         position_m: Vec3<f64>,
         (sin_pitch, cos_pitch): (f64, f64),

@@ -301,7 +301,7 @@ impl Simulator {
         UndisturbedFlight::new(&self.params, start).state_after(seconds)
     }
 
-    /// The same at many times, in their order: the flight is computed once.
+    /// Undisturbed states at many times, in their order: the flight is computed once.
     pub fn undisturbed_states(
         &self,
         start: &BallState,
@@ -380,7 +380,7 @@ impl Simulator {
         self.trace_state(release.state(), interval_s)
     }
 
-    /// The same from the nine state variables.
+    /// Traces a shot from the nine state variables.
     ///
     /// # Errors
     /// The state has a NaN or infinite value.

@@ -77,7 +77,7 @@ impl<R: Read> CsvRecords<R> {
         Ok(records)
     }
 
-    /// The same of a text whose cells may be separated by semicolons or tabs: where its first line
+    /// Records of a text whose cells may be separated by semicolons or tabs: where its first line
     /// that is not empty has two or more of them outside quotes, and more than commas (a name may
     /// hold one).
     ///

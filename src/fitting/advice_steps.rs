@@ -30,7 +30,7 @@ const TOLERANCE: f64 = 0.005;
 /// Nobody can throw harder or softer, or aim to a side, by less than this on purpose: m/s, rad.
 pub const SAME_SPEED_M_S: f64 = 0.05 * FOOT_M;
 const SAME_AIM_RAD: f64 = 0.05 * DEGREE_RAD;
-/// The same for the release angle, rad.
+/// Nobody can change the release angle by less than this on purpose, rad.
 const SAME_PITCH_RAD: f64 = 0.1 * DEGREE_RAD;
 /// A change is supported from this share of the draws on: in so many it gains, and goes to one
 /// side.

@@ -11,7 +11,7 @@ pub struct AngleOverDraws {
     /// P.
     pub probability: Interval,
     /// By how much it is less than at the angle with the highest mean, draw by draw.
-    pub less: Interval,
+    pub below_best: Interval,
 }
 
 /// The first and the last of the indices between which the best angle lies in 95 of 100 draws;
@@ -44,7 +44,7 @@ impl AngleOverDraws {
         let angle = |p: &DrawProbabilities| {
             Some(Self {
                 probability: p.interval(),
-                less: best?.minus(p).interval(),
+                below_best: best?.minus(p).interval(),
             })
         };
         angles.iter().map(|p| angle(p.as_ref()?)).collect()

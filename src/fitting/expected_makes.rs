@@ -310,7 +310,7 @@ pub fn expected_makes(
 }
 
 impl ExpectedMakes {
-    /// The same of the shots from one place.
+    /// Expected makes of the shots from one place.
     #[must_use]
     pub fn at_place(&self, place: usize) -> Self {
         let here = self.shots.iter().filter(|shot| shot.place == place);

@@ -16,7 +16,7 @@ use nalgebra::{SMatrix, SVector};
 pub enum TestError {
     /// Fewer shots than unknowns.
     #[error(
-        "has {shots} usable shots; a fit of shots from {places} place(s) has {unknowns} unknowns and needs at least {needed} shots"
+        "has {shots} usable shots{}; a fit needs at least {needed}", if *.places > 1 { format!(" from {} places", .places) } else { String::new() }
     )]
     TooFewShots {
         /// Usable shots.

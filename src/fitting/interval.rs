@@ -40,7 +40,7 @@ impl Interval {
         }
     }
 
-    /// The same in another unit.
+    /// The interval in another unit.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self {

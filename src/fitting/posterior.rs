@@ -144,7 +144,7 @@ impl Draw {
         }
     }
 
-    /// The same with heavier tails: `tail_weight` is one over the degrees of freedom, below 1/2.
+    /// A draw with heavier tails: `tail_weight` is one over the degrees of freedom, below 1/2.
     /// The standard deviations stay those of the releases.
     #[must_use]
     pub fn with_tail_weight(self, tail_weight: f64) -> Self {
@@ -154,7 +154,7 @@ impl Draw {
         }
     }
 
-    /// The same with values of single precision, far below what shots tell. A value that was
+    /// A draw with values of single precision, far below what shots resolve. A value that was
     /// written in any unit and read again is rounded to the same bits.
     #[must_use]
     pub fn rounded(&self) -> Self {
@@ -169,7 +169,7 @@ impl Draw {
         .with_tail_weight(round(self.tail_weight))
     }
 
-    /// The same scatter about one other aim.
+    /// A draw with the scatter about one other aim.
     #[must_use]
     pub fn aimed_at(&self, mean: Values) -> Self {
         Self::new(

@@ -34,7 +34,7 @@ pub struct PopulationPrior {
     pub log_sd: [f64; 4],
     /// Fisher's z (inverse hyperbolic tangent) of the correlation of speed and pitch angle.
     pub speed_pitch: Spread,
-    /// The same of the other partial correlations.
+    /// Spread of the other partial correlations.
     pub other_correlations: Spread,
     /// Relative growth of the speed's standard deviation for a relative growth of the speed, and
     /// the same of the square.

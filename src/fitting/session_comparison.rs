@@ -90,7 +90,7 @@ pub fn compare_sessions(
     compare(&values(before), &values(after), shots)
 }
 
-/// The same for the probabilities of their draws.
+/// Compares the probabilities of the draws of two sessions.
 #[must_use]
 pub fn compare_probabilities(
     probabilities: [&DrawProbabilities; 2],

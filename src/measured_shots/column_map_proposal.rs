@@ -241,7 +241,7 @@ pub fn map_proposal(columns: &Columns) -> String {
         .collect();
         if !missing.is_empty() {
             text += &format!(
-                "\nand, as no column says where the shots are from: {}",
+                "\nand, as no column gives the place of the shots: {}",
                 missing.join(" ")
             );
             if taken.contains(&"shooter") || columns.label(Label::Shooter).is_some() {

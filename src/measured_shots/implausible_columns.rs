@@ -11,7 +11,7 @@ struct UsualMedian {
     quantity: Quantity,
     low: f64,
     high: f64,
-    /// The same in words.
+    /// The range in words.
     in_words: &'static str,
 }
 

@@ -109,7 +109,7 @@ fn check_options(reader: &RowReader<'_>) -> Result<(), String> {
         ];
         if let Some((_, flag)) = place.iter().find(|(given, _)| given.is_some()) {
             return Err(format!(
-                "holds trajectories, which say where each shot is from; leave {flag} out"
+                "has trajectories, which give the place of each shot; leave {flag} out"
             ));
         }
     }
@@ -147,24 +147,36 @@ fn check_named_heights(reader: &RowReader<'_>, shooters: &[&String]) -> Result<(
     }
 }
 
-/// Refuses a file that does not say where its shots are from.
+/// Refuses a file without the place of its shots.
 fn check_place(reader: &RowReader<'_>) -> Result<(), String> {
     if reader.source == Source::Trajectories {
         return Ok(());
     }
     let has = |quantity| reader.columns.quantity(quantity).is_some();
+    // Name, column, flag.
     let mut missing = Vec::new();
     if !has(Quantity::Distance) && reader.options.distance_m.is_none() {
-        missing.push("column distance_ft, or --distance '13.75 ft'");
+        missing.push(["distance", "distance_ft", "--distance '13.75 ft'"]);
     }
     let heights = &reader.options.release_heights_m;
     if !has(Quantity::ReleaseHeight) && heights.is_empty() {
-        missing.push("column release_height_ft, or --release-height '7 ft'");
+        missing.push([
+            "release height",
+            "release_height_ft",
+            "--release-height '7 ft'",
+        ]);
     }
     if !missing.is_empty() {
+        let joined = |part: usize, between: &str| {
+            let parts: Vec<&str> = missing.iter().map(|names| names[part]).collect();
+            parts.join(between)
+        };
         return Err(format!(
-            "does not say where the shots are from: give {}{}",
-            missing.join("; and "),
+            "has no {}; type {}, or add the column{} {}{}",
+            joined(0, " and no "),
+            joined(2, " "),
+            if missing.len() > 1 { "s" } else { "" },
+            joined(1, " and "),
             map_proposal(reader.columns)
         ));
     }

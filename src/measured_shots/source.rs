@@ -58,7 +58,7 @@ impl Source {
             return if columns.label(Label::Shot).is_some() {
                 Ok(Self::Trajectories)
             } else {
-                Err("column shot is missing: it says which points belong together".to_owned())
+                Err("column shot is missing: it groups the points of one shot".to_owned())
             };
         }
         if has(Quantity::EntryAngle) && has(Quantity::Depth) && has(Quantity::LeftRight) {

@@ -110,7 +110,7 @@ impl Physics {
         Ok(())
     }
 
-    /// The same for the contact with one solid.
+    /// Sets the restitution of the contact with one solid.
     ///
     /// # Errors
     /// `restitution` is not above 0 and at most 1.

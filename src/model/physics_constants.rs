@@ -1,5 +1,5 @@
 //! The table of the physical constants: one row has all that is known of a constant. The reader of
-//! `[physics]`, its ranges, its JSON schema and the list of `check --verbose` are made of it.
+//! `[physics]`, its ranges, its JSON schema and the list of `check --details` are made of it.
 
 use super::physics::Physics;
 use crate::units::{Dimension, FOOT_M, INCH_M, UnitSystem};
@@ -38,7 +38,7 @@ pub(super) enum Shown {
     Never,
     /// In inches or centimetres.
     Short,
-    /// The same, with the circumference.
+    /// In inches or centimetres, with the circumference.
     Around,
     /// In feet or metres.
     Long,

@@ -73,10 +73,7 @@ pub fn draw_probabilities(profile: &Profile, shots: &[PlottedShot]) -> Option<Pl
     if let [direct, bank] = &values[..] {
         draw_difference(&mut svg, &maps.map(2), direct, bank);
     }
-    let caption = format!(
-        "P of the best shots (circles): {}.",
-        maps.best_probabilities()
-    );
+    let caption = format!("Best shots (circles): {}.", maps.best_probabilities());
     let white = if has_difference {
         format!(" White in the difference: within {MIN_SIGNIFICANT:.3}.")
     } else {

@@ -22,7 +22,7 @@ const TOP: f64 = 74.0;
 /// The usual shot of a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct UsualShot {
-    /// It.
+    /// The release.
     pub nominal: Nominal,
     /// Its P over the draws.
     pub probability: Interval,
@@ -104,29 +104,29 @@ pub fn draw(
     if let Some(usual) = usual {
         draw_usual(&mut svg, &of_p, &usual);
     }
-    of_p.draw(&mut svg, "", "pitch angle (deg)", "P");
+    of_p.draw(&mut svg, "", "release angle (deg)", "probability");
     draw_curve(&mut svg, &of_speed, (rows, kind), &speed);
     if let Some(UsualShot { nominal, .. }) = usual {
         let at = (nominal.pitch_rad / DEGREE_RAD, nominal.speed_m_s / metre);
         mark_usual(&mut svg, of_speed.pixel(at));
     }
     let label = format!("best speed ({long}/s)");
-    of_speed.draw(&mut svg, "", "pitch angle (deg)", &label);
+    of_speed.draw(&mut svg, "", "release angle (deg)", &label);
     let bars = if over_draws.is_empty() {
         ""
     } else {
-        " Bars: 95 % of the draws of the fit."
+        " Bars: 95 % intervals."
     };
     let kinds = match kind {
         TableKind::One(_) => "",
-        TableKind::Better => " White points: bank shots.",
+        TableKind::Better => " White circles: bank shots.",
     };
     let of_usual = match usual {
-        Some(_) => " Square: the usual shot as it was measured (its bar: 95 % of the draws).",
+        Some(_) => " Square: the current shot as measured, with its 95 % interval.",
         None => "",
     };
     let caption = format!(
-        "P of the best shot at each pitch angle, and its speed. Large circle: the highest P.{kinds}{bars}{of_usual}"
+        "The best shot at each release angle, and its speed. Large circle: the best of all.{kinds}{bars}{of_usual}"
     );
     for (i, line) in textwrap::wrap(&caption, CAPTION_LETTERS).iter().enumerate() {
         let y = TOP + PANEL.1 + 64.0 + 15.0 * i as f64;

@@ -32,7 +32,7 @@ pub enum ColourKey<'a> {
 impl ColourScale<'static> {
     /// The scale of P.
     pub const PROBABILITY: Self = Self {
-        name: "P",
+        name: "probability",
         range: (0.0, 1.0),
         colour: &sequential,
     };

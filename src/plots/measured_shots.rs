@@ -326,7 +326,7 @@ fn make_zone(
     svg.footnote(
         (80.0, 646.0),
         &format!(
-            "Green: made at the usual entry angle ({:.0} deg) and backspin, without other errors. Circle: the ring.",
+            "Green: goes in at the mean entry angle ({:.0} deg) and backspin, without other scatter. Circle: the ring.",
             entry / DEGREE_RAD
         ),
     );
@@ -404,7 +404,7 @@ fn drift(
         (20.0, 26.0),
         16.0,
         Anchor::Start,
-        "The shots, session by session: each less the mean of its place",
+        "The shots, session by session, relative to the mean of their place",
     );
     // Session by session, also where their shots take turns in the file.
     let names = session_names(sessions);
@@ -496,7 +496,7 @@ fn intervals(fit: &ShooterFit, units: UnitSystem) -> Plot {
             String::new()
         };
         let p = probabilities.interval().scaled(100.0);
-        rows.push(share(format!("P of the usual shot{at} (%)"), p));
+        rows.push(share(format!("current shot{at}: makes per 100"), p));
         let makes = fit.makes.at_place(place);
         if makes.labelled > 0 {
             let counted = Interval {

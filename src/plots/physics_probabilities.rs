@@ -21,7 +21,10 @@ const ROW: f64 = 24.0;
 #[must_use]
 pub fn draw(name: &str, comparison: &PhysicsComparison, units: UnitSystem) -> Plot {
     let rows = &comparison.rows;
-    let title = format!("{}: P under each physics", shortened(name, 60));
+    let title = format!(
+        "{}: how likely the shots go in under each physics",
+        shortened(name, 60)
+    );
     let bottom = TOP + ROW * rows.len() as f64;
     let mut svg = Svg::new(WIDTH, bottom + 80.0);
     svg.heading((20.0, 26.0), 16.0, Anchor::Start, &title);
@@ -41,7 +44,7 @@ pub fn draw(name: &str, comparison: &PhysicsComparison, units: UnitSystem) -> Pl
         (LEFT + 0.5 * SCALE_WIDTH, bottom + 38.0),
         12.0,
         Anchor::Middle,
-        "P",
+        "probability",
     );
     draw_key(&mut svg);
     for (i, row) in rows.iter().enumerate() {

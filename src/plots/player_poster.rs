@@ -81,11 +81,11 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
                 of_hundred(best.0)
             ),
             0 => format!(
-                "Your surest place: {named}. With your best release {} of 100 go in there.",
+                "Your best place: {named}. With your best release {} of 100 go in there.",
                 of_hundred(best.0)
             ),
             _ => format!(
-                "Your surest place: {named}. With your best release {} of 100 go in there; {others} other {} as sure.",
+                "Your best place: {named}. With your best release {} of 100 go in there; {others} other {} as good.",
                 of_hundred(best.0),
                 if others == 1 {
                     "place is"
@@ -110,8 +110,7 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
     sentences.extend(own.filter(|own| !own.is_empty()).map(str::to_owned));
     let mut notes = hoop_in_words(&bank, units) + &doubt_in_words(results.chances());
     if own.is_some() && left_and_right_differ(results.chances()) {
-        notes +=
-            " That left and right differ can be chance: it rests on the shots that were measured.";
+        notes += " The difference between left and right can be chance.";
     }
     if !notes.is_empty() {
         sentences.push(notes.trim_start().to_owned());
@@ -129,7 +128,7 @@ pub fn draw(results: &SweepResults<'_>, own: Option<&str>) -> Option<PlayerPoste
         let words_top = MAP_TOP + height;
         let mut svg = Svg::new(width, words_top + LINE_HEIGHT * lines.len() as f64);
         let title = format!(
-            "{}: makes in 100 with the best release",
+            "{}: makes per 100 with the best release",
             results.shooter_name()
         );
         svg.heading((10.0, 26.0), 22.0, Anchor::Start, &title);
@@ -198,26 +197,25 @@ fn direct_in_words(places: &[PlaceProbabilities]) -> String {
     let is_level = |place: &&PlaceProbabilities| place.preference() == Some(Preference::Either);
     let level = match places.iter().filter(is_level).count() {
         0 => String::new(),
-        1 => "; at one place it is as good".to_owned(),
-        places => format!("; at {places} places it is as good"),
+        1 => " At 1 place the bank shot is just as good.".to_owned(),
+        places => format!(" At {places} places the bank shot is just as good."),
     };
-    let surely = if places.iter().all(PlaceProbabilities::is_sure) {
-        ""
-    } else {
-        " surely"
+    let clearly = match places.iter().all(PlaceProbabilities::is_sure) {
+        true => "Shoot direct everywhere.",
+        false => "Shoot direct: the bank shot is clearly better nowhere.",
     };
-    format!("Shoot direct: from no place does the bank shot{surely} make 1 of 100 more{level}.")
+    format!("{clearly}{level}")
 }
 
 /// At how many places the measured shots leave the kind of shot open; empty if at none.
 fn doubt_in_words(places: &[PlaceProbabilities]) -> String {
     let places = match places.iter().filter(|place| !place.is_sure()).count() {
         0 => return String::new(),
-        1 => "one place".to_owned(),
+        1 => "the place".to_owned(),
         open => format!("{open} places"),
     };
     format!(
-        " At {places}, marked ?, your measured shots do not tell yet whether to bank; the number is that of the direct shot."
+        " At {places} marked ? your shots cannot yet settle bank or direct; the number is for the direct shot."
     )
 }
 
@@ -243,14 +241,14 @@ fn hoop_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
     let places = match turned.len() {
         0 => return String::new(),
         _ if bank.len() == 1 => "there".to_owned(),
-        all if all == bank.len() => "from all places to bank from".to_owned(),
+        all if all == bank.len() => "from all outlined places".to_owned(),
         _ => {
             let groups = with_mirror_images(&turned).into_iter();
             let words = groups.map(|same| same[0].in_players_words(&turned, units));
             format!("from {}", words.collect::<Vec<_>>().join("; "))
         }
     };
-    format!(" On an unusual ring or board direct is better {places}.")
+    format!(" On a very dead or lively ring, or another board, direct is better {places}.")
 }
 
 /// Where banking helps most, and where to aim from each place.
@@ -294,7 +292,7 @@ fn bank_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
         })
         .collect();
     format!(
-        "Bank the ball from the outlined places. It helps most here: {}. {} of 100 go in{direct}. Aim at the board, {}.{}",
+        "Bank the ball from the outlined places. Banking helps most here: {}. {} of 100 go in{direct}. Aim at the board, {}.{}",
         most[0].in_players_words(bank, units),
         least_to_most(&|place| place.bank).unwrap_or_default(),
         aims.join("; "),

@@ -77,8 +77,8 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
         );
     }
     let label = format!("{name} ({})", along.unit().name);
-    axes.draw(&mut svg, "", &label, "probability of a make");
-    let of_line = own.map_or("", |_| "Dashed: the shooter's own. ");
+    axes.draw(&mut svg, "", &label, "probability");
+    let of_line = own.map_or("", |_| "Dashed: the value in the profile. ");
     let of_bars = match along.draws_in_words() {
         "" => String::new(),
         words => words.replacen("95 %", "Bars, 95 %", 1),
@@ -88,7 +88,8 @@ pub fn draw(along: &ProbabilityAlong<'_>) -> Option<Plot> {
         let y = corner.1 + size.1 + 56.0 + 15.0 * i as f64;
         svg.text((20.0, y), 11.0, Anchor::Start, line);
     }
-    let caption = format!("P of one shot along its {name}, the rest as it is. {below}");
+    let caption =
+        format!("Probability that one shot goes in, with its {name} changed alone. {below}");
     Some(Plot {
         name: "probability_along_variable".to_owned(),
         svg: svg.finish(&caption),

@@ -70,7 +70,7 @@ fn draw_panel(
         }
     });
     let name = variable.name();
-    axes.draw(svg, name, &format!("{name} ({})", unit.name), "P");
+    axes.draw(svg, name, &format!("{name} ({})", unit.name), "probability");
 }
 
 /// Draws the curves of the best shots; `None` if there are none.
@@ -93,7 +93,7 @@ pub fn draw(profile: &Profile, curves: &[Curves<'_>]) -> Option<Plot> {
     let total_width = variables.len() as f64 * width;
     let mut svg = Svg::new(total_width + 110.0, height + 60.0);
     let name = shortened(&profile.shooter().name, 60);
-    let title = format!("P along each variable of the best shots: {name}");
+    let title = format!("The best shots, one value changed at a time: {name}");
     svg.heading((20.0, 24.0), 15.0, Anchor::Start, &title);
     let top = (1.08 * largest).min(1.0);
     for (i, variable) in variables.iter().enumerate() {
@@ -107,7 +107,7 @@ pub fn draw(profile: &Profile, curves: &[Curves<'_>]) -> Option<Plot> {
         .map(|(kind, colour)| (kind.name().to_owned(), *colour))
         .collect();
     draw_legend(&mut svg, (total_width + 12.0, 74.0), &names);
-    let caption = "P along each variable of the best shots, the others fixed.";
+    let caption = "Probability that the best shots go in, with one value changed at a time.";
     Some(Plot {
         name: "curves".to_owned(),
         caption: caption.to_owned(),

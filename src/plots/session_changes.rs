@@ -92,12 +92,12 @@ pub fn draw(
         (20.0, values_bottom + 40.0),
         13.0,
         Anchor::Start,
-        "What the change of P comes from, in points",
+        "What each change alone adds, in makes per 100",
     );
     draw_causes(&mut svg, (causes_top, causes_bottom), causes);
     svg.footnote(
         (20.0, causes_bottom + 54.0),
-        "Bars: 95 % intervals. Each value has a scale of its own. Bold: beyond chance, although so many values were looked at. Alone: all else as before; these need not add up.",
+        "Bars: 95 % intervals. Each value has its own scale. Bold: more than chance explains, corrected for the number of values. The parts need not add up.",
     );
     Plot {
         name: "sessions".to_owned(),

@@ -40,7 +40,7 @@ pub fn draw(results: &SweepResults<'_>) -> Option<Plot> {
     };
     let caption = advantage.to_string();
     let note = format!(
-        "{caption} These are outlined. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} points.",
+        "{caption} These are outlined. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors; full colour from {:.0} per 100.",
         100.0 * largest
     );
     let map = results.court_map();
@@ -74,7 +74,7 @@ fn draw_probabilities(results: &SweepResults<'_>, svg: &mut Svg) {
     let scale = ColourKey::Scale(ColourScale::PROBABILITY);
     for (i, kind) in ShotKind::ALL.into_iter().enumerate() {
         let corner = (i as f64 * width, MAPS_TOP);
-        let title = format!("P of the best {} shot", kind.name());
+        let title = format!("probability of the best {} shot", kind.name());
         results.draw_on(&map, svg, corner, &title, &scale, &|place| {
             Some(sequential(results.probability(place, kind)?.value))
         });

@@ -60,11 +60,11 @@ const COLUMN_MAPS: [ColumnMap; 3] = [
     ColumnMap {
         texts: MapTexts {
             name: "spin_worth",
-            title: "what the best backspin gains over none",
-            caption: "What the best backspin gains over none, speed re-optimised.",
+            title: "what the best backspin adds",
+            caption: "What the best backspin adds to no backspin, with the speed re-tuned.",
         },
         column: columns::BEST_BACKSPIN_OVER_NONE,
-        unit: "gain in P",
+        unit: "probability gained",
         unit_si: 1.0,
     },
 ];
@@ -110,8 +110,8 @@ fn draw_map(
 fn draw_probability(results: &SweepResults<'_>) -> Option<Plot> {
     let texts = MapTexts {
         name: "best_p",
-        title: "P of the best shot",
-        caption: "The probability of the best shot from each place.",
+        title: "probability of the best shot",
+        caption: "Probability that the best shot from each place goes in.",
     };
     let key = ColourKey::Scale(ColourScale::PROBABILITY);
     draw_map(results, &texts, &key, &|place| {

@@ -35,7 +35,7 @@ pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot>
     let mean = gains.iter().map(|by| by.value).sum::<f64>() / gains.len() as f64;
     let (first_name, second_name) = (first.name(), second.name());
     let caption = format!(
-        "{second_name} makes {:.1} {} of 100 shots than {first_name}, on average over {} places.",
+        "Of 100 shots {:.1} {} go in for {second_name} than for {first_name}, on average over {} places.",
         100.0 * mean.abs(),
         if mean < 0.0 { "fewer" } else { "more" },
         gains.len()
@@ -52,7 +52,7 @@ pub fn draw(first: &SweepResults<'_>, second: &SweepResults<'_>) -> Option<Plot>
     );
     draw_difference(&mut svg, first, &minus, &gain, largest);
     let note = format!(
-        "{caption} P of the best shot of either kind; white: the difference is below {SIGNIFICANT_SIGMAS} standard errors."
+        "{caption} Each player takes the best shot from each place. White: the difference is below {SIGNIFICANT_SIGMAS} standard errors."
     );
     svg.footnote((20.0, MAPS_TOP + height + 6.0), &note);
     svg.footnote((20.0, MAPS_TOP + height + 22.0), &first.source_note());

@@ -79,7 +79,7 @@ impl<'a> SweepResults<'a> {
         }
     }
 
-    /// The same with chances that are known to be sure or not.
+    /// The results with chances of bank and direct, each known to be clear or not.
     #[must_use]
     pub fn with_chances(self, chances: Vec<PlaceProbabilities>) -> Self {
         Self { chances, ..self }
@@ -127,7 +127,7 @@ impl<'a> SweepResults<'a> {
     /// The program, the shooter and the size of the sweep, for footnotes.
     pub(super) fn source_note(&self) -> String {
         format!(
-            "bankshot {}, {}, {} court, {} places, P to {}",
+            "bankshot {}, {}, {} court, {} places, simulation error {}",
             env!("CARGO_PKG_VERSION"),
             self.shooter_name(),
             self.config.league.name().to_uppercase(),

@@ -49,7 +49,7 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
         (20.0, 24.0),
         16.0,
         Anchor::Start,
-        "The team: P of each player's best shot, and who is best from where",
+        "The team: how likely each player's best shot goes in, and who is best from each place",
     );
     let corner = |i: usize| {
         let (line, column) = (i / columns, i % columns);
@@ -63,7 +63,7 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
     let low = (libm::floor(10.0 * least) / 10.0).clamp(0.0, 0.9);
     let colour = |p: f64| sequential((p - low) / (1.0 - low));
     let scale = ColourKey::Scale(ColourScale {
-        name: "P",
+        name: "probability",
         range: (low, 1.0),
         colour: &colour,
     });
@@ -119,7 +119,7 @@ pub fn draw(players: &[SweepResults<'_>], best: &[Vec<usize>]) -> Option<Plot> {
         &of_team,
         &legend,
     );
-    let caption = "Outlined: the bank shot is better by 1 in 100 or more (for a fitted player, in at least 90 of 100 draws too). Level: the best two or more differ by less than 1 in 100, or by less than the numerical error.";
+    let caption = "Outlined: the bank shot is better by 1 per 100 or more (for a fitted player, with a probability of at least 90 % too). Level: the best two or more differ by less than 1 per 100, or by less than the simulation error.";
     svg.footnote((20.0, note_top), caption);
     svg.footnote((20.0, note_top + 16.0), &first.team_note(players.len()));
     Some(Plot {

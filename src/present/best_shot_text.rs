@@ -1,173 +1,166 @@
-//! The best shots as text: a table, and their sensitivity in points of P.
+//! The best shots as text.
 
+use super::layout::{Side, TextAnswer, TextTable};
+use super::words::{
+    capitalised, difference_per_100, do_it, likely, list, nominal_name, of_100, per_100,
+    scatter_note, simulation_error, subject, taken_as_exact, variable_name,
+};
 use crate::analysis::bank_aim::{closed_form_polar_rad, meeting_behind_board_m};
-use crate::analysis::sensitivity::{Difference, ErrorCost, Sensitivity, ShotWindow};
+use crate::analysis::sensitivity::{Difference, ErrorCost, ShotWindow};
 use crate::answers::best_shots::bank_minus_direct;
 use crate::best_shot::{BestShot, BestShots, Limit, ShotKind};
 use crate::dynamics::OutcomeKind;
-use crate::shooter::{NominalVariable, Profile, ReleaseVariable};
+use crate::fitting::Interval;
+use crate::shooter::{NominalVariable, Profile};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
-use comfy_table::{CellAlignment, Table, presets};
-use std::fmt::Write;
 
-/// Angles below this are printed as zero, deg.
-const ZERO_DEG: f64 = 0.005;
+/// The probability of each best shot over the draws of a fit.
+#[derive(Clone, Debug, Default)]
+pub struct KindsOverDraws {
+    /// The kinds that have a best shot.
+    pub probabilities: Vec<(ShotKind, Interval)>,
+    /// The probability that bank is better, where both kinds have a best shot.
+    pub bank_is_better: Option<f64>,
+}
 
-/// The answer in two or three sentences, for a player.
+impl KindsOverDraws {
+    fn of(&self, kind: ShotKind) -> Option<&Interval> {
+        let mut kinds = self.probabilities.iter();
+        kinds.find(|(of, _)| *of == kind).map(|(_, p)| p)
+    }
+}
+
+/// The best shots in text. `scatter` are the changes of the scatter, as they were typed.
 #[must_use]
-pub fn answer_in_words(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
-    let (long, metre) = units.length();
-    let name = &profile.shooter().name;
-    let place = format!(
-        "{}{}",
-        if name.is_empty() {
-            String::new()
-        } else {
-            format!("{name}, ")
-        },
-        profile.location().in_words(units)
-    );
-    let mut found: Vec<(ShotKind, &BestShot)> = best
-        .by_kind()
-        .into_iter()
-        .filter_map(|(kind, shot)| Some((kind, shot.as_ref().ok()?)))
-        .collect();
-    found.sort_by(|a, b| {
-        b.1.estimate
-            .probability
-            .total_cmp(&a.1.estimate.probability)
+pub fn best_shots_text(
+    profile: &Profile,
+    best: &BestShots,
+    over_draws: Option<&KindsOverDraws>,
+    scatter: &[String],
+) -> TextAnswer {
+    let units = profile.output().units;
+    let p = |kind: ShotKind, shot: &BestShot| {
+        let over_draws = over_draws.and_then(|draws| draws.of(kind));
+        over_draws.map_or(shot.estimate.probability, |p| p.mean)
+    };
+    let mut found = found(best);
+    found.sort_by(|a, b| p(b.0, b.1).total_cmp(&p(a.0, a.1)));
+    let reasons = best.by_kind().into_iter();
+    let reasons = reasons.filter_map(|(_, shot)| {
+        let reason = shot.as_ref().err()?;
+        Some(capitalised(&format!("{reason}.")))
     });
-    // Nobody makes all shots.
-    let in_hundred = |shot: &BestShot| match shot.estimate.probability {
-        p if p >= 0.995 => "more than 99".to_owned(),
-        p => format!("{:.0}", 100.0 * p),
+    let Some((kind, shot)) = found.first().copied() else {
+        return TextAnswer {
+            answer: vec!["No shot goes in from there.".to_owned()],
+            subject: subject(profile, units),
+            notes: reasons.collect(),
+            ..TextAnswer::default()
+        };
     };
-    let Some((kind, shot)) = found.first() else {
-        return format!("{place}.\nNo shot from there can be advised:\n");
-    };
-    let how = match kind {
-        ShotKind::Direct => "Shoot it direct",
-        ShotKind::Bank => "Bank it",
-    };
-    let nominal = &shot.nominal;
-    let backspin = nominal.backspin_rad_s / REV_RAD;
-    let spin = if backspin.abs() < 0.05 {
-        "without spin".to_owned()
-    } else {
-        format!("with {backspin:.1} rev/s of backspin")
-    };
-    let others: String = found[1..]
-        .iter()
-        .map(|(kind, shot)| format!(" The best {} shot makes {}.", kind.name(), in_hundred(shot)))
-        .collect();
-    // A tenth of a metre per second is more than most shooters scatter by.
-    let digits = match units {
+    let other = found.get(1).map_or_else(String::new, |(kind, shot)| {
+        let makes = of_100(p(*kind, shot));
+        format!(" The best {} shot makes {makes}.", kind.name())
+    });
+    let mut answer = vec![format!(
+        "{}: {} of 100 go in.{other}",
+        do_it(kind),
+        of_100(p(kind, shot))
+    )];
+    answer.extend(certainty(kind, over_draws));
+    let mut notes: Vec<String> = training(shot).into_iter().collect();
+    notes.extend(what_limits(profile, &found));
+    notes.extend(reasons);
+    notes.extend(
+        found
+            .iter()
+            .filter_map(|(kind, shot)| not_exact(*kind, shot, units)),
+    );
+    notes.extend(scatter_note(scatter));
+    notes.push(what_is_left_out(profile, &found, over_draws.is_some()));
+    TextAnswer {
+        answer,
+        subject: subject(profile, units),
+        table: Some(table(profile, &found, over_draws)),
+        notes,
+        details: details(profile, best, units),
+        ..TextAnswer::default()
+    }
+}
+
+/// The kinds that have a best shot.
+fn found(best: &BestShots) -> Vec<(ShotKind, &BestShot)> {
+    let kinds = best.by_kind().into_iter();
+    kinds
+        .filter_map(|(kind, shot)| Some((kind, shot.as_ref().ok()?)))
+        .collect()
+}
+
+/// How certain the answer is by the measured shots.
+fn certainty(kind: ShotKind, over_draws: Option<&KindsOverDraws>) -> Option<String> {
+    let p = over_draws?.of(kind)?;
+    let better = over_draws?.bank_is_better.map(|bank| match kind {
+        ShotKind::Bank => bank,
+        ShotKind::Direct => 1.0 - bank,
+    });
+    let better = better.map_or_else(String::new, |share| {
+        let other = kind.other().name();
+        format!(
+            "; the probability that it beats {other} is {}",
+            likely(share)
+        )
+    });
+    Some(format!(
+        "95 % interval {:.0} to {:.0}, from the measured shots{better}.",
+        100.0 * p.low,
+        100.0 * p.high
+    ))
+}
+
+fn table(
+    profile: &Profile,
+    found: &[(ShotKind, &BestShot)],
+    over_draws: Option<&KindsOverDraws>,
+) -> TextTable {
+    let units = profile.output().units;
+    let (long, metre) = units.length();
+    let speed_unit = format!("{long}/s");
+    let mut columns = vec![
+        ("", "", Side::Left),
+        ("speed", speed_unit.as_str(), Side::Right),
+        ("angle", "deg", Side::Right),
+        ("spin", "rev/s", Side::Right),
+        ("aim", "", Side::Left),
+        ("makes", "per 100", Side::Right),
+    ];
+    if over_draws.is_some() {
+        columns.push(("95 %", "interval", Side::Left));
+    }
+    let mut table = TextTable::new(&columns);
+    for (kind, shot) in found {
+        let nominal = &shot.nominal;
+        let of_draws = over_draws.and_then(|draws| draws.of(*kind));
+        let makes = of_draws.map_or(shot.estimate.probability, |p| p.mean);
+        let mut cells = vec![
+            kind.name().to_owned(),
+            format!("{:.*}", speed_decimals(units), nominal.speed_m_s / metre),
+            format!("{:.1}", nominal.pitch_rad / DEGREE_RAD),
+            format!("{:.1}", nominal.backspin_rad_s / REV_RAD + 0.0),
+            aim_lines(profile, *kind, shot, units).join("\n"),
+            per_100(makes),
+        ];
+        cells.extend(of_draws.map(|p| format!("{} to {}", per_100(p.low), per_100(p.high))));
+        table.add(cells);
+    }
+    table
+}
+
+/// A hundredth of a metre per second is less than any shooter scatters by.
+fn speed_decimals(units: UnitSystem) -> usize {
+    match units {
         UnitSystem::Imperial => 1,
         UnitSystem::Metric => 2,
-    };
-    let mut text = format!(
-        "{place}.\n{how}: {} in 100.{others}\nRelease it at {:.digits$} {long}/s, {:.0} deg up, {spin}.\n",
-        in_hundred(shot),
-        nominal.speed_m_s / metre,
-        nominal.pitch_rad / DEGREE_RAD
-    );
-    let aim = aim_lines(profile, *kind, shot, units).join(" ");
-    match kind {
-        _ if aim.is_empty() => {}
-        ShotKind::Direct => text += &format!("Aim {aim}.\n"),
-        ShotKind::Bank => {
-            let across = shot.outcome.board_point_m.map(|(_, across, _)| across);
-            let is_aside = across.is_some_and(|m| !is_on_middle_line(m, units));
-            let of = if is_aside { " of its middle" } else { "" };
-            text += &format!("Aim at {aim}{of}.\n");
-        }
     }
-    let held: Vec<String> = [
-        NominalVariable::Speed,
-        NominalVariable::Pitch,
-        NominalVariable::Backspin,
-    ]
-    .into_iter()
-    .filter(|variable| !profile.search().choice.includes(*variable))
-    .map(|variable| {
-        let is_given = variable != NominalVariable::Backspin
-            || profile.settings().nominal.backspin_rad_s.is_some();
-        let note = if is_given {
-            ""
-        } else {
-            " (0 rev/s, as [nominal] has none)"
-        };
-        format!("{}{note}", variable.name())
-    })
-    .collect();
-    if !held.is_empty() {
-        text += &format!("Given, not searched for: {}.\n", held.join(" and "));
-    }
-    text
-}
-
-/// The table that `best` prints, at most 80 columns wide, with notes below it.
-#[must_use]
-pub fn best_shots_table(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
-    let (long, _) = units.length();
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(vec![
-        "shot".to_owned(),
-        format!("speed\n{long}/s"),
-        "pitch\ndeg".to_owned(),
-        "polar\ndeg".to_owned(),
-        "spin\nrev/s".to_owned(),
-        "probability".to_owned(),
-        "aim".to_owned(),
-    ]);
-    let mut notes = Vec::new();
-    for (kind, shot) in best.by_kind() {
-        match shot {
-            Ok(shot) => {
-                table.add_row(table_row(profile, kind, shot, units));
-                notes.extend(notes_of(profile, kind, shot));
-            }
-            Err(reason) => notes.push(format!("{}: {reason}.", kind.name())),
-        }
-    }
-    for column in table.column_iter_mut().skip(1).take(5) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    let mut text = String::new();
-    if table.row_count() > 0 {
-        text += &table.trim_fmt();
-        text.push('\n');
-    }
-    for note in notes {
-        text.push_str(&note);
-        text.push('\n');
-    }
-    text
-}
-
-fn table_row(profile: &Profile, kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Vec<String> {
-    let (_, metre) = units.length();
-    let nominal = &shot.nominal;
-    let estimate = &shot.estimate;
-    let polar_deg = nominal.polar_rad / DEGREE_RAD;
-    let polar_deg = if polar_deg.abs() < ZERO_DEG {
-        0.0
-    } else {
-        polar_deg
-    };
-    vec![
-        kind.name().to_owned(),
-        format!("{:.2}", nominal.speed_m_s / metre),
-        format!("{:.1}", nominal.pitch_rad / DEGREE_RAD),
-        format!("{polar_deg:.2}"),
-        format!("{:.1}", nominal.backspin_rad_s / REV_RAD),
-        format!(
-            "{:.4} ± {:.4}",
-            estimate.probability, estimate.standard_error
-        ),
-        aim_lines(profile, kind, shot, units).join("\n"),
-    ]
 }
 
 /// Where a shot is aimed, in short lines: on the board for a bank shot, else relative to the hoop's
@@ -179,252 +172,286 @@ fn aim_lines(profile: &Profile, kind: ShotKind, shot: &BestShot, units: UnitSyst
         (ShotKind::Bank, Some((_, y, z)), _) => {
             let side = if z < 0.0 { "below" } else { "above" };
             vec![
-                format!("the board, {:.1} {short}", z.abs() / short_metre),
-                format!("{side} the ring,"),
+                format!(
+                    "board: {:.0} {short} {side} the ring,",
+                    z.abs() / short_metre
+                ),
                 across_text(y, units),
             ]
         }
         (_, _, Some(past)) if past < profile.physics().board_distance_m => {
             let side = if past < 0.0 { "short of" } else { "past" };
-            vec![
-                format!("{:.1} {short} {side}", past.abs() / short_metre),
-                "the ring's centre".to_owned(),
-            ]
+            let distance = past.abs() / short_metre;
+            match distance < 0.5 {
+                true => vec!["the ring's centre".to_owned()],
+                false => vec![format!("{distance:.0} {short} {side} the ring's centre")],
+            }
         }
         _ => Vec::new(),
     }
 }
 
-/// Whether a point of the board is on its middle line, to the decimal that is printed.
-fn is_on_middle_line(across_m: f64, units: UnitSystem) -> bool {
-    across_m.abs() / units.short_length().1 < 0.05
-}
-
 fn across_text(across_m: f64, units: UnitSystem) -> String {
-    if is_on_middle_line(across_m, units) {
-        return "on its middle line".to_owned();
-    }
     let (unit, size) = units.short_length();
+    let across = across_m.abs() / size;
     let side = if across_m > 0.0 { "right" } else { "left" };
-    format!("{:.1} {unit} {side}", across_m.abs() / size)
-}
-
-/// What matters most for the better kind of shot, in at most ten lines.
-#[must_use]
-pub fn what_matters(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
-    let found = best.by_kind().into_iter();
-    let found = found.filter_map(|(kind, shot)| Some((kind, shot.as_ref().ok()?)));
-    let Some((kind, shot)) = found.reduce(|a, b| {
-        if b.1.estimate.probability > a.1.estimate.probability {
-            b
-        } else {
-            a
-        }
-    }) else {
-        return String::new();
-    };
-    let sensitivity = &shot.sensitivity;
-    let mut text = format!(
-        "what matters for the {} shot (points: makes in 100 shots; ± is numerical)\n",
-        kind.name()
-    );
-    let mut line = |label: &str, words: String| {
-        // Writing to a String does not fail.
-        let _ = writeln!(text, "  {label:<14} {words}");
-    };
-    let matters = |(place, cost): &(usize, &ErrorCost)| {
-        *place < ALWAYS_TOLD || cost.without.value > LEAST_GAIN_TOLD
-    };
-    let told = sensitivity.errors.iter().take(MOST_ERRORS).enumerate();
-    for (_, cost) in told.filter(matters) {
-        let name = ReleaseVariable::name(cost.variable).replace('_', " ");
-        line(
-            &name,
-            format!(
-                "perfect {}; 10 % steadier {}",
-                points(&cost.without),
-                points(&cost.a_tenth_less)
-            ),
-        );
-    }
-    if let Some(gain) = sensitivity.backspin_gain() {
-        line("backspin", format!("{} over no backspin", points(&gain)));
-    }
-    let own_m = profile.shooter().release_height_m;
-    let mut heights = sensitivity.heights.iter();
-    if let Some(height) = heights.rfind(|height| height.value > own_m) {
-        let (long, metre) = units.length();
-        let by = (height.value - own_m) / metre;
-        line(
-            "height",
-            format!("{} if released {by:.2} {long} higher", points(&height.gain)),
-        );
-    }
-    line(
-        "range made",
-        format!("{}, one at a time", windows_text(shot, units)),
-    );
-    if let Some(difference) = bank_minus_direct(best) {
-        line("compared", comparison_text(&difference));
-    }
-    text
-}
-
-/// Errors that are worth a line: the first ones, and one more that costs something, in P.
-const MOST_ERRORS: usize = 3;
-const ALWAYS_TOLD: usize = 2;
-const LEAST_GAIN_TOLD: f64 = 0.005;
-
-/// Says that there is no air; empty where there is.
-#[must_use]
-pub fn vacuum_note(profile: &Profile) -> &'static str {
-    if profile.physics().air.density_kg_m3 > 0.0 {
-        ""
-    } else {
-        "The ball flies without air. For a ball in play: --physics ncaa, or preset = \"ncaa\" in [physics].\n"
+    match across < 0.5 {
+        true => "on its middle line".to_owned(),
+        false => format!("{across:.0} {unit} {side} of its middle"),
     }
 }
 
-/// What P leaves out.
-pub const PROFILE_IS_EXACT: &str =
-    "P assumes an exact profile; `bankshot fit` says how sure a measured one is.\n";
+/// Gains below this are not worth a word.
+const LEAST_GAIN: f64 = 0.0005;
 
-/// What the table does not show of a shot.
-fn notes_of(profile: &Profile, kind_of_shot: ShotKind, shot: &BestShot) -> Vec<String> {
+/// What less scatter adds, the greatest gain first.
+fn training(shot: &BestShot) -> Option<String> {
+    /// As many as a player can train.
+    const MOST: usize = 3;
+    let errors = shot.sensitivity.errors.iter();
+    let worth = errors.filter(|cost| cost.a_tenth_less.value >= LEAST_GAIN);
+    let gains: Vec<String> = worth
+        .take(MOST)
+        .map(|cost| {
+            let gain = per_100(cost.a_tenth_less.value);
+            format!("{} {gain}", variable_name(cost.variable))
+        })
+        .collect();
+    (!gains.is_empty()).then(|| {
+        format!(
+            "10 % less scatter adds, per 100 shots: {}.",
+            gains.join(", ")
+        )
+    })
+}
+
+/// What was fixed, and which limits of the profile the best shots lie at.
+fn what_limits(profile: &Profile, found: &[(ShotKind, &BestShot)]) -> Vec<String> {
     let mut notes = Vec::new();
-    let kind = kind_of_shot.name();
-    let nominal = &shot.nominal;
-    if nominal.side_spin_rad_s != 0.0 || nominal.rifle_spin_rad_s != 0.0 {
-        notes.push(format!(
-            "{kind}: with a side spin of {:.2} rev/s and a rifle spin of {:.2} rev/s.",
-            nominal.side_spin_rad_s / REV_RAD,
-            nominal.rifle_spin_rad_s / REV_RAD
-        ));
-    }
-    for limit in &shot.at_limits {
-        notes.push(format!("{kind}: {}.", limit_text(*limit)));
-    }
-    if let Some(other) = &shot.more_probable {
-        notes.push(format!(
-            "{kind}: a release that misses without errors makes more: {:.1} in 100 with {}.",
-            100.0 * other.probability,
-            other.in_words()
-        ));
-    }
-    let of_other_kind = shot.share_of_other_kind(kind_of_shot);
-    if of_other_kind > 0.5 {
-        let touch = match kind_of_shot {
-            ShotKind::Direct => "touch the board first",
-            ShotKind::Bank => "do not touch the board first",
-        };
-        notes.push(format!(
-            "{kind}: nearly a {} shot; {:.0} % of its makes {touch}.",
-            kind_of_shot.other().name(),
-            100.0 * of_other_kind
-        ));
-    }
-    let off = match shot.outcome.kind {
-        OutcomeKind::RimIn => Some("off the ring"),
-        OutcomeKind::BankRimIn => Some("off the board and the ring"),
-        _ => None,
+    let (_, shot) = found[0];
+    let spin = profile.shooter().max_backspin_rad_s / REV_RAD;
+    let uses_all = |limit| {
+        found
+            .iter()
+            .all(|(_, shot)| shot.at_limits.contains(&limit))
     };
-    if let Some(off) = off {
-        notes.push(format!("{kind}: goes in {off} even without an error."));
-    }
-    if shot.estimate.standard_error > profile.search().standard_error {
+    let without = shot
+        .sensitivity
+        .backspin_gain()
+        .filter(|gain| gain.value > 0.01);
+    if let Some(gain) = without {
+        let p = shot.estimate.probability - gain.value;
         notes.push(format!(
-            "{kind}: the wanted standard error was not reached."
+            "Backspin matters: without backspin the {} shot makes {}.{}",
+            found[0].0.name(),
+            of_100(p),
+            match shot.at_limits.contains(&Limit::MaxBackspin) {
+                true => format!(" More than max_backspin ({spin:.1} rev/s) was not tried."),
+                false => String::new(),
+            }
         ));
+    } else if uses_all(Limit::MaxBackspin) {
+        notes.push(format!(
+            "Both kinds use the most backspin of the profile (max_backspin, {spin:.1} rev/s)."
+        ));
+    }
+    for (kind, shot) in found {
+        let limits = shot.at_limits.iter().filter_map(|limit| limit_text(*limit));
+        notes.extend(limits.map(|words| format!("The {} shot {words}.", kind.name())));
+    }
+    let fixed: Vec<String> = [
+        NominalVariable::Speed,
+        NominalVariable::Pitch,
+        NominalVariable::Backspin,
+    ]
+    .into_iter()
+    .filter(|variable| !profile.search().choice.includes(*variable))
+    .map(|variable| format!("the {}", nominal_name(variable)))
+    .collect();
+    if !fixed.is_empty() {
+        notes.push(format!("Fixed by the profile or a flag: {}.", list(&fixed)));
     }
     notes
 }
 
-/// A limit that a shot lies at, with its key.
-fn limit_text(limit: Limit) -> &'static str {
+/// A limit of the profile that can change the decision.
+fn limit_text(limit: Limit) -> Option<&'static str> {
     match limit {
-        Limit::PitchMin => "uses the lowest pitch angle allowed (pitch_min)",
-        Limit::PitchMax => "uses the highest pitch angle allowed (pitch_max)",
-        Limit::NoBackspin => "uses no backspin",
-        Limit::MaxBackspin => "uses all the backspin allowed (max_backspin)",
-        Limit::MaxSideSpin => "uses all the side spin allowed (max_side_spin)",
-        Limit::SpeedMax => "uses all the speed allowed (speed_max)",
+        Limit::PitchMin => Some("has the lowest angle allowed (pitch_min)"),
+        Limit::PitchMax => Some("has the highest angle allowed (pitch_max)"),
+        Limit::SpeedMax => Some("has the highest speed allowed (speed_max)"),
+        Limit::MaxSideSpin => Some("has the most side spin allowed (max_side_spin)"),
+        Limit::NoBackspin | Limit::MaxBackspin => None,
     }
 }
 
-/// A gain in points of P with its standard error.
-fn points(gain: &Difference) -> String {
-    let value = 100.0 * gain.value;
-    // Do not print a negative zero.
-    let error = 100.0 * gain.standard_error;
-    // Enough digits that the error is not zero.
-    let decimals = if error < 0.05 { 2 } else { 1 };
-    let least = if error < 0.05 { 0.005 } else { 0.05 };
-    let value = if value.abs() < least { 0.0 } else { value };
-    format!("{value:+.decimals$} ± {error:.decimals$}")
+/// A release that goes in more often, though an exact shot with it misses.
+fn not_exact(kind: ShotKind, shot: &BestShot, units: UnitSystem) -> Option<String> {
+    let other = shot.more_probable.as_ref()?;
+    let (long, metre) = units.length();
+    Some(format!(
+        "The most probable {} release, {:.2} {long}/s at {:.1} deg, makes {} of 100, although an exact shot with it misses.",
+        kind.name(),
+        other.nominal.speed_m_s / metre,
+        other.nominal.pitch_rad / DEGREE_RAD,
+        per_100(other.probability)
+    ))
 }
 
-/// The sensitivity of the best shots as text.
-#[must_use]
-pub fn sensitivity_text(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
+/// What the numbers leave out.
+fn what_is_left_out(profile: &Profile, found: &[(ShotKind, &BestShot)], has_draws: bool) -> String {
+    let errors = found.iter().map(|(_, shot)| shot.estimate.standard_error);
+    let error = errors.fold(0.0, f64::max);
+    let missed = match error > profile.search().standard_error {
+        true => " (more than was asked for)",
+        false => "",
+    };
+    format!(
+        "{} Simulation error: {} per 100{missed}.",
+        taken_as_exact(has_draws),
+        simulation_error(error)
+    )
+}
+
+/// What is known of each kind, for those who ask.
+fn details(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
     let mut text = String::new();
-    for (kind, shot) in best.by_kind() {
-        let Ok(shot) = shot else { continue };
-        let sensitivity = &shot.sensitivity;
-        // Writing to a String does not fail, here and below.
-        let _ = writeln!(text, "{}, gains in points of P (0.01):", kind.name());
-        let _ = writeln!(text, "  made over a range of {}", windows_text(shot, units));
-        let shares = &shot.estimate.shares;
-        let entry = shot.outcome.entry.map_or_else(String::new, |entry| {
-            format!("; enters at {:.1} deg", entry.angle_rad / DEGREE_RAD)
-        });
-        let _ = writeln!(
-            text,
-            "  goes in      swish {:.2}, ring {:.2}, board {:.2}{entry}",
-            shares.swish,
-            shares.ring,
-            shares.banked()
+    for (kind, shot) in found(best) {
+        let mut line = |label: &str, words: String| {
+            text += &format!("  {label:<14} {words}\n");
+        };
+        let estimate = &shot.estimate;
+        line(
+            kind.name(),
+            format!(
+                "{} per 100, simulation error {}, {} shots",
+                per_100(estimate.probability),
+                simulation_error(estimate.standard_error),
+                estimate.shots
+            ),
         );
+        line(
+            "polar angle",
+            format!("{:.2} deg", shot.nominal.polar_rad / DEGREE_RAD + 0.0),
+        );
+        line("error-free", error_free(shot));
+        let shares = &estimate.shares;
+        line(
+            "goes in",
+            format!(
+                "swish {}, off the ring {}, off the board {} per 100",
+                per_100(shares.swish),
+                per_100(shares.ring),
+                per_100(shares.banked())
+            ),
+        );
+        line(
+            "tolerance",
+            format!(
+                "{} (one value off, the others exact)",
+                tolerance(shot, units)
+            ),
+        );
+        for cost in &shot.sensitivity.errors {
+            line(variable_name(cost.variable), scatter_gain(cost));
+        }
+        if let Some(gain) = shot.sensitivity.backspin_gain() {
+            line(
+                "backspin",
+                format!("{} compared with none", gain_text(&gain)),
+            );
+        }
+        let (long, metre) = units.length();
+        for height in &shot.sensitivity.heights {
+            let by = (height.value - profile.shooter().release_height_m) / metre;
+            line(
+                "height",
+                format!("{by:+.2} {long}: {}", gain_text(&height.gain)),
+            );
+        }
         if kind == ShotKind::Bank {
-            add_bank_aim(&mut text, profile, shot, units);
+            line("reflection", reflection(profile, shot, units));
         }
-        add_errors(&mut text, &sensitivity.errors);
-        if let Some(gain) = sensitivity.backspin_gain() {
-            let verdict = if gain.is_surely_positive() {
-                ""
-            } else {
-                " (not a sure gain)"
-            };
-            let _ = writeln!(text, "  backspin     {} over none{verdict}", points(&gain));
+        if shot.share_of_other_kind(kind) > 0.5 {
+            line(
+                "kind",
+                format!(
+                    "{:.0} % of the shots that go in are {} shots",
+                    100.0 * shot.share_of_other_kind(kind),
+                    kind.other().name()
+                ),
+            );
         }
-        add_heights(&mut text, profile, sensitivity, units);
+        let nominal = &shot.nominal;
+        if nominal.side_spin_rad_s != 0.0 || nominal.rifle_spin_rad_s != 0.0 {
+            line(
+                "other spin",
+                format!(
+                    "side spin {:.2} rev/s, rifle spin {:.2} rev/s",
+                    nominal.side_spin_rad_s / REV_RAD,
+                    nominal.rifle_spin_rad_s / REV_RAD
+                ),
+            );
+        }
     }
-    text
+    if let Some(difference) = bank_minus_direct(best) {
+        text += &format!("  {:<14} {}\n", "bank - direct", gain_text(&difference));
+    }
+    text + "  Gains are per 100 shots, with the simulation error in brackets.\n"
+}
+
+/// How the shot without errors goes in.
+fn error_free(shot: &BestShot) -> String {
+    let how = match shot.outcome.kind {
+        OutcomeKind::Swish => "swish",
+        OutcomeKind::RimIn => "rim, then in",
+        OutcomeKind::BankIn => "board, then in",
+        OutcomeKind::BankRimIn => "board, rim, in",
+        _ => "misses",
+    };
+    let entry = shot.outcome.entry.map_or_else(String::new, |entry| {
+        format!("; entry angle {:.1} deg", entry.angle_rad / DEGREE_RAD)
+    });
+    format!("{how}{entry}")
+}
+
+fn scatter_gain(cost: &ErrorCost) -> String {
+    format!(
+        "{} with 10 % less scatter, {} with none",
+        gain_text(&cost.a_tenth_less),
+        gain_text(&cost.without)
+    )
+}
+
+/// A gain per 100 with its simulation error.
+fn gain_text(gain: &Difference) -> String {
+    format!(
+        "{} ({})",
+        difference_per_100(gain.value),
+        simulation_error(gain.standard_error)
+    )
 }
 
 /// The aim beside the closed form of the paper, and the point behind the board that it passes.
-fn add_bank_aim(text: &mut String, profile: &Profile, shot: &BestShot, units: UnitSystem) {
+fn reflection(profile: &Profile, shot: &BestShot, units: UnitSystem) -> String {
     let (short, metre) = units.short_length();
     let (physics, location) = (profile.physics(), profile.location());
-    let _ = writeln!(
-        text,
-        "  aim          polar {:.2} deg; the closed form (Eq. 27) {:.2} deg",
-        shot.nominal.polar_rad / DEGREE_RAD,
-        closed_form_polar_rad(physics, location) / DEGREE_RAD
-    );
-    if let Some(behind_m) = meeting_behind_board_m(physics, location, shot.nominal.polar_rad) {
-        let _ = writeln!(
-            text,
-            "               at a point {:.1} {short} behind the board, on its middle line",
+    let closed_deg = closed_form_polar_rad(physics, location) / DEGREE_RAD;
+    let behind = meeting_behind_board_m(physics, location, shot.nominal.polar_rad);
+    let behind = behind.map_or_else(String::new, |behind_m| {
+        format!(
+            "; aimed at a point {:.1} {short} behind the board",
             behind_m / metre
-        );
-    }
+        )
+    });
+    format!("polar angle by the law of reflection (Eq. 27) {closed_deg:.2} deg{behind}")
 }
 
 /// How far each value may be off, to both sides.
-fn windows_text(shot: &BestShot, units: UnitSystem) -> String {
+fn tolerance(shot: &BestShot, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     let text = |window: &ShotWindow| {
-        let name = window.variable.name();
+        let name = nominal_name(window.variable);
         let (unit, size, decimals) = match window.variable {
             NominalVariable::Speed => (format!("{long}/s"), metre, 2),
             _ => ("deg".to_owned(), DEGREE_RAD, 1),
@@ -441,48 +468,4 @@ fn windows_text(shot: &BestShot, units: UnitSystem) -> String {
     };
     let windows: Vec<String> = shot.sensitivity.windows.iter().map(text).collect();
     windows.join(", ")
-}
-
-fn add_errors(text: &mut String, errors: &[ErrorCost]) {
-    for (i, cost) in errors.iter().enumerate() {
-        let label = if i == 0 { "perfect" } else { "" };
-        let name = ReleaseVariable::name(cost.variable).replace('_', " ");
-        let _ = writeln!(
-            text,
-            "  {label:12} {name:11} {}; 10 % steadier: {}",
-            points(&cost.without),
-            points(&cost.a_tenth_less)
-        );
-    }
-}
-
-/// What other release heights are worth, with the same pitch angle and the speed found anew.
-fn add_heights(text: &mut String, profile: &Profile, sensitivity: &Sensitivity, units: UnitSystem) {
-    let (long, metre) = units.length();
-    for (i, height) in sensitivity.heights.iter().enumerate() {
-        let by = height.value - profile.shooter().release_height_m;
-        let label = if i == 0 { "height" } else { "" };
-        let _ = writeln!(
-            text,
-            "  {label:12} {:+.2} {long}    {}",
-            by / metre,
-            points(&height.gain)
-        );
-    }
-}
-
-fn comparison_text(bank_minus_direct: &Difference) -> String {
-    let (better, worse) = if bank_minus_direct.value >= 0.0 {
-        ("bank", "direct")
-    } else {
-        ("direct", "bank")
-    };
-    format!(
-        "{better} beats {worse} by {}",
-        points(&Difference {
-            value: bank_minus_direct.value.abs(),
-            ..*bank_minus_direct
-        })
-        .trim_start_matches('+')
-    )
 }

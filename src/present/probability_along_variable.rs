@@ -1,10 +1,14 @@
-//! P along one variable of a nominal shot, the others as they are: for people, as CSV and JSON.
+//! P along one variable of a nominal shot, the others as they are, in text.
+
+use super::layout::{Side, TextAnswer, TextTable};
+use super::words::{
+    nominal_name, per_100, scatter_note, simulation_error, subject, taken_as_exact,
+};
 
 use crate::analysis::miss_breakdown::MissBreakdown;
 use crate::answers::along_variable::{PointAlong, Varied};
 use crate::shooter::{Nominal, NominalVariable, Profile};
 use crate::units::{Unit, UnitSystem, with_decimals};
-use comfy_table::{CellAlignment, Table, presets};
 
 /// A loss of P that the sentence counts as none.
 const LEVEL: f64 = 0.01;
@@ -56,15 +60,20 @@ impl ProbabilityAlong<'_> {
         Some(self.value(&nominal))
     }
 
+    /// Whether the points have intervals over the draws of a fit.
+    fn has_draws(&self) -> bool {
+        self.points.iter().any(|point| point.over_draws.is_some())
+    }
+
     /// What the intervals over the draws are of; empty without draws.
     #[must_use]
     pub fn draws_in_words(&self) -> &'static str {
-        match self.points.iter().any(|point| point.over_draws.is_some()) {
+        match self.has_draws() {
             true if self.is_rest_uncertain => {
-                "95 %: what the measured shots leave open, of the scatter and of the shot's other values."
+                "95 % intervals: from the measured shots; scatter and the rest of the shot are uncertain."
             }
             true => {
-                "95 %: what the measured shots leave open of the scatter; the shot itself is taken as exact."
+                "95 % intervals: from the measured shots; the scatter is uncertain, the shot is exact."
             }
             false => "",
         }
@@ -72,55 +81,61 @@ impl ProbabilityAlong<'_> {
 
     /// The point with the highest P.
     fn best(&self) -> Option<usize> {
-        let points = self.points.iter().enumerate();
-        let best = points.max_by(|a, b| {
-            let [a, b] = [a.1, b.1].map(|point| point.estimate.probability);
-            a.total_cmp(&b)
-        });
-        best.map(|(index, _)| index)
+        let indices = 0..self.points.len();
+        indices.max_by(|a, b| self.p(*a).total_cmp(&self.p(*b)))
     }
 
-    /// What the variable is worth, in three sentences at most.
-    fn in_words(&self, best: usize) -> String {
+    /// The name of the variable in text.
+    fn name_in_text(&self) -> &'static str {
+        match self.varied.is_aim {
+            true => "direction",
+            false => nominal_name(self.varied.variable),
+        }
+    }
+
+    /// P at a point: over the draws of a fit, if it is known.
+    fn p(&self, index: usize) -> f64 {
+        let point = &self.points[index];
+        let over = point.over_draws.map(|over| over.probability.mean);
+        over.unwrap_or(point.estimate.probability)
+    }
+
+    /// What the variable is worth.
+    fn sentences(&self, best: usize) -> Vec<String> {
         let unit = self.unit().name;
-        let name = self.name().replace('_', " ");
+        let name = self.name_in_text();
         let value = |index: usize| short(self.value(&self.points[index].nominal));
-        let highest = self.points[best].estimate.probability;
-        let is_level = |&index: &usize| highest - self.points[index].estimate.probability <= LEVEL;
+        let highest = self.p(best);
+        let is_level = |&index: &usize| highest - self.p(index) <= LEVEL;
         let low = (0..best).rev().take_while(is_level).last();
         let high = (best + 1..self.points.len()).take_while(is_level).last();
-        let mut text = format!(
-            "Of these values of the {name}, {} {unit} makes most: {:.1} of 100.",
+        let mut sentences = vec![format!(
+            "Best {name} tried: {} {unit}, {} of 100.",
             value(best),
-            100.0 * highest
-        );
+            per_100(highest)
+        )];
         let (low, high) = (low.unwrap_or(best), high.unwrap_or(best));
         if low < high {
-            text += &format!(
-                " From {} to {} {unit} it makes at most one of 100 less.",
+            sentences.push(format!(
+                "From {} to {} {unit} you lose at most 1 per 100.",
                 value(low),
                 value(high)
-            );
+            ));
         }
         if let Some((low, high)) = self.best_of_draws {
-            text += &match low < high {
+            sentences.push(match low < high {
                 true => format!(
-                    " In 95 of 100 draws of the fit the best of them is from {} to {} {unit}.",
+                    "95 % interval of the best {name}: {} to {} {unit}.",
                     value(low),
                     value(high)
                 ),
                 false => format!(
-                    " In 95 of 100 draws of the fit {} {unit} is the best of them.",
+                    "{} {unit} is the best {name} with a probability above 95 %.",
                     value(low)
                 ),
-            };
+            });
         }
-        text
-    }
-
-    /// What stays as it is.
-    fn fixed_in_words(&self) -> String {
-        format!("The rest stays: {}.", self.fixed_values())
+        sentences
     }
 
     /// The values of the rest of the shot.
@@ -141,95 +156,81 @@ impl ProbabilityAlong<'_> {
             let Unit {
                 name: unit, size, ..
             } = self.units().unit(other.dimension());
-            let name = other.name().replace('_', " ");
+            let name = nominal_name(other);
             (is_always_told || value != 0.0)
                 .then(|| format!("{name} {} {unit}", short(value / size)))
         });
         parts.collect::<Vec<_>>().join(", ")
     }
 
-    /// For people, at most 80 columns wide.
+    /// For people. `scatter` are the changes of the scatter, as they were typed.
     #[must_use]
-    pub fn in_text(&self) -> String {
+    pub fn in_text(&self, scatter: &[String]) -> TextAnswer {
         let Some(best) = self.best() else {
-            return String::new();
+            return TextAnswer::default();
         };
-        let unit = self.unit().name;
-        let name = &self.profile.shooter().name;
-        let of = match name.is_empty() {
-            true => String::new(),
-            false => format!("{name}, "),
-        };
-        let place = self.profile.location().in_words(self.units());
-        let mut text = String::new();
-        for sentence in [
-            format!("{of}{place}."),
-            self.in_words(best),
-            self.fixed_in_words(),
-        ] {
-            text += &(textwrap::fill(&sentence, 80) + "\n");
+        let mut notes = vec![format!("Held fixed: {}.", self.fixed_values())];
+        if self.varied.is_aim {
+            notes.push("direction: from the line to the hoop, positive to the left.".to_owned());
         }
-        let has_draws = self.points.iter().any(|point| point.over_draws.is_some());
-        let mut header = vec![
-            format!("{}\n{unit}", self.name().replace('_', " ")),
-            "P".to_owned(),
-            "less".to_owned(),
-        ];
-        if has_draws {
-            header.extend(["95 %".to_owned(), "less, 95 %".to_owned()]);
-        }
-        let misses = if has_draws { &MISSES[..0] } else { &MISSES[..] };
-        header.extend(misses.iter().map(|(name, _)| format!("{name}\n%")));
-        let mut table = Table::new();
-        table.load_style(presets::NOTHING);
-        table.set_header(header);
-        let highest = self.points[best].estimate.probability;
-        for point in &self.points {
-            let p = point.estimate.probability;
-            let mut row = vec![
-                short(self.value(&point.nominal)),
-                format!("{p:.4}"),
-                format!("{:.4}", highest - p),
-            ];
-            if let Some(over) = &point.over_draws {
-                for interval in [over.probability, over.less] {
-                    row.push(format!(
-                        "{:.3} to {:.3}",
-                        interval.low + 0.0,
-                        interval.high + 0.0
-                    ));
-                }
-            }
-            let shares = misses.iter().map(|(_, share)| share(&point.misses));
-            row.extend(shares.map(|share| format!("{:.1}", 100.0 * share)));
-            table.add_row(row);
-        }
-        for column in table.column_iter_mut() {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-        text += &(table.trim_fmt() + "\n");
+        notes.extend(scatter_note(scatter));
         let errors = self
             .points
             .iter()
             .map(|point| point.estimate.standard_error);
-        let error = errors.fold(0.0, f64::max);
-        let meaning = if has_draws {
-            format!(
-                "{} less, 95 %: than where the mean over the draws is highest, draw by draw.",
-                self.draws_in_words()
-            )
-        } else {
-            "short, long, left, right: how shots are missed; other: all else, such as airballs (CSV and JSON have each).".to_owned()
-        };
-        let of_aim = match self.varied.is_aim {
-            true => " aim: from the line to the hoop's centre, positive to the left.",
-            false => "",
-        };
-        text += &(textwrap::fill(
-            &format!("P has a numerical standard error of at most {error:.4}. {meaning}{of_aim}"),
-            80,
-        ) + "\n");
-        text
+        notes.push(format!(
+            "{} Simulation error: {} per 100.",
+            match self.draws_in_words() {
+                "" => taken_as_exact(false),
+                words => words,
+            },
+            simulation_error(errors.fold(0.0, f64::max))
+        ));
+        TextAnswer {
+            answer: self.sentences(best),
+            subject: subject(self.profile, self.units()),
+            table: Some(self.table(best)),
+            notes,
+            ..TextAnswer::default()
+        }
+    }
+
+    fn table(&self, best: usize) -> TextTable {
+        let mut columns = vec![
+            (self.name_in_text(), self.unit().name, Side::Right),
+            ("makes", "per 100", Side::Right),
+            ("below", "best", Side::Right),
+        ];
+        let has_draws = self.has_draws();
+        match has_draws {
+            true => columns.extend([
+                ("makes,", "95 %", Side::Left),
+                ("below,", "95 %", Side::Left),
+            ]),
+            false => columns.extend(MISSES.iter().map(|(name, _)| (*name, "", Side::Right))),
+        }
+        let mut table = TextTable::new(&columns);
+        let highest = self.p(best);
+        for (index, point) in self.points.iter().enumerate() {
+            let p = self.p(index);
+            let mut cells = vec![
+                short(self.value(&point.nominal)),
+                per_100(p),
+                per_100(highest - p),
+            ];
+            match &point.over_draws {
+                Some(over) => cells.extend([over.probability, over.below_best].map(|interval| {
+                    format!("{} to {}", per_100(interval.low), per_100(interval.high))
+                })),
+                None => cells.extend(
+                    MISSES
+                        .iter()
+                        .map(|(_, share)| per_100(share(&point.misses))),
+                ),
+            }
+            table.add(cells);
+        }
+        table
     }
 }
 

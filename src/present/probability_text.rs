@@ -1,73 +1,177 @@
-//! P of one nominal shot, for people.
+//! P of one nominal shot in text.
 
+use super::layout::TextAnswer;
+use super::words::{
+    capitalised, nominal_name, of_100, per_100, per_100_with_error, scatter_note, simulation_error,
+    subject, taken_as_exact, variable_name,
+};
 use crate::answers::probability::{MADE_SHARES, ProbabilityAnswer};
-use crate::shooter::{NominalVariable, ReleaseVariable};
+use crate::shooter::{NominalVariable, Profile, ReleaseVariable};
 use crate::units::{Dimension, UnitSystem};
 
-/// The answer as text.
+/// The answer in text. `scatter` are the changes of the scatter, as they were typed.
 #[must_use]
-pub fn answer_text(answer: &ProbabilityAnswer, units: UnitSystem) -> String {
-    let (p, shots, method) = (answer.probability, answer.shots, answer.method.name());
-    let mut text = match answer.standard_error.zip(answer.interval_95) {
-        Some((error, (low, high))) => {
-            let digits = decimals(error);
-            format!(
-                "P = {p:.digits$} ± {error:.digits$} (95 %: {low:.digits$} to {high:.digits$}), {shots} shots by {method}\n"
-            )
-        }
-        None => format!(
-            "P = {p:.4}, {shots} shots by {method} (its error is unknown; with n about 40 it was 0.004 to 0.02)\n"
+pub fn probability_text(
+    profile: &Profile,
+    answer: &ProbabilityAnswer,
+    scatter: &[String],
+) -> TextAnswer {
+    let units = profile.output().units;
+    let over_draws = answer.over_draws.as_ref();
+    let p = over_draws.map_or(answer.probability, |over| over.interval.mean);
+    let standard_error = over_draws.map_or(answer.standard_error.unwrap_or(0.0), |over| {
+        over.numerical_standard_error
+    });
+    let error = match (over_draws, answer.standard_error) {
+        (Some(over), _) => format!(
+            ", simulation error {}",
+            simulation_error(over.numerical_standard_error)
         ),
+        (None, Some(error)) => format!(", simulation error {}", simulation_error(error)),
+        (None, None) => "; the method states no error".to_owned(),
     };
-    let values = [
-        NominalVariable::Speed,
-        NominalVariable::Pitch,
-        NominalVariable::Polar,
-        NominalVariable::Backspin,
-        NominalVariable::RifleSpin,
-        NominalVariable::SideSpin,
-    ]
-    .map(|of| (of.name(), of.dimension(), answer.nominal.get(of)));
-    text.push_str(&format!("shot    {}\n", list(values, units)));
+    let mut sentences = vec![capitalised(&format!(
+        "{} of 100 go in ({}{error}).",
+        of_100(p),
+        per_100_with_error(p, standard_error)
+    ))];
+    sentences.extend(over_draws.map(|over| {
+        let [low, high] = [over.interval.low, over.interval.high].map(|p| 100.0 * p);
+        format!("95 % interval {low:.0} to {high:.0}, from the measured shots.")
+    }));
+    let mut labelled = vec![
+        ("shot", shot(answer, units)),
+        ("scatter", scatter_of(answer, units)),
+    ];
+    labelled.extend(shares(answer));
+    let mut notes: Vec<String> = scatter_note(scatter).into_iter().collect();
+    notes.push(taken_as_exact(over_draws.is_some()).to_owned());
+    TextAnswer {
+        answer: sentences,
+        subject: subject(profile, units),
+        labelled,
+        notes,
+        details: details(answer, units),
+        ..TextAnswer::default()
+    }
+}
+
+/// Decimals that people need of a quantity.
+fn decimals(dimension: Dimension) -> usize {
+    match dimension {
+        Dimension::Spin => 1,
+        Dimension::Angle => 1,
+        _ => 2,
+    }
+}
+
+fn shot(answer: &ProbabilityAnswer, units: UnitSystem) -> String {
+    let values = NominalVariable::ALL.map(|of| {
+        let unit = units.unit(of.dimension());
+        let value = answer.nominal.get(of) / unit.size;
+        let decimals = decimals(of.dimension());
+        (value != 0.0).then(|| format!("{} {value:.decimals$} {}", nominal_name(of), unit.name))
+    });
+    let values: Vec<String> = values.into_iter().flatten().collect();
+    values.join(", ")
+}
+
+/// The first four standard deviations, and how many more there are.
+fn scatter_of(answer: &ProbabilityAnswer, units: UnitSystem) -> String {
     let sigmas = ReleaseVariable::ALL
-        .iter()
+        .into_iter()
         .zip(&answer.standard_deviations.0);
-    let sigmas = sigmas.map(|(of, (_, sigma))| (of.name(), of.dimension(), *sigma));
-    let sigmas = list(sigmas, units);
-    let sigmas = if sigmas.is_empty() { "none" } else { &sigmas };
-    text.push_str(&format!("errors  {sigmas} (standard deviations)\n"));
-    let shares = answer.shares.as_ref().map_or(&[][..], |shares| &shares.0);
-    let (made, missed) = shares.split_at(MADE_SHARES.len().min(shares.len()));
-    for (label, part) in [("made", made), ("missed", missed)] {
-        let parts: Vec<String> = part
+    let given = sigmas.filter(|(_, (_, sigma))| *sigma > 0.0);
+    let values: Vec<String> = given
+        .map(|(of, (_, sigma))| {
+            let unit = units.unit(of.dimension());
+            format!(
+                "{} {:.2} {}",
+                variable_name(of),
+                sigma / unit.size,
+                unit.name
+            )
+        })
+        .collect();
+    const MOST: usize = 4;
+    match values.len() {
+        0 => "none".to_owned(),
+        n if n <= MOST => values.join(", "),
+        n => format!(
+            "{}, and {} more (--details)",
+            values[..MOST].join(", "),
+            n - MOST
+        ),
+    }
+}
+
+/// The words for an outcome.
+fn outcome(name: &str) -> &str {
+    match name {
+        "ring" => "off the ring",
+        "board" => "off the board",
+        "board_and_ring" => "off board and ring",
+        "in_and_out" => "in and out",
+        "over" => "over the board",
+        "airball" => "air ball",
+        other => other,
+    }
+}
+
+/// The outcomes of shots that went in, and of those that missed: the greatest, and the rest.
+fn shares(answer: &ProbabilityAnswer) -> Vec<(&'static str, String)> {
+    let Some(all) = &answer.shares else {
+        return Vec::new();
+    };
+    let (made, missed) = all.0.split_at(MADE_SHARES.len().min(all.0.len()));
+    let line = |(label, part): (&'static str, &[(String, f64)])| {
+        const MOST: usize = 4;
+        let total: f64 = part.iter().map(|(_, share)| share).sum();
+        let mut part: Vec<&(String, f64)> =
+            part.iter().filter(|(_, share)| *share >= 5e-4).collect();
+        part.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut words: Vec<String> = part
             .iter()
-            .filter(|(_, share)| *share >= 5e-5)
-            .map(|(name, share)| format!("{} {:.2} %", name.replace('_', " "), 100.0 * share))
+            .take(MOST)
+            .map(|(name, share)| format!("{} {}", outcome(name), per_100(*share)))
             .collect();
-        if !parts.is_empty() {
-            text.push_str(&format!("{label:7} {}\n", parts.join(", ")));
+        let rest: f64 = part.iter().skip(MOST).map(|(_, share)| share).sum();
+        if rest >= 5e-4 {
+            words.push(format!("other {}", per_100(rest)));
         }
+        (label, format!("{}   {}", per_100(total), words.join(", ")))
+    };
+    [("went in", made), ("missed", missed)].map(line).into()
+}
+
+fn details(answer: &ProbabilityAnswer, units: UnitSystem) -> String {
+    let mut text = format!(
+        "  method       {}, {} shots\n",
+        answer.method.name(),
+        answer.shots
+    );
+    if let Some((low, high)) = answer.interval_95 {
+        text += &format!(
+            "  simulation   {} per 100, 95 % of the simulation error {} to {}\n",
+            per_100(answer.probability),
+            per_100(low),
+            per_100(high)
+        );
+    }
+    for (of, (_, sigma)) in ReleaseVariable::ALL
+        .into_iter()
+        .zip(&answer.standard_deviations.0)
+    {
+        let unit = units.unit(of.dimension());
+        text += &format!(
+            "  scatter      {} {:.3} {}\n",
+            variable_name(of),
+            sigma / unit.size,
+            unit.name
+        );
+    }
+    for (name, share) in answer.shares.iter().flat_map(|shares| &shares.0) {
+        text += &format!("  outcome      {} {:.2}\n", outcome(name), 100.0 * share);
     }
     text
-}
-
-/// Values with their units; those that are 0 are left out.
-fn list(
-    values: impl IntoIterator<Item = (&'static str, Dimension, f64)>,
-    units: UnitSystem,
-) -> String {
-    let present = values.into_iter().filter(|(_, _, value)| *value != 0.0);
-    let parts = present.map(|(name, dimension, value)| {
-        let unit = units.unit(dimension);
-        let name = name.replace('_', " ");
-        format!("{name} {:.3} {}", value / unit.size, unit.name)
-    });
-    parts.collect::<Vec<_>>().join(", ")
-}
-
-/// Decimals that show a digit of the standard error, 4 to 9.
-fn decimals(standard_error: f64) -> usize {
-    (4..9)
-        .find(|&digits| standard_error * libm::pow(10.0, digits as f64) >= 0.95)
-        .unwrap_or(if standard_error > 0.0 { 9 } else { 4 })
 }

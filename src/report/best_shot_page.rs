@@ -122,7 +122,7 @@ fn draw_views(profile: &Profile, shots: &[PlottedShot]) -> Option<Plot> {
         })
         .collect();
     let units = profile.output().units;
-    let title = "Where to aim: the best shots without an error";
+    let title = "Where to aim: the best shots without scatter";
     let note = "Blue: the direct shot, brown: the bank shot.";
     let mut plot = shot_views::draw("views", title, note, profile.physics(), units, &paths);
     plot.caption = "From the side, from above, facing the board, and over the ring.".to_owned();
@@ -135,18 +135,17 @@ fn answer(profile: &Profile, run: &BestRun, best: &FoundShot) -> String {
     let other = run.shots.iter().find(|other| other.kind != best.kind);
     let compared = other.map_or(String::new(), |other| {
         format!(
-            ", {:.1} \u{b1} {:.1} points more than the {} shot",
+            ", {:.1} more than with the {} shot",
             100.0 * (best.probability - other.probability),
-            100.0 * libm::hypot(best.standard_error, other.standard_error),
             other.kind.name()
         )
     });
     format!(
-        "From {}, take the {} shot: P {:.3} \u{b1} {:.3}{compared}. Release at {:.2} {long}/s, {:.1} deg up, with {:.1} rev/s of backspin{}.",
+        "From {}, take the {} shot: {:.1} of 100 go in{compared} (simulation error {:.1}). Release at {:.2} {long}/s and {:.1} deg with {:.1} rev/s of backspin{}.",
         profile.location().in_words(units),
         best.kind.name(),
-        best.probability,
-        best.standard_error,
+        100.0 * best.probability,
+        100.0 * best.standard_error,
         best.nominal.speed_m_s / unit_m,
         best.nominal.pitch_rad / DEGREE_RAD,
         best.nominal.backspin_rad_s / REV_RAD,

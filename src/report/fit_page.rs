@@ -90,7 +90,7 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         .map(|(place, probabilities)| {
             let p = probabilities.interval();
             format!(
-                "{}: {:.1} % of the usual shots go in (95 %: {:.1} to {:.1} %)",
+                "{}: {:.1} of 100 shots go in (95 % interval {:.1} to {:.1})",
                 place.location.in_words(units),
                 100.0 * p.mean,
                 100.0 * p.low,
@@ -99,7 +99,7 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         })
         .collect();
     format!(
-        "{}, by {} {}.{seen}{}",
+        "{}, estimated from {} {}.{seen}{}",
         chances.join("; "),
         fit.posterior.shots,
         source.kind.name(),
@@ -116,7 +116,7 @@ fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
     }
     let [brier_of_share, log_loss_of_share] = makes.losses_of_share;
     let calibration = makes.calibration_z.map_or_else(String::new, |z| {
-        format!("Spiegelhalter's z {z:+.1}: about 0 \u{b1} 1 if the chances are right, above 3 if they are too sure.")
+        format!("Spiegelhalter's z {z:+.1}: about 0 \u{b1} 1 if the chances are right, above 3 if they are too extreme.")
     });
     let bins = makes.bins.iter().map(|bin| {
         let observed = &bin.observed;

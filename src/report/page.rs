@@ -142,7 +142,7 @@ impl Page {
         let points = 100.0 * (own - others);
         Some(if points.abs() < 1.0 {
             format!(
-                "{} and {} are level: their best shots make {:.1} and {:.1} of 100.\n",
+                "{} and {} are level: {:.1} and {:.1} of 100 go in with their best shots.\n",
                 self.title,
                 other.title,
                 100.0 * own,
@@ -155,7 +155,7 @@ impl Page {
                 (&other.title, &self.title)
             };
             format!(
-                "{more} makes {:.1} of 100 more than {less}, each with their best shot.\n",
+                "{:.1} more of 100 go in for {more} than for {less}, each with the best shot.\n",
                 points.abs()
             )
         })

@@ -14,12 +14,12 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
     let (short, short_m) = units.short_length();
     let columns = [
         "physics".to_owned(),
-        "direct P".to_owned(),
+        "direct: makes per 100".to_owned(),
         format!("speed {long}/s"),
-        "pitch deg".to_owned(),
+        "angle deg".to_owned(),
         format!("{short} past centre"),
-        "bank P".to_owned(),
-        "same shot P".to_owned(),
+        "bank: makes per 100".to_owned(),
+        "same shot: makes per 100".to_owned(),
     ];
     let cells = |row: &PhysicsRow| {
         let number = |value: Option<f64>, decimals: usize| {
@@ -29,12 +29,12 @@ pub fn physics_table(comparison: &PhysicsComparison, units: UnitSystem) -> HtmlT
         let bank = row.bank.as_ref().ok();
         vec![
             physics_name(row.of, units),
-            number(direct.map(|shot| shot.estimate.probability), 3),
+            number(direct.map(|shot| 100.0 * shot.estimate.probability), 1),
             number(direct.map(|shot| shot.nominal.speed_m_s / metre), 2),
             number(direct.map(|shot| shot.nominal.pitch_rad / DEGREE_RAD), 1),
             number(row.aim_past_centre_m.map(|aim_m| aim_m / short_m), 1),
-            number(bank.map(|shot| shot.estimate.probability), 3),
-            number(row.same_shot.map(|p| p.probability), 3),
+            number(bank.map(|shot| 100.0 * shot.estimate.probability), 1),
+            number(row.same_shot.map(|p| 100.0 * p.probability), 1),
         ]
     };
     HtmlTable {

@@ -15,13 +15,13 @@ pub(super) fn sensitivity_table(shots: &[FoundShot], units: UnitSystem) -> Optio
         })
         .collect();
     (!rows.is_empty()).then(|| HtmlTable {
-        caption: "Sensitivity".to_owned(),
+        caption: "What matters most".to_owned(),
         columns: [
             "shot",
             "what changes",
             "value",
-            "gain, points of P",
-            "\u{b1}",
+            "adds, per 100",
+            "simulation error",
         ]
         .map(str::to_owned)
         .to_vec(),
@@ -47,10 +47,10 @@ fn cells(kind: &str, row: &SensitivityRow) -> Vec<String> {
 fn what_changes(topic: Topic, variable: &str) -> String {
     let variable = variable.replace('_', " ");
     match topic {
-        Topic::WindowLow => format!("window, lowest {variable}"),
-        Topic::WindowHigh => format!("window, highest {variable}"),
-        Topic::Without => format!("no error in {variable}"),
-        Topic::ATenthLess => format!("10 % less error in {variable}"),
+        Topic::WindowLow => format!("tolerance, lowest {variable}"),
+        Topic::WindowHigh => format!("tolerance, highest {variable}"),
+        Topic::Without => format!("no scatter in {variable}"),
+        Topic::ATenthLess => format!("10 % less scatter in {variable}"),
         Topic::Backspin => "backspin".to_owned(),
         Topic::ReleaseHeight => "release height".to_owned(),
     }

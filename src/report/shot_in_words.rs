@@ -1,6 +1,7 @@
 //! A best shot on a page, and its description in words.
 
 use crate::plots::shot_with_probability::PlottedShot;
+use crate::present::words::capitalised;
 use crate::shooter::Location;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, with_decimals};
 
@@ -18,23 +19,20 @@ pub struct ReportShot {
 }
 
 impl ReportShot {
-    /// One sentence with the shot's kind, P and nominal values.
+    /// One sentence with the shot's kind, probability and nominal values.
     #[must_use]
     pub fn description(&self, units: UnitSystem) -> String {
         let (long, unit_m) = units.length();
         let nominal = &self.shot.nominal;
-        let mut kind = self.shot.kind.name().to_owned();
-        if let Some(first) = kind.get_mut(0..1) {
-            first.make_ascii_uppercase();
-        }
-        // The numerical error, where P has no interval of its own.
+        let kind = capitalised(self.shot.kind.name());
+        // The simulation error, where the probability has no interval of its own.
         let error = match self.shot.standard_error {
-            error if error > 0.0 => format!(" \u{b1} {error:.3}"),
+            error if error > 0.0 => format!(" (simulation error {:.1})", 100.0 * error),
             _ => String::new(),
         };
         format!(
-            "{kind}: P {:.3}{error}; {:.2} {long}/s, pitch {:.1} deg, polar {:.1} deg, backspin {:.1} rev/s.",
-            self.shot.probability,
+            "{kind}: {:.1} of 100 go in{error}; {:.2} {long}/s, angle {:.1} deg, direction {:.1} deg, backspin {:.1} rev/s.",
+            100.0 * self.shot.probability,
             nominal.speed_m_s / unit_m,
             nominal.pitch_rad / DEGREE_RAD,
             with_decimals(nominal.polar_rad / DEGREE_RAD, 1),

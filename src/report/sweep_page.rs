@@ -53,7 +53,7 @@ pub fn sweep_page(
             units: settings.output.units,
         },
         footer: format!(
-            "bankshot {program}, configuration {}; {} of {} jobs: {} found, {} without a best shot, {} failed; P to {}.",
+            "bankshot {program}, configuration {}; {} of {} jobs: {} found, {} without a best shot, {} failed; simulation error {}.",
             hash.get(..12).unwrap_or(hash),
             rows.len(),
             jobs.count(),
@@ -139,12 +139,12 @@ fn answer(config: &SweepConfig, shots: &[ReportShot], comparison: Option<&Plot>)
     };
     let compared = comparison.map_or(String::new(), |plot| {
         format!(
-            " {} The profile is taken as exact: for a measured player `bankshot team` says where bank or direct is not sure.",
+            " {} The profile counts as exact here. For a measured player, `bankshot team` shows where bank or direct is not clear yet.",
             plot.caption
         )
     });
     Some(format!(
-        "The surest place is {}: {:.1} of 100 go in with the {} shot. The hardest is {}: {:.1} with the {} shot.{compared}",
+        "The best place is {}: {:.1} of 100 go in with the {} shot. The hardest is {}: {:.1} with the {} shot.{compared}",
         in_words(best),
         100.0 * best.shot.probability,
         best.shot.kind.name(),

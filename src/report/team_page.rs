@@ -110,7 +110,7 @@ impl TeamPage {
         let posters = self.posters.as_ref().map_or_else(String::new, |file| {
             let file = escaped(file);
             format!(
-                "<p class=\"unprinted\">A sheet to print for each player, with the spots on the board to aim at: <a href=\"{file}\">{file}</a>, a file beside this page. Printed, this page is the table and the maps.</p>\n"
+                "<p class=\"unprinted\">A sheet to print for each player, with the points on the board to aim at: <a href=\"{file}\">{file}</a>, a file beside this page. Printed, this page is the table and the maps.</p>\n"
             )
         });
         let advice: String = self

@@ -11,7 +11,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Standard deviations by which pitch and backspin are widened beyond the nominal values.
 pub const MARGIN_SIGMAS: f64 = 4.5;
-/// The same for all axes of a window. The probability beyond, 3e-5 on each side for a nominal shot
+/// Standard deviations on every axis of a window. The probability beyond, 3e-5 on each side for a
+/// nominal shot
 /// at an end and far less for the others, does not matter.
 const WINDOW_MARGIN_SIGMAS: f64 = 4.0;
 /// Least margin of the backspin, rad/s.

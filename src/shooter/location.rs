@@ -72,7 +72,7 @@ impl Location {
         format!("{distance} {long} from the hoop, {side}")
     }
 
-    /// The same for a place and its mirror image together.
+    /// Words for a place and its mirror image together.
     #[must_use]
     pub fn in_words_on_either_side(&self, units: UnitSystem) -> String {
         self.in_words(units)
@@ -94,7 +94,8 @@ impl Location {
         self.in_players_words_of(&format!("the {side}"), units)
     }
 
-    /// The same for a place and its mirror image together: `either wing, 11 ft from the hoop`.
+    /// Players' words for a place and its mirror image together:
+    /// `either wing, 11 ft from the hoop`.
     #[must_use]
     pub fn in_players_words_on_either_side(&self, units: UnitSystem) -> String {
         self.in_players_words_of("either", units)

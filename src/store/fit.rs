@@ -1,4 +1,4 @@
-//! The folder of a fit, read again.
+//! Reads the folder of a fit; `answers/fit.rs` has what is written.
 
 use super::StoreError;
 use super::free_parameters::FreeParameter;

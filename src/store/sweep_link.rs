@@ -26,7 +26,7 @@ impl SweepLink {
     pub fn read(folder: &Path) -> Result<Option<Self>, StoreError> {
         let file = folder.join(FILE);
         let exists = file.is_file();
-        let sealed = exists.then(|| Sealed::read(&file, "run `bankshot compare` again"));
+        let sealed = exists.then(|| Sealed::read(&file, "run `bankshot map` again"));
         Ok(sealed.transpose()?.map(|sealed| sealed.content))
     }
 

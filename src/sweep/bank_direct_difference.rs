@@ -71,7 +71,7 @@ impl fmt::Display for BankAdvantage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "The bank shot is better at {} of {} places, by at least 1 in 100.",
+            "Bank is better at {} of {} places, by at least 1 per 100.",
             self.better, self.compared
         )
     }

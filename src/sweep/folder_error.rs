@@ -21,7 +21,7 @@ pub enum SweepFolderError {
     #[error(transparent)]
     Store(#[from] ResultsError),
     /// The folder holds another sweep.
-    #[error("{}: holds the results of another sweep; take another folder, or change back:\n{}", .path.display(), .differences.join("\n"))]
+    #[error("{}: has the results of another sweep; name another folder, or change back:\n{}", .path.display(), .differences.join("\n"))]
     OtherSweep {
         /// The folder.
         path: PathBuf,

@@ -124,10 +124,10 @@ impl SweepFolder {
             ManifestFile::Missing => {
                 let within = sweeps_within(path);
                 return Err(no_sweep(&if within.is_empty() {
-                    "holds no sweep (there is no configuration.json)".to_owned()
+                    "is not the folder of a sweep (it has no configuration.json)".to_owned()
                 } else {
                     format!(
-                        "holds a sweep in each of its folders; name one: {}",
+                        "has a sweep in each of its folders; name one: {}",
                         within.join(", ")
                     )
                 }));

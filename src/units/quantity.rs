@@ -173,7 +173,7 @@ pub enum QuantityError {
     DecimalComma {
         /// The input.
         text: String,
-        /// The same with a point.
+        /// The number with a point.
         point: String,
     },
     /// The unit does not belong to this dimension.

@@ -77,11 +77,12 @@ fn contract_metres_and_feet_give_the_same_answer() {
     let mut answers = Vec::new();
     for (name, text) in [("a.toml", small_profile()), ("b.toml", metres)] {
         let profile = write_file(&folder, name, text);
-        let answer = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
+        let mut command = best(&profile, folder.path());
+        let answer = Answer::of(command.args(["--details", "--quiet"])).exits(0);
         let text = answer.stdout();
-        let line = text.lines().find(|line| line.contains("range made"));
-        let line = line.expect("the sensitivity says within what range a shot is made");
-        assert!(line.contains(" ft/s, pitch "), "{line}");
+        let line = text.lines().find(|line| line.contains("  tolerance  "));
+        let line = line.expect("the details have the tolerance of each value");
+        assert!(line.contains(" ft/s, angle "), "{line}");
         answers.push(answer.stdout);
     }
     assert_eq!(answers[0], answers[1]);
@@ -125,7 +126,7 @@ fn contract_best_with_a_given_pitch_is_that_of_a_profile_that_fixes_it() {
     assert_eq!(again.stdout, by_flag.stdout);
     run(&own, "words", &[])
         .exits(0)
-        .prints("Given, not searched for: pitch.");
+        .prints("Fixed by the profile or a flag: the angle.");
     run(&profile, "refused", &["--pitch", "95 deg"])
         .exits(2)
         .says("--pitch: must be from 1 to 89 deg");
@@ -239,14 +240,15 @@ preset = "paper"
 fn contract_the_sensitivity_of_a_shot_keeps_its_kind() {
     let folder = TempDir::new().unwrap();
     let profile = write_file(&folder, "p.toml", LOW_RELEASE);
-    let text = Answer::of(best(&profile, folder.path()).arg("--quiet")).exits(0);
+    let text = Answer::of(best(&profile, folder.path()).args(["--details", "--quiet"])).exits(0);
     assert!(
-        text.stdout().contains("direct: nearly a bank shot"),
+        text.stdout()
+            .contains("of the shots that go in are bank shots"),
         "{text:?}"
     );
     let answer = Answer::of(best(&profile, folder.path()).args(["--json", "--quiet"])).json();
     let direct = &answer["direct"];
-    // The bank shot is better by 7 points: a direct shot that turned into one would gain them.
+    // The bank shot is better by 7 per 100: a direct shot that turned into one would gain them.
     let gain =
         answer["bank"]["probability"].as_f64().unwrap() - direct["probability"].as_f64().unwrap();
     assert!(gain > 0.05, "{gain}");
@@ -308,7 +310,7 @@ fn contract_a_shot_that_misses_without_errors_is_no_best_shot() {
     assert!(
         answer
             .stdout()
-            .contains("no clean direct shot: the most probable ones"),
+            .contains("No exact direct shot goes in from this place"),
         "{answer:?}"
     );
 }

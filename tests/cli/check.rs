@@ -92,9 +92,9 @@ const ERRORS: [(&str, &str, &[&str]); 30] = [
     (
         "c11 = 0.0",
         "c19 = 0.0",
-        &["shooter.errors.c19", "not a key"],
+        &["shooter.errors.c19", "unknown key"],
     ),
-    ("[location]", "[loction]", &["loction", "not a key"]),
+    ("[location]", "[loction]", &["loction", "unknown key"]),
     (
         "distance = \"13.75 ft\"",
         "distance = \"1.1 ft\"",
@@ -294,7 +294,7 @@ fn contract_impossible_correlations_are_refused_with_their_file() {
     let folder = TempDir::new().unwrap();
     for (text, reason) in [
         ("speed_pitch = 1.5", "from -1 to 1"),
-        ("pitch_tempo = 0.5", "not a key here"),
+        ("pitch_tempo = 0.5", "unknown key"),
         (
             "speed_pitch = 0.9\nspeed_polar = 0.9\npitch_polar = -0.9",
             "not positive semi-definite",
@@ -311,7 +311,7 @@ fn contract_thousands_of_errors_are_counted_and_the_first_shown() {
     let keys: String = (0..40_000).map(|i| format!("key_{i} = 1\n")).collect();
     let profile = write_file(&folder, "many.toml", format!("{keys}{FREE_THROW}"));
     let answer = check(&profile).exits(2);
-    assert_eq!(answer.stderr.matches("is not a key here").count(), 50);
+    assert_eq!(answer.stderr.matches("is an unknown key").count(), 50);
     assert!(
         answer.stderr.contains("... and 39950 more errors"),
         "{}",

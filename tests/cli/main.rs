@@ -3,16 +3,17 @@
 
 mod best;
 mod check;
-mod compare_sessions;
-mod design;
+mod compare;
 mod doc_outputs;
 mod fit;
 mod help_examples;
 mod man;
 mod new;
 mod output_file_errors;
-mod probability;
+mod plain_words;
+mod sample_size;
 mod schema;
+mod shot;
 mod silent_guesses;
 mod simulate;
 mod stored;

@@ -66,7 +66,7 @@ fn contract_a_team_has_a_table_maps_and_posters() {
             assert!(files.iter().any(|name| name == file), "{files:?}");
         }
         let html = fs::read_to_string(out.join(player).join("poster.html")).unwrap();
-        assert!(html.contains("Your surest place: ") && !html.contains("<b>"));
+        assert!(html.contains("Your best place: ") && !html.contains("<b>"));
     }
     let page = fs::read_to_string(out.join("team.html")).unwrap();
     assert!(page.contains("href=\"posters.html\"") && page.contains(">the best of the team<"));
@@ -76,7 +76,7 @@ fn contract_a_team_has_a_table_maps_and_posters() {
     let summary = printed.split_once("<section class=\"summary\">").unwrap().1;
     assert_eq!(summary.matches("<tr><td").count(), 2, "{summary}");
     assert!(summary.contains(">bank it from<") && !summary.contains(">change<"));
-    assert!(details.contains("Makes in 100 at each place: direct/bank"));
+    assert!(details.contains("Makes per 100 at each place: direct/bank"));
     let posters = fs::read_to_string(out.join("posters.html")).unwrap();
     assert_eq!(posters.matches("<section>").count(), 2);
     assert!(!posters.contains("<b>"));

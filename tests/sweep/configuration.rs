@@ -135,11 +135,11 @@ fn contract_invalid_sweeps_are_refused_with_each_error_at_its_line() {
             "must name direct or bank",
         ),
         ("name = \"small\"", "shooter = \"none.toml\"", "none.toml"),
-        ("name = \"small\"", "colour = \"red\"", "is not a key here"),
+        ("name = \"small\"", "colour = \"red\"", "is an unknown key"),
         (
             "[grid]",
             "[location]\ndistance = \"10 ft\"\n[grid]",
-            "is not a key here",
+            "is an unknown key",
         ),
         ("speed = 12", "speed = 65536000", "from 2 to 100000"),
         ("[sweep]", "[sweeps]", "there is no [sweep]"),

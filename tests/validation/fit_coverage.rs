@@ -697,7 +697,7 @@ fn session_changes(
         comparison,
     };
     let mut changes = vec![change(
-        "P",
+        "probability",
         compare_probabilities(probabilities, [shots, shots]),
     )];
     for (name, value) in quantities() {
@@ -706,7 +706,7 @@ fn session_changes(
     changes
 }
 
-/// Two sessions of an unchanged shooter: how often does `compare-sessions` say that something
+/// Two sessions of an unchanged shooter: how often does `compare` say that something
 /// changed? With room for the nine values it looks at, at most in 5 % of the pairs, and for P in 5
 /// %. And how often does it see a release angle that changed by its standard deviation over a
 /// third, and scatter in speed that fell by a third?

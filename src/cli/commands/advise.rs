@@ -7,19 +7,19 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_answer, print_next, print_remark, print_text};
 use crate::fitting::advise;
-use crate::present::fit_files::advice_text::{advice_text, brief_advice_text};
+use crate::present::fit_files::advice_text::PlayerAdvice;
 use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::store::fit::Fit;
 use crate::store::shooters::fits_within;
+use crate::units::UnitSystem;
 use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The shots can be a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit, of one \
-shooter or of several.
+SHOTS is a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit, also one with several players.
 
 Examples:
   bankshot advise docs/data/gym_sensor.csv
@@ -30,11 +30,10 @@ pub(crate) struct AdviseOptions {
     pub(crate) shots: PathBuf,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
-    /// Print one JSON object for each shooter and place instead of text.
+    /// Print one JSON object for each player and place instead of text.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Print only what to tell the player, of each shooter and place: the first sentences, how the
-    /// ball should come down, and bank against direct.
+    /// Print only what to tell the player.
     #[arg(long, conflicts_with = "json")]
     pub(crate) brief: bool,
 }
@@ -92,32 +91,47 @@ fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Res
         }
         let observed = Some(fit.observed[place]);
         let advice = advise(profile, &fit.posterior, place, &bars)?;
-        let location = profile.location();
-        let place_name = &fit.place_names[place];
         if options.json {
             let answer = AdviceAnswer::new(fit, place, &advice);
             print_answer(&json::text(&json::document(&answer, units)))?;
             continue;
         }
-        if places > 1 {
-            let (unit, size) = units.length();
-            print_answer(&format!(
-                "{}{}{}, released {:.2} {unit} up\n",
-                if place > 0 { "\n" } else { "" },
-                match place_name.as_str() {
-                    "" => String::new(),
-                    name => format!("{name}: "),
-                },
-                location.in_words(units),
-                profile.shooter().release_height_m / size
-            ))?;
+        if place > 0 {
+            print_answer("\n")?;
         }
-        let angle = location.angle_rad;
-        let text = match options.brief {
-            true => brief_advice_text(name, &advice, observed, angle, units),
-            false => advice_text(name, &advice, observed, angle, units),
+        let player = PlayerAdvice {
+            profile,
+            advice: &advice,
+            observed,
+            units,
         };
-        print_prose(&text)?;
+        print_answer(&heading(fit, place, units, shooters > 1))?;
+        match options.brief {
+            true => print_answer(&player.brief())?,
+            false => print_text(&player.text())?,
+        };
+    }
+    if !options.json && !options.brief {
+        print_next(None, "");
     }
     Ok(())
+}
+
+/// The shooter and the place, where there are several.
+fn heading(fit: &Fit, place: usize, units: UnitSystem, has_several_shooters: bool) -> String {
+    let profile = &fit.profiles[place];
+    let mut words = Vec::new();
+    if has_several_shooters {
+        words.push(profile.shooter().name.clone());
+    }
+    if fit.profiles.len() > 1 {
+        words.push(match fit.place_names[place].as_str() {
+            "" => profile.location().in_words(units),
+            name => format!("{name}: {}", profile.location().in_words(units)),
+        });
+    }
+    match words.is_empty() {
+        true => String::new(),
+        false => format!("{}\n", words.join(", ")),
+    }
 }

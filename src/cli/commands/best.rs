@@ -1,5 +1,6 @@
 //! `bankshot best`: load, plan, search, write.
 
+use super::plan::{WIDE_SAMPLE, print_plan_of_search};
 use crate::answers::best_shots::BestShotsAnswer;
 use crate::answers::json;
 use crate::best_shot;
@@ -10,11 +11,8 @@ use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::{print_answer, print_hint, print_prose};
-use crate::present::best_shot_text::{
-    PROFILE_IS_EXACT, answer_in_words, best_shots_table, sensitivity_text, vacuum_note,
-    what_matters,
-};
+use crate::cli::terminal::{print_answer, print_next, print_text};
+use crate::present::best_shot_text::best_shots_text;
 use crate::search_space::TablePlan;
 use clap::Args;
 use std::path::PathBuf;
@@ -24,13 +22,12 @@ use std::path::PathBuf;
 Examples:
   bankshot best configs/free_throw.toml
   bankshot best configs/free_throw.toml --json --quiet | python3 -m json.tool
-  bankshot best configs/bank_wing.toml --units metric --out wing
+  bankshot best configs/bank_wing.toml --units metric --output wing
   bankshot best configs/free_throw.toml --distance '12 ft' --angle '45 deg'
   bankshot best configs/free_throw.toml --pitch '50 deg'
   bankshot best configs/free_throw.toml --scatter 'speed=-20%'
 
-Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (P along each variable of the \
-best shots), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
+Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (one value of the best shots changed at a time), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
 pub(crate) struct BestOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
@@ -38,17 +35,15 @@ pub(crate) struct BestOptions {
     pub(crate) fixed: FixedOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
+    /// Print how much time and memory the search needs, and stop.
+    #[arg(long)]
+    pub(crate) plan: bool,
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "output", short = 'o', alias = "out", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
-    /// scatter, and how sure it is that bank beats direct.
+    /// Add the uncertainty of a fit (its folder) [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
-    /// Also print how each kind of shot goes in, and what every error, backspin and height are
-    /// worth.
-    #[arg(long)]
-    pub(crate) details: bool,
     /// Print one JSON object instead of the table.
     #[arg(long)]
     pub(crate) json: bool,
@@ -58,12 +53,15 @@ pub(crate) fn run(options: &BestOptions) -> Result<u8, Failure> {
     let fixed = options.fixed.variables();
     let loaded = options.profile.load(&fixed)?;
     let loaded = options.fixed.changed(options.scatter.changed(loaded)?)?;
+    if options.plan {
+        return print_plan_of_search(&loaded.profile, WIDE_SAMPLE, options.json);
+    }
+    let is_scatter_changed = !options.scatter.scatter.is_empty();
+    // A folder that is no fit is refused before the search.
+    let draws = fit_folder::draws_for(options.draws.as_deref(), &loaded, is_scatter_changed)?;
     let (text, profile) = (loaded.text(), loaded.profile);
-    let units = profile.output().units;
     // A plan that is refused is refused before anything is written.
     TablePlan::for_search(&profile)?;
-    // A folder that is no fit is refused before the search.
-    let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     let folder = match &options.out {
         Some(folder) => folder.clone(),
         None => run_folder::of_profile(&profile)?,
@@ -76,36 +74,22 @@ pub(crate) fn run(options: &BestOptions) -> Result<u8, Failure> {
     }
     if options.json {
         let answer = BestShotsAnswer::new(&profile, &best);
-        print_answer(&json::text(&json::document(&answer, units)))?;
+        print_answer(&json::text(&json::document(
+            &answer,
+            profile.output().units,
+        )))?;
     } else {
-        let mut text = answer_in_words(&profile, &best, units);
-        text += &best_shots_table(&profile, &best, units);
-        text += &what_matters(&profile, &best, units);
-        if options.details {
-            text += &sensitivity_text(&profile, &best, units);
-        }
-        text += &options.scatter.in_words();
-        text += vacuum_note(&profile);
-        if options.draws.is_none() {
-            text += PROFILE_IS_EXACT;
-        }
-        print_prose(&text)?;
+        let over_draws = draws
+            .as_ref()
+            .map(|fit| fit_folder::kinds_over_draws(fit, &profile, &best))
+            .transpose()?;
+        let scatter = &options.scatter.scatter;
+        let answer = best_shots_text(&profile, &best, over_draws.as_ref(), scatter);
+        print_text(&answer)?;
     }
-    if let Some((folder, fit)) = &draws {
-        let found = best.by_kind().map(|(kind, shot)| (kind, shot.as_ref()));
-        let nominals: Vec<_> = found
-            .into_iter()
-            .filter_map(|(kind, shot)| Some((kind, &shot.ok()?.nominal)))
-            .collect();
-        print_prose(&fit_folder::kinds_over_draws(
-            (folder, fit),
-            &profile,
-            &nominals,
-        )?)?;
-    }
-    print_hint(&format!(
-        "written to {0}; next: bankshot report {0}",
-        folder.display()
-    ));
+    print_next(
+        Some(&folder),
+        &format!("bankshot report {}", folder.display()),
+    );
     Ok(run_folder::exit_code(&profile, &best))
 }

@@ -5,7 +5,7 @@ use crate::answers::json::{self, Provenance};
 use crate::cli::config_files::{load_sweep, read_text};
 use crate::cli::failure::{Failure, code};
 use crate::cli::loaded_profile::LoadedProfile;
-use crate::cli::terminal::{print_answer, print_prose, wrapped_line};
+use crate::cli::terminal::{has_details, print_answer, print_prose, wrapped_line};
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::config::parse_profile;
 use crate::model::{PRESETS, Physics, PhysicsValue};
@@ -22,9 +22,6 @@ pub(crate) struct CheckOptions {
     pub(crate) profile: PathBuf,
     #[command(flatten)]
     pub(crate) physics: PhysicsArg,
-    /// List every value of the physics, and whether it is measured, from a rule book or assumed.
-    #[arg(long)]
-    pub(crate) verbose: bool,
     /// Units of the answer [default: the profile's, else imperial].
     #[arg(long)]
     pub(crate) units: Option<UnitsArg>,
@@ -56,7 +53,7 @@ pub(crate) fn run(options: &CheckOptions) -> Result<u8, Failure> {
         location.distance_m / metre,
         location.angle_rad / DEGREE_RAD
     );
-    if options.verbose {
+    if has_details() {
         answer.push_str(&physics_text(
             profile.physics(),
             preset_named_in(&text).as_deref(),

@@ -1,20 +1,20 @@
 //! The commands, one file each, and the text that some of them share.
 
 pub(super) mod advise;
+pub(super) mod angles;
 pub(super) mod best;
 pub(super) mod check;
 pub(super) mod compare;
-pub(super) mod compare_sessions;
-pub(super) mod design;
 pub(super) mod figures;
 pub(super) mod fit;
+pub(super) mod map;
 pub(super) mod new;
 pub(super) mod physics;
-pub(super) mod pitch_curve;
 pub(super) mod plan;
 mod plan_sweep_time_and_memory;
-pub(super) mod probability;
 pub(super) mod report;
+pub(super) mod sample_size;
+pub(super) mod shot;
 pub(super) mod simulate;
 pub(super) mod sweep;
 pub(super) mod sweep_status;

@@ -69,7 +69,7 @@ impl Template {
                     "bankshot table {file} --draft --kind best --pitch '60 deg' --distances '6 ft to 20 ft by 2 ft'"
                 )
             }
-            Self::Physics => format!("bankshot check PROFILE.toml --physics {file} --verbose"),
+            Self::Physics => format!("bankshot check PROFILE.toml --physics {file} --details"),
         }
     }
 }

@@ -3,13 +3,15 @@
 use crate::answers::json;
 use crate::answers::physics::{FittedPlace, compare, without_usual_shot};
 use crate::best_shot::PhysicsOf;
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::loaded_profile::load_profile;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_prose, print_remark};
+use crate::cli::terminal::{
+    is_quiet, print_answer, print_hint, print_next, print_remark, print_text,
+};
 use crate::measured_shots::source::Source;
 use crate::plots::physics_probabilities;
 use crate::present::physics_text::{physics_name, physics_text};
@@ -21,10 +23,11 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Searches the best shots under up to 25 physics: half a minute to four minutes on two cores. What nobody measured in this gym (how soft the \
-ring and the board are, the friction, the drag, the height) is changed to other likely values; \"together\" is, for \
-the changes that lower P and for those that raise it, the root of the sum of squares, of each quantity the change that does most. \
-Of the folder of a fit it also says what the advice of `bankshot advise` gains under each physics; --json has P of the usual and of the advised shot there, and the gain, each with its 95 % interval.
+Searches the best shots under up to 25 physics: half a minute to four minutes on two cores. Values that nobody measured in this gym \
+(ring, board, friction, drag, height) are changed to other likely ones. \"All together\" combines the largest change of each \
+quantity, up and down, as the root of the sum of squares.
+
+For the folder of a fit it also computes what the advice of `bankshot advise` adds under each physics.
 
 Examples:
   bankshot physics player.toml
@@ -33,10 +36,10 @@ Examples:
 pub(crate) struct PhysicsOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
-    /// Of a fit with several places, the number of the place [default: 1].
+    /// The number of the place, for a fit with several places [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
-    /// Draw P under each physics (.svg or .png).
+    /// Draw the makes under each physics (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Print one JSON array (SI units).
@@ -80,7 +83,9 @@ pub(crate) fn run(options: &PhysicsOptions) -> Result<u8, Failure> {
         print_answer(&json::text(&json::document(&answer, units)))
     } else {
         let is_moved = options.profile.place.is_given();
-        print_prose(&physics_text(&answer, &profile, is_moved))
+        print_text(&physics_text(&answer, &profile, is_moved))?;
+        print_next(None, "");
+        Ok(code::DONE)
     }
 }
 

@@ -1,4 +1,4 @@
-//! `bankshot plan`: what `best` or `sweep` would simulate, and what it takes.
+//! `--plan` of `best`, and the older `bankshot plan`: what a search would simulate, and its cost.
 
 use super::plan_sweep_time_and_memory;
 use crate::answers::checks::PlanAnswer;
@@ -29,10 +29,12 @@ pub(crate) struct PlanOptions {
     #[arg(long)]
     pub(crate) json: bool,
     /// Shots that check the search range; 0 for none.
-    #[arg(long, value_name = "N", default_value_t = 200_000)]
+    #[arg(long, value_name = "N", default_value_t = WIDE_SAMPLE)]
     pub(crate) wide_sample: u64,
 }
 
+/// Shots that check the search range, unless another number is given.
+pub(super) const WIDE_SAMPLE: u64 = 200_000;
 /// About the number of shots of the climbs and the final estimates.
 const SEARCH_SHOTS: u64 = 1_000_000;
 /// About the number of windows of a search: one for each kind.
@@ -58,10 +60,19 @@ pub(crate) fn run(options: &PlanOptions) -> Result<u8, Failure> {
         return plan_sweep_time_and_memory::run(&options.profile, options.json);
     }
     let profile = load_profile(&options.profile, &options.physics)?;
-    let plan = TablePlan::for_search(&profile)?;
-    let forecast = forecast(&profile, &plan, options.wide_sample);
-    if options.json {
-        let answer = answer(&profile, plan, &forecast);
+    print_plan_of_search(&profile, options.wide_sample, options.json)
+}
+
+/// Prints what the search of `best` would simulate.
+pub(super) fn print_plan_of_search(
+    profile: &Profile,
+    wide_sample: u64,
+    as_json: bool,
+) -> Result<u8, Failure> {
+    let plan = TablePlan::for_search(profile)?;
+    let forecast = forecast(profile, &plan, wide_sample);
+    if as_json {
+        let answer = answer(profile, plan, &forecast);
         return print_answer(&json::text(&json::document(
             &answer,
             profile.output().units,
@@ -75,7 +86,7 @@ pub(crate) fn run(options: &PlanOptions) -> Result<u8, Failure> {
             "remark: shots outside the search range were made; raise speed_max, or report it",
         );
     }
-    print_prose(&text(&profile, &plan, &forecast))
+    print_prose(&text(profile, &plan, &forecast))
 }
 
 fn forecast(profile: &Profile, plan: &TablePlan, wide_sample: u64) -> Forecast {

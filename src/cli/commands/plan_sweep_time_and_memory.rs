@@ -1,4 +1,4 @@
-//! `bankshot plan` of a sweep: jobs, time, memory and disk.
+//! `bankshot sweep --plan`: jobs, time, memory and disk.
 
 use crate::answers::checks::SweepPlanAnswer;
 use crate::answers::json;

@@ -15,7 +15,7 @@ use crate::fitting::advise;
 use crate::plots::svg::escaped;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{physics_probabilities, sweep_difference_map};
-use crate::present::fit_files::advice_text::brief_advice_text;
+use crate::present::fit_files::advice_text::PlayerAdvice;
 use crate::report::ReportError;
 use crate::report::best_shot_page::best_shot_page;
 use crate::report::page::Page;
@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 pub(crate) struct ReportOptions {
-    /// The folder of a `best`, `compare`, `sweep` or `fit` run. The page of a fit gets the advice.
+    /// The folder of a `best`, `map`, `sweep` or `fit` run. The page of a fit gets the advice.
     pub(crate) folder: PathBuf,
     /// Of a `best` run: add what the answer rests on, as `bankshot physics` does (a minute or two).
     #[arg(long)]
@@ -90,13 +90,13 @@ fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
     let mut advice = String::from("<h2>What to change</h2>\n");
     for (place, profile) in fit.profiles.iter().enumerate() {
         let of_place = advise(profile, &fit.posterior, place, &bars)?;
-        let text = brief_advice_text(
-            &profile.shooter().name,
-            &of_place,
-            Some(fit.observed[place]),
-            profile.location().angle_rad,
-            fit.units,
-        );
+        let player = PlayerAdvice {
+            profile,
+            advice: &of_place,
+            observed: Some(fit.observed[place]),
+            units: fit.units,
+        };
+        let text = player.brief();
         if fit.profiles.len() > 1 {
             let words = profile.location().in_words(fit.units);
             advice += &format!("<h3>{}</h3>\n", escaped(&words));
@@ -181,7 +181,7 @@ fn best_shots_page_of(folder: &Path) -> Result<Page, Failure> {
     let profile = folder.join(PROFILE_FILE);
     if !profile.exists() {
         return Err(Failure::usage(format!(
-            "{}: is not the folder of a `best`, `compare`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST}){}",
+            "{}: is not the folder of a `best`, `map`, `sweep` or `fit` run (there is no {PROFILE_FILE} and no {SWEEP_MANIFEST}){}",
             folder.display(),
             match fits_within(folder)?.is_empty() {
                 true => runs_within(folder),

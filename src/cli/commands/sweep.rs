@@ -1,5 +1,6 @@
 //! `bankshot sweep` and `bankshot merge`: compute the jobs, and write the tables.
 
+use super::plan_sweep_time_and_memory;
 use super::sweep_summary::{highlights, job_summary, missing_shards};
 use crate::cli::config_files::load_sweep;
 use crate::cli::failure::{Failure, code, refuse_missing};
@@ -32,23 +33,26 @@ end, best_shots.csv, best_shots.parquet and provenance.json. The same command ag
 missing.
 
 Examples:
-  bankshot plan configs/half_court.toml
-  bankshot sweep configs/half_court.toml --out half_court
-  bankshot sweep configs/half_court.toml --out /shared/half_court --shard 3/64")]
+  bankshot sweep configs/half_court.toml --plan
+  bankshot sweep configs/half_court.toml --output half_court
+  bankshot sweep configs/half_court.toml --output /shared/half_court --shard 3/64")]
 pub(crate) struct SweepOptions {
     /// The sweep: a [sweep] table and a shooter.
     pub(crate) sweep: PathBuf,
     /// Folder of the sweep [default: a numbered one in results/<its name>].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "output", short = 'o', alias = "out", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Print how much time, memory and disk the sweep needs, and stop.
+    #[arg(long)]
+    pub(crate) plan: bool,
     /// Only shard I of N; all shards can share the folder and run on any machine.
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub(crate) shard: Option<Shard>,
     /// Compute failed jobs again.
     #[arg(long)]
     pub(crate) retry_failed: bool,
-    /// The folder of a fit: when the sweep is complete, also write probability_over_draws.csv, how
-    /// uncertain each P is by what the shots of the fit do not tell about the scatter.
+    /// The folder of a fit: when the sweep is complete, also write probability_over_draws.csv with
+    /// the 95 % interval of each best shot.
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "shard")]
     pub(crate) draws: Option<PathBuf>,
     /// Inject a fault, for tests: panic:SPOT, abort:SPOT or wait:SPOT:FILE.
@@ -69,6 +73,9 @@ pub(crate) struct MergeOptions {
 static SAVED_JOBS: AtomicUsize = AtomicUsize::new(0);
 
 pub(crate) fn run(options: &SweepOptions) -> Result<u8, Failure> {
+    if options.plan {
+        return plan_sweep_time_and_memory::run(&options.sweep, false);
+    }
     let (config, texts) = load_sweep(&options.sweep)?;
     let draws = options.draws.as_deref().map(fit_folder::read).transpose()?;
     let jobs = Jobs::new(&config);

@@ -1,11 +1,12 @@
 //! Summaries of a sweep's results as text.
 
 use crate::cli::failure::code;
+use crate::present::words::per_100;
+use crate::shooter::Location;
 use crate::sweep::bank_direct_difference::BankAdvantage;
 use crate::sweep::job_list::Jobs;
 use crate::sweep::result_row::{JobStatus, ResultRow};
 use crate::sweep::{SweepConfig, columns};
-use crate::units::{DEGREE_RAD, at_most_two_decimals};
 use std::collections::BTreeMap;
 
 /// Greatest number of listed failures.
@@ -18,7 +19,7 @@ pub(crate) fn job_summary(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>) -> Strin
             .filter(move |row| row.status() == Some(status))
     };
     let mut text = format!(
-        "{} of {} jobs done: {} found, {} without a best shot, {} failed\n",
+        "{} of {} jobs done: {} with a best shot, {} without, {} failed\n",
         rows.len(),
         jobs.count(),
         with_status(JobStatus::Found).count(),
@@ -58,7 +59,7 @@ pub(crate) fn highlights(
     let best = best_by_place.iter().copied().reduce(larger);
     let worst = best_by_place.iter().copied().reduce(smaller);
     let mut text = String::new();
-    for (label, place) in [("best", best), ("worst", worst)] {
+    for (label, place) in [("Easiest place", best), ("Hardest", worst)] {
         text.extend(place.and_then(|(p, row)| place_text(config, label, p, row)));
     }
     if let Some(advantage) = BankAdvantage::of(jobs, rows) {
@@ -78,13 +79,15 @@ fn smaller<'a>(a: (f64, &'a ResultRow), b: (f64, &'a ResultRow)) -> (f64, &'a Re
 }
 
 fn place_text(config: &SweepConfig, label: &str, p: f64, row: &ResultRow) -> Option<String> {
-    let (long, metre) = config.settings.output.units.length();
     let kind = row.text(columns::KIND)?;
-    let distance = row.real(columns::DISTANCE)? / metre;
-    let angle_deg = row.real(columns::COURT_ANGLE)? / DEGREE_RAD;
+    let place = Location {
+        distance_m: row.real(columns::DISTANCE)?,
+        angle_rad: row.real(columns::COURT_ANGLE)?,
+    };
     Some(format!(
-        "{label:5} P {p:.3}, {kind}, {} {long} from the hoop at {angle_deg:.0} deg\n",
-        at_most_two_decimals(distance)
+        "{label}: {}: {kind}, {} of 100.\n",
+        place.in_words(config.settings.output.units),
+        per_100(p)
     ))
 }
 

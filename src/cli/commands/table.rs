@@ -2,7 +2,7 @@
 
 use crate::answers::csv::csv;
 use crate::answers::json::{self, document};
-use crate::answers::shots::place_rows;
+use crate::answers::table_rows::place_rows;
 use crate::best_shot::{
     ShotKind, ShotTable, ShotTableError, ShotTableRequest, TableFinding, TableKind,
 };
@@ -12,7 +12,9 @@ use crate::cli::loaded_profile::LoadedProfile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::signals;
-use crate::cli::terminal::{is_quiet, print_answer, print_hint, print_remark, time_in_words};
+use crate::cli::terminal::{
+    has_details, is_quiet, print_answer, print_hint, print_remark, time_in_words,
+};
 use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::files::atomic_file;
@@ -31,14 +33,11 @@ use std::time::Instant;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Distances and angles are a list, or a range with a step. What is fixed is not searched. Between the nodes the shots are \
-interpolated. This is checked at the quarters of each step: where it costs more than --max-loss in P, or the \
-interpolated P errs by more, nodes are added halfway. The table says what is left. A place takes seconds, with its checks. \
-Begin with --draft, which leaves out the checks: a second or two for each place. \
-The table is made in rounds: each looks at the places that the one before added. \
-Where the best shot changes much from place to place, many nodes are added; --least-probability 0.6 leaves out where P is lower. A table of fifteen distances with a fixed pitch takes one to four minutes on two cores, with a free pitch more; \
---kind best makes a table of each kind, which takes twice as long or more; with --max-loss 1 no nodes are added, which takes half of the time or less.
-With --output a stopped table is not lost: what it found is kept beside the file, and the same command goes on with it.
+Distances and angles are a list, or a range with a step. Start with --draft: a second or two for each place.
+
+Without --draft the table is checked between its rows, where a machine interpolates. Where that costs more than --max-loss, rows are added halfway. Fifteen distances with a fixed angle take one to four minutes on two cores. --kind best takes twice as long, --max-loss 1 half as long. --least-probability 0.6 skips the places where fewer than 60 of 100 go in.
+
+With --output a stopped table is not lost: its results are kept beside the file, and the same command continues.
 
 Examples:
   bankshot table robot.toml --distances '7 ft to 20 ft by 1 ft' \\
@@ -58,23 +57,23 @@ pub(crate) struct TableOptions {
     /// Court angles [default: the profile's].
     #[arg(long, value_name = "LIST|RANGE", allow_hyphen_values = true)]
     pub(crate) angles: Option<String>,
-    /// The kind of the shots; best: at each distance the one with the higher P, from one angle.
+    /// The kind of the shots; best: at each distance the better one, with one court angle.
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     #[command(flatten)]
     pub(crate) fixed: FixedOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// The most that interpolation may cost in P, and by which the interpolated P may err; 1 adds
-    /// no nodes (with `--kind best` those where a kind begins, ends or becomes the better one).
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = share)]
+    /// The most that interpolation may cost, and the most that an interpolated probability may be
+    /// off; 1 adds no rows (with `--kind best` only those where the better kind changes).
+    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
-    /// Add no nodes, and check nothing, where P is less than this: at the end of a launcher's reach
-    /// P falls so steeply that many would be added.
-    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = share, conflicts_with = "draft")]
+    /// Add no rows, and check nothing, where fewer shots than this go in: at the end of a
+    /// launcher's reach many rows would be added otherwise.
+    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0, value_parser = share, conflicts_with = "draft")]
     pub(crate) least_probability: f64,
-    /// A first look in a fraction of the time: nothing is checked between the places, and none are
-    /// added, but for the distances at which the better kind changes.
+    /// A first look in a fraction of the time: check nothing between the places, and add none
+    /// (except where the better kind changes).
     #[arg(long, conflicts_with = "max_loss")]
     pub(crate) draft: bool,
     /// The form of the table [default: by the end of the output's name, else text].
@@ -94,7 +93,7 @@ pub(crate) struct TableOptions {
 pub(crate) enum KindArg {
     Direct,
     Bank,
-    /// The one with the higher P.
+    /// The better one.
     Best,
 }
 
@@ -170,7 +169,7 @@ pub(crate) fn run(options: &TableOptions) -> Result<u8, Failure> {
         0 => Ok(code::DONE),
         missing => {
             print_hint(&format!(
-                "no clean shot goes in from {missing} of the places that were asked for: they have no values (exit code {}); `bankshot best --distance` says what the most probable shot makes there",
+                "no exact shot goes in from {missing} of the places, so they have no values (exit code {}); `bankshot best --distance` shows the most probable shot there",
                 code::INCOMPLETE
             ));
             Ok(code::INCOMPLETE)
@@ -217,7 +216,10 @@ fn write(outputs: &[Output], table: &ShotTable, profile: &Profile) -> Result<(),
     for output in outputs {
         let source = |language| source_code(table, (language, &output.class), (profile, units));
         let text = match output.format {
-            TableFormat::Text => table_text(table, profile, units),
+            TableFormat::Text => {
+                let has_details = has_details() || output.file.is_some();
+                table_text(table, profile, units).text(has_details)
+            }
             TableFormat::Csv => csv(&place_rows(table), units),
             TableFormat::Json => {
                 let answer = table_answer(table, profile, units);
@@ -501,7 +503,7 @@ fn great_loss_warning(profile: &Profile, request: &ShotTableRequest) -> String {
         format!(", or fix {}", free.join(" and "))
     };
     format!(
-        "warning: between some places interpolation costs or errs by more than {} in P; take a smaller step{fix}",
-        request.max_loss
+        "warning: between some places interpolation costs more than {} of 100 shots; take a smaller step{fix}",
+        100.0 * request.max_loss
     )
 }

@@ -163,7 +163,7 @@ fn note(others: &[Trace]) -> String {
         .filter(|trace| trace.outcome.verdict.made)
         .count();
     format!(
-        "Black: the error-free shot; blue: {made} made, orange: {} missed, with the shooter's errors. Circles: touches of the board (green) and the ring (yellow).",
+        "Black: the error-free shot; blue: {made} go in, orange: {} miss, with the shooter's scatter. Circles: touches of the board (green) and the ring (yellow).",
         others.len() - made
     )
 }

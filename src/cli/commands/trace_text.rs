@@ -7,21 +7,21 @@ use std::fmt::Write;
 /// The outcome of a shot as text.
 pub(crate) fn outcome_text(outcome: &Outcome) -> &'static str {
     if outcome.verdict.ending == Ending::TimeLimit {
-        return "missed: still in play at the time limit";
+        return "misses: still in play at the time limit";
     }
     match outcome.kind {
-        OutcomeKind::Swish => "made: a swish",
-        OutcomeKind::RimIn => "made off the ring",
-        OutcomeKind::BankIn => "made off the board",
-        OutcomeKind::BankRimIn => "made off board and ring",
-        OutcomeKind::InAndOut => "missed: in and out",
-        OutcomeKind::Short => "missed: short",
-        OutcomeKind::Long => "missed: long",
-        OutcomeKind::Wide => "missed: wide",
-        OutcomeKind::OverBoard => "missed: behind the board",
-        OutcomeKind::Lodged => "missed: lodged between ring and board",
-        OutcomeKind::Airball => "missed: touched nothing",
-        OutcomeKind::Unresolved => "the numerics gave up",
+        OutcomeKind::Swish => "goes in: swish",
+        OutcomeKind::RimIn => "goes in: rim, then in",
+        OutcomeKind::BankIn => "goes in: board, then in",
+        OutcomeKind::BankRimIn => "goes in: board, rim, in",
+        OutcomeKind::InAndOut => "misses: in and out",
+        OutcomeKind::Short => "misses: short",
+        OutcomeKind::Long => "misses: long",
+        OutcomeKind::Wide => "misses: wide",
+        OutcomeKind::OverBoard => "misses: behind the board",
+        OutcomeKind::Lodged => "misses: lodged between ring and board",
+        OutcomeKind::Airball => "misses: touches nothing",
+        OutcomeKind::Unresolved => "has no result: the simulation gave up",
     }
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
     // Writing to a String does not fail.
     let _ = writeln!(
         text,
-        "The shot is {}, after {:.3} s; the ball's centre rose to {:.2} {long} above the ring.",
+        "The shot {}, after {:.3} s. The ball's centre rises to {:.2} {long} above the ring.",
         outcome_text(outcome),
         outcome.verdict.time_s,
         outcome.apex_m / metre
@@ -43,7 +43,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
         let (short, inch) = units.short_length();
         let _ = writeln!(
             text,
-            "It last came down through the ring's plane at {:.1} deg, {:.1} {short} from the centre (x {:+.1}, y {:+.1}).",
+            "The ball last comes down through the ring's plane at {:.1} deg, {:.1} {short} from the centre (x {:+.1}, y {:+.1}).",
             entry.angle_rad / DEGREE_RAD,
             (x * x + y * y).sqrt() / inch,
             x / inch,
@@ -52,7 +52,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
     }
     let _ = writeln!(
         text,
-        "\nx, y, z from the hoop's centre: out onto the court, to the right as one faces the hoop, above the ring\n   time s  event                      x, y, z {long}               speed {long}/s"
+        "\nx, y, z from the hoop's centre: onto the court, to the shooter's right, and up\n   time s  event                      x, y, z {long}               speed {long}/s"
     );
     for event in &trace.events {
         let [x, y, z] = event.state.position_m.into();

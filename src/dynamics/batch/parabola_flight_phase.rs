@@ -64,7 +64,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         self.workspace.return_queue(queue);
     }
 
-    /// The same for shots at their release. Those that touch nothing never take a slot.
+    /// Flies the first arcs of shots at their release. Those that touch nothing never take a slot.
     #[inline(always)]
     fn fly_first_arcs<T: SimdReal<Simd = S, Element = f64>>(&mut self, starts: &[BallState]) {
         let params = &self.lane_params::<T>();

@@ -93,7 +93,7 @@ impl<T: Real> ContactPair<T> {
         )
     }
 
-    /// The same for friction alone.
+    /// Response to friction alone.
     #[inline(always)]
     pub(super) fn response_to_friction(&self, contact: usize, friction: Vec2<T>) -> Response<T> {
         let [_, tangent_1, tangent_2] = self.axes[contact];

@@ -67,7 +67,7 @@ impl<T: Real> RealRecord<T> for FrictionState<T> {
 }
 
 impl<T: Real<Mask = bool>> FrictionState<T> {
-    /// The same in another number type.
+    /// The friction in another number type.
     #[inline(always)]
     pub(crate) fn map<U: Real<Mask = bool>>(&self, convert: impl Fn(T) -> U) -> FrictionState<U> {
         FrictionState {

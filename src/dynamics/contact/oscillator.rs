@@ -96,7 +96,7 @@ impl Oscillator {
         }
     }
 
-    /// The same with `f` applied to every constant.
+    /// The oscillator with `f` applied to every constant.
     #[inline(always)]
     pub(crate) fn map<T: Real>(&self, f: impl Fn(f64) -> T) -> Oscillator<T> {
         Oscillator {

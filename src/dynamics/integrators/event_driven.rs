@@ -91,7 +91,7 @@ fn step_in_frame<T: ScalarReal, S: Solid<T>, Other: Solid<T>>(
     shot.step(contact, other, false)
 }
 
-/// The same in the world frame.
+/// A step in the world frame.
 #[inline(never)]
 fn step_in_world(
     params: &ModelParams,
@@ -191,7 +191,7 @@ impl<O: Observer> Run<'_, O> {
         shot.time_s += dt;
     }
 
-    /// The same as a sequence of segments.
+    /// The flight as a sequence of segments.
     fn fly_in_segments(&mut self) -> Option<Verdict> {
         let params = self.params;
         loop {

@@ -146,7 +146,7 @@ impl ShotInFrame<f64> {
 }
 
 impl<T: ScalarReal> ShotInFrame<T> {
-    /// The same in another number type.
+    /// The shot in another number type.
     pub(crate) fn converted<U: ScalarReal>(&self) -> ShotInFrame<U> {
         let convert = |number: T| U::from_f64(number.to_f64());
         ShotInFrame {

@@ -86,7 +86,7 @@ impl<T: Real> ContactFrameState<T> {
         }
     }
 
-    /// The same in another number type.
+    /// The state in another number type.
     #[inline(always)]
     pub(crate) fn map<U: Real>(&self, convert: impl Fn(T) -> U) -> ContactFrameState<U> {
         let along = |v: &ContactVector<T>| {

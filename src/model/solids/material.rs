@@ -28,7 +28,7 @@ impl Material<f64> {
 }
 
 impl<T: Real> Material<T> {
-    /// The same where the ball touches the solid; elsewhere no force.
+    /// The material where the ball touches the solid; elsewhere one without force.
     #[inline(always)]
     pub(crate) fn where_touching(&self, touching: T::Mask) -> Self {
         let zero = self.stiffness.zero();

@@ -1,8 +1,8 @@
 //! Advice in the few words of a poster and of a row of a table.
 
 use super::advice_text::{
-    MOST_DISAGREEMENT, Observed, at_the_limit_in_words, disagreement, more_shots_in_words,
-    most_worth_training, scatter_in_words,
+    MOST_DISAGREEMENT, Observed, at_the_limit, disagreement, more_shots, most_worth_training,
+    scatter_in_words,
 };
 use super::change_in_words::{
     ChangeWords, FirstChange, first_change, first_change_in_words, gains_alone, landing_in_words,
@@ -54,23 +54,27 @@ pub fn short_advice(
     };
     let change = match steps_to_follow(advice, observed) {
         _ if is_doubted(advice, observed) => {
-            "nothing yet: the makes and the measured shots do not belong together".to_owned()
+            "nothing yet: the makes contradict the measured shots".to_owned()
         }
         None => {
-            let limit = at_the_limit_in_words(&words, advice);
-            let more = more_shots_in_words(advice);
-            format!("nothing yet: no change is surely better. {limit}{more}")
-                .trim_end()
-                .to_owned()
+            let limit = at_the_limit(&words, advice);
+            let limit = match limit.is_empty() {
+                true => String::new(),
+                false => format!(" At the limit: {}.", limit.join("; ")),
+            };
+            let more = more_shots(advice).map_or_else(String::new, |more| {
+                format!(" About {more:.0} more shots could settle it.")
+            });
+            format!("nothing yet: the data support no change.{limit}{more}")
         }
         Some(steps) => {
             let first = gains_alone(advice, steps).map_or_else(String::new, |alone| {
                 let (name, chance) = likelier_beginning(&alone);
                 match first_change(steps) {
-                    FirstChange::Speed => format!("; begin with the speed ({chance})"),
-                    FirstChange::Pitch => format!("; begin with the angle ({chance})"),
+                    FirstChange::Speed => format!("; start with the speed ({chance})"),
+                    FirstChange::Pitch => format!("; start with the angle ({chance})"),
                     FirstChange::Either => {
-                        format!("; begin with either, rather the {name} ({chance})")
+                        format!("; start with either, more likely the {name} ({chance})")
                     }
                     FirstChange::Both => "; speed and angle together".to_owned(),
                 }
@@ -136,7 +140,7 @@ pub fn advice_for_poster(
         return match is_doubted(advice, observed) {
             true => String::new(),
             false => format!(
-                "Your shot, {from}: now {:.0} of 100 go in. Keep it: no change is surely better.",
+                "Your shot, {from}: now {:.0} of 100 go in. Keep it: the data support no change.",
                 100.0 * p.mean
             ),
         };
@@ -145,12 +149,18 @@ pub fn advice_for_poster(
         units,
         court_angle_rad,
     };
-    format!(
-        "Your shot, {from}: now {:.0} of 100 go in, {:.0} can: {}.{} {}",
+    let mut text = format!(
+        "Your shot, {from}: now {:.0} of 100 go in; {:.0} can if you {}.",
         100.0 * p.mean,
         100.0 * (p.mean + steps.gain.mean),
-        words.of_releases(&advice.usual, &steps.advised),
+        words.of_releases(&advice.usual, &steps.advised)
+    );
+    let more = [
+        landing_in_words(advice, units),
         first_change_in_words(advice, steps),
-        landing_in_words(advice, units).trim_end()
-    )
+    ];
+    for sentence in more.into_iter().flatten() {
+        text += &format!(" {sentence}");
+    }
+    text
 }

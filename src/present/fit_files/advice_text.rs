@@ -1,60 +1,54 @@
-//! The answer of `advise` for people.
+//! The answer of `advise` in text.
 
 use super::change_in_words::{ChangeWords, first_change_in_words, landing_in_words};
-use super::fit_text::{chance, percent};
 use crate::best_shot::{BestShot, Limit};
 use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, Cause, Interval, SpinSource, Support, TrainingGain, values_of,
-    wilson_interval,
+    Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, Place, SpinSource, Support,
+    TrainingGain, Values, landing_of, values_of, wilson_interval,
 };
-use crate::shooter::ShotKind;
+use crate::present::layout::{Side, TextAnswer, TextTable, paragraph, paragraphs};
+use crate::present::words::{
+    capitalised, difference_interval, difference_per_100, interval_of_100, likely, of_100, per_100,
+    simulation_error, subject,
+};
+use crate::shooter::{Profile, ShotKind};
 use crate::store::parameters::value_units;
-use crate::units::{UnitSystem, with_decimals};
+use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
-/// Points of P with their interval: `2.1 points (95 %: 0.4 to 3.9)`.
-fn points(interval: &Interval) -> String {
-    let [mean, low, high] =
-        [interval.mean, interval.low, interval.high].map(|p| with_decimals(100.0 * p, 1));
-    format!("{mean:+.1} points (95 %: {low:+.1} to {high:+.1})")
+/// Makes and shots with a result.
+pub type Observed = Option<(usize, usize)>;
+
+/// Advice whose model disagrees with the count of makes by more standard errors is not to be
+/// followed; about 1 of 400 tests by luck.
+pub(super) const MOST_DISAGREEMENT: f64 = 3.0;
+
+/// From this probability on the data support that one kind of shot is better.
+const SUPPORTED: f64 = 0.9;
+/// A difference of less than this decides nothing.
+const WORTH_IT: f64 = 0.01;
+
+/// By how many of its standard errors the share of makes differs from P of the current shot.
+pub(super) fn disagreement(p: &Interval, made: usize, shots: usize) -> f64 {
+    let count = wilson_interval(made, shots);
+    let error = libm::hypot(0.25 * (count.high - count.low), p.sd);
+    libm::fabs(count.share - p.mean) / error
 }
 
-/// What to change, in words.
-fn advised_in_words(words: &ChangeWords, advice: &Advice, steps: &AdviceSteps) -> String {
-    let p = advice.usual_probability.mean;
-    let changes = words.of_releases(&advice.usual, &steps.advised);
-    let gain = &steps.gain;
-    let mut text = format!(
-        "With the same scatter you can make {:.0} %, {:.1} points more (95 %: {:+.0} to {:+.0}): {changes}.",
-        100.0 * (p + gain.mean),
-        100.0 * gain.mean,
-        100.0 * gain.low,
-        100.0 * gain.high
-    );
-    text += &first_change_in_words(advice, steps);
-    text + "\n"
-}
-
-/// How many more shots would make a step sure, in a sentence; empty where none is open, or they
-/// would be too many.
-pub(super) fn more_shots_in_words(advice: &Advice) -> String {
+/// How many more shots would support a step, if its gain is what it seems to be.
+pub(super) fn more_shots(advice: &Advice) -> Option<f64> {
     /// More than this many times the shots is no plan.
     const MOST_TIMES: f64 = 10.0;
     let steps = advice.steps.iter().flat_map(|steps| &steps.steps);
     let after = steps.filter_map(|step| step.sure_after(advice.shots));
     let more = after.fold(f64::INFINITY, f64::min) - advice.shots as f64;
-    if !(more > 0.0 && more < MOST_TIMES * advice.shots as f64) {
-        return String::new();
-    }
-    format!(
-        " About {:.0} more shots would make a step sure, if it gains what it seems to.",
-        libm::ceil(more / 10.0) * 10.0
-    )
+    let is_plan = more > 0.0 && more < MOST_TIMES * advice.shots as f64;
+    is_plan.then(|| libm::ceil(more / 10.0) * 10.0)
 }
 
-/// The changes at the limit of what the shots show, in a sentence; empty where there is none.
-pub(super) fn at_the_limit_in_words(words: &ChangeWords, advice: &Advice) -> String {
+/// The changes at the limit of what the shots support, with what they add.
+pub(super) fn at_the_limit(words: &ChangeWords, advice: &Advice) -> Vec<String> {
     let Some(steps) = &advice.steps else {
-        return String::new();
+        return Vec::new();
     };
     let mut from = advice.usual;
     let mut changes = Vec::new();
@@ -62,75 +56,15 @@ pub(super) fn at_the_limit_in_words(words: &ChangeWords, advice: &Advice) -> Str
     let mut all = steps.steps.iter();
     let has_angle = all.any(|step| step.cause == Cause::PITCH && step.is_sure());
     for step in &steps.steps {
-        let is_told = has_angle && step.cause == Cause::SPEED;
-        if step.support == Support::AtTheLimit && !is_told {
-            changes.push(format!(
-                "{} ({:+.1})",
-                words.of_step(step, &from),
-                100.0 * step.gain.mean
-            ));
+        let is_named = has_angle && step.cause == Cause::SPEED;
+        if step.support == Support::AtTheLimit && !is_named {
+            let change = words.of_step(step, &from);
+            changes.push(format!("{change} ({})", difference_per_100(step.gain.mean)));
         } else if step.is_sure() {
             from = step.release;
         }
     }
-    if changes.is_empty() {
-        return String::new();
-    }
-    format!(
-        "At the limit of what these shots show: {}.",
-        changes.join("; ")
-    )
-}
-
-/// The other kind of shot, in a sentence, where it is surely better and by a shot in 100.
-fn other_kind_in_words(advice: &Advice) -> String {
-    const SURE: f64 = 0.9;
-    const WORTH_IT: f64 = 0.01;
-    let Some(kinds) = &advice.kinds else {
-        return String::new();
-    };
-    let [direct, bank] = kinds.probabilities;
-    let (words, sure, gain, [own, other]) = match advice.kind {
-        ShotKind::Direct => (
-            "Or bank it: the best bank shot",
-            kinds.bank_is_better,
-            kinds.difference.mean,
-            [direct, bank],
-        ),
-        ShotKind::Bank => (
-            "Or shoot it direct: the best direct shot",
-            1.0 - kinds.bank_is_better,
-            -kinds.difference.mean,
-            [bank, direct],
-        ),
-    };
-    if sure < SURE || gain < WORTH_IT {
-        return String::new();
-    }
-    format!(
-        "{words} makes {:.0} %, the best {} one {:.0} % (by these shots {} is better with a chance of {}).\n",
-        100.0 * other.mean,
-        advice.kind.name(),
-        100.0 * own.mean,
-        advice.kind.other().name(),
-        chance(sure)
-    )
-}
-
-/// Where the sentences do not advise the other kind of shot: how it compares. Empty where they do,
-/// or where one kind cannot be made.
-fn other_kind_not_advised(advice: &Advice) -> String {
-    let Some(kinds) = &advice.kinds else {
-        return String::new();
-    };
-    if !other_kind_in_words(advice).is_empty() {
-        return String::new();
-    }
-    let [direct, bank] = kinds.probabilities.map(|p| 100.0 * p.mean);
-    let sure = chance(kinds.bank_is_better);
-    format!(
-        "Bank or direct: the best bank shot makes {bank:.0} %, the best direct one {direct:.0} % (by these shots bank is better with a chance of {sure}).\n"
-    )
+    changes
 }
 
 /// The scatter that costs most, and what costs about as much.
@@ -143,304 +77,438 @@ pub(super) fn most_worth_training(training: &[TrainingGain]) -> Vec<&TrainingGai
         .collect()
 }
 
-/// What to train, in a sentence: the scatter that costs most, and what costs about as much.
-fn training_in_words(training: &[TrainingGain]) -> String {
-    let as_good = most_worth_training(training);
-    if as_good.is_empty() {
-        return String::new();
-    }
-    let names: Vec<&str> = as_good.iter().map(|t| scatter_in_words(t.cause)).collect();
-    let gains: Vec<String> = as_good
-        .iter()
-        .map(|t| format!("{:.1}", 100.0 * t.gain.mean))
-        .collect();
-    if names.len() == 1 {
-        format!(
-            "What to train: {}. 10 % less scatter there gains {} points.\n",
-            names[0], gains[0]
-        )
-    } else {
-        format!(
-            "What to train: {}; it hardly matters which. 10 % less scatter in one gains {} points.\n",
-            names.join(", or "),
-            gains.join(" or ")
-        )
-    }
-}
-
 /// What a shooter scatters in.
 pub(super) fn scatter_in_words(cause: Cause) -> &'static str {
-    ["speed", "release angle", "left and right", "backspin"][cause.0]
+    ["speed", "angle", "direction", "backspin"][cause.0]
 }
 
-/// What makes were observed: made and shots.
-pub type Observed = Option<(usize, usize)>;
-
-/// Advice of a model that disagrees with the count of makes by more standard errors is not to be
-/// followed; about 1 of 400 tests by luck.
-pub(super) const MOST_DISAGREEMENT: f64 = 3.0;
-
-/// By how many of its standard errors the share of makes differs from P of the usual shot.
-pub(super) fn disagreement(p: &Interval, made: usize, shots: usize) -> f64 {
-    let count = wilson_interval(made, shots);
-    let error = libm::hypot(0.25 * (count.high - count.low), p.sd);
-    libm::fabs(count.share - p.mean) / error
+/// The advice for a player at a place.
+#[derive(Clone, Copy, Debug)]
+pub struct PlayerAdvice<'a> {
+    /// The player's profile at the place.
+    pub profile: &'a Profile,
+    /// The advice.
+    pub advice: &'a Advice,
+    /// What was counted.
+    pub observed: Observed,
+    /// The units of the text.
+    pub units: UnitSystem,
 }
 
-/// The answer for people: a few sentences, then the figures.
-#[must_use]
-pub fn advice_text(
-    name: &str,
-    advice: &Advice,
-    observed: Observed,
-    court_angle_rad: f64,
-    units: UnitSystem,
-) -> String {
-    let words = ChangeWords {
-        units,
-        court_angle_rad,
-    };
-    let parts = [
-        sentences(name, advice, observed, &words),
-        shots_in_figures(advice, &words),
-        steps_in_figures(advice, &words),
-        backspin_in_words(advice, units),
-        training_in_figures(advice),
-        kinds_in_figures(advice),
-        "\nThe intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.\n".to_owned(),
-    ];
-    parts.concat()
-}
+impl PlayerAdvice<'_> {
+    fn words(&self) -> ChangeWords {
+        ChangeWords {
+            units: self.units,
+            court_angle_rad: self.profile.location().angle_rad,
+        }
+    }
 
-/// The answer for the player: the sentences, where the ball should come down, and bank or direct.
-#[must_use]
-pub fn brief_advice_text(
-    name: &str,
-    advice: &Advice,
-    observed: Observed,
-    court_angle_rad: f64,
-    units: UnitSystem,
-) -> String {
-    let text = player_advice_text(name, advice, observed, court_angle_rad, units);
-    text + &other_kind_not_advised(advice)
-}
+    /// The whole answer.
+    #[must_use]
+    pub fn text(&self) -> TextAnswer {
+        let mut notes: Vec<String> = self.kind_in_words().into_iter().collect();
+        notes.extend(self.not_suggested());
+        notes.extend(self.spin_in_words());
+        notes.push("Not included: another ring, ball or air (`bankshot physics`).".to_owned());
+        TextAnswer {
+            answer: self.answer(),
+            subject: subject(self.profile, self.units),
+            table: Some(self.table()),
+            notes,
+            details: self.details(),
+            ..TextAnswer::default()
+        }
+    }
 
-/// The same without a word of a kind of shot that is not advised.
-#[must_use]
-pub fn player_advice_text(
-    name: &str,
-    advice: &Advice,
-    observed: Observed,
-    court_angle_rad: f64,
-    units: UnitSystem,
-) -> String {
-    let words = ChangeWords {
-        units,
-        court_angle_rad,
-    };
-    let changes_spin = |steps: &AdviceSteps| steps.is_changed[Cause::BACKSPIN.0];
-    let is_at_limit = uses_all_backspin(advice) && advice.steps.as_ref().is_some_and(changes_spin);
-    let limit = match is_at_limit {
-        true => "That backspin is max_backspin of the profile, which is assumed.\n",
-        false => "",
-    };
-    [
-        &sentences(name, advice, observed, &words),
-        limit,
-        &landing_in_words(advice, units),
-    ]
-    .concat()
-}
+    /// What to tell the player.
+    #[must_use]
+    pub fn brief(&self) -> String {
+        let mut sentences = self.answer();
+        sentences.extend(self.spin_at_limit());
+        sentences.extend(self.kind_in_words());
+        paragraphs(&sentences)
+    }
 
-/// What to tell the player: how many go in, what to change, and what to train.
-fn sentences(name: &str, advice: &Advice, observed: Observed, words: &ChangeWords) -> String {
-    let name = if name.is_empty() { "You" } else { name };
-    let p = &advice.usual_probability;
-    let counted = observed.filter(|(_, shots)| *shots > 0);
-    let disagreement = counted.map_or(0.0, |(made, shots)| disagreement(p, made, shots));
-    let seen = counted.map_or_else(String::new, |(made, shots)| {
-        let but = if disagreement < 2.0 {
-            String::new()
-        } else {
+    /// The advice without the kind of shot that is not suggested.
+    #[must_use]
+    pub fn for_player(&self) -> String {
+        let mut sentences = self.answer();
+        sentences.extend(self.spin_at_limit());
+        sentences.extend(
+            self.other_kind()
+                .map(|_| self.kind_in_words())
+                .into_iter()
+                .flatten(),
+        );
+        paragraphs(&sentences)
+    }
+
+    /// What to change, what that adds, what to change first, how the ball comes down, and what to
+    /// train.
+    fn answer(&self) -> Vec<String> {
+        let mut answer: Vec<String> = self.doubt().into_iter().collect();
+        answer.extend(self.release());
+        answer.extend(self.training());
+        answer
+    }
+
+    /// That the count and the measured shots contradict each other.
+    fn doubt(&self) -> Option<String> {
+        let p = &self.advice.usual_probability;
+        let (made, shots) = self.observed.filter(|(_, shots)| *shots > 0)?;
+        (disagreement(p, made, shots) >= MOST_DISAGREEMENT).then(|| {
             format!(
-                ", {:.0} %: the count and the model disagree",
-                100.0 * made as f64 / shots as f64
+                "Do not act on this yet: {made} of {shots} went in, but the measured shots predict {} of 100. Check the units, the distance, the release height, the columns and the physics.",
+                of_100(p.mean)
             )
-        };
-        format!("; {made} of {shots} went in{but}")
-    });
-    let mut text = if disagreement < MOST_DISAGREEMENT {
-        String::new()
-    } else {
-        "Do not act on this yet: the makes and the measured shots do not belong together. Look at the place, the height of the release, what depth is counted from, left and right, the physics, and how a make was recorded.\n".to_owned()
-    };
-    text += &format!(
-        "{name}: now {:.0} % of such shots go in (95 %: {:.0} to {:.0} %{seen}).\n",
-        100.0 * p.mean,
-        100.0 * p.low,
-        100.0 * p.high
-    );
-    text += &release_in_words(advice, words);
-    let at_the_limit = at_the_limit_in_words(words, advice);
-    if !at_the_limit.is_empty() {
-        text += &at_the_limit;
-        text.push('\n');
+        })
     }
-    text += &other_kind_in_words(advice);
-    text += &training_in_words(&advice.training);
-    text
-}
 
-/// Whether and how to change the release.
-fn release_in_words(advice: &Advice, words: &ChangeWords) -> String {
-    let sure = advice.steps.as_ref();
-    let sure = sure.filter(|steps| steps.steps.iter().any(AdviceStep::is_sure));
-    match (&advice.gain, sure) {
-        (_, Some(steps)) => advised_in_words(words, advice, steps),
-        (Some(gain), None) if gain.low > 0.0 && gain.mean > 0.005 => format!(
-            "The best shot gains {:.1} points (95 %: {:+.1} to {:+.1}), but no step towards it is sure, so none is advised: keep your release.{}\n",
-            100.0 * gain.mean,
-            100.0 * gain.low,
-            100.0 * gain.high,
-            more_shots_in_words(advice)
-        ),
-        (Some(gain), None) if gain.mean > 0.005 => format!(
-            "Another release may gain {:.1} points, but these shots cannot tell it from luck: measure more before you change anything.{}\n",
-            100.0 * gain.mean,
-            more_shots_in_words(advice)
-        ),
-        (Some(_), None) => "Keep your release: no other one is worth a change.\n".to_owned(),
-        (None, None) => "No clean shot of this kind was found from here.\n".to_owned(),
-    }
-}
-
-/// The usual, the advised and the best shot.
-fn shots_in_figures(advice: &Advice, words: &ChangeWords) -> String {
-    let p = &advice.usual_probability;
-    let mut text = format!(
-        "\nP of the usual shot  {} (95 %: {:.1} to {:.1} %, numerics ± {:.2})\n",
-        percent(p.mean),
-        100.0 * p.low,
-        100.0 * p.high,
-        100.0 * advice.numerical_standard_error
-    );
-    let (Some(best), Some(probability), Some(gain)) =
-        (&advice.best, &advice.best_probability, &advice.gain)
-    else {
-        return text;
-    };
-    let is_changed = |steps: &&AdviceSteps| steps.is_changed.contains(&true);
-    if let Some(steps) = advice.steps.as_ref().filter(is_changed) {
-        let p = &advice.advised_probability;
-        text += &format!(
-            "gain of the advised shot  {}, P {} (95 %: {:.1} to {:.1} %)\n",
-            points(&steps.gain),
-            percent(p.mean),
-            100.0 * p.low,
-            100.0 * p.high
+    /// Whether and how to change the release.
+    fn release(&self) -> Vec<String> {
+        let (advice, p) = (self.advice, &self.advice.usual_probability);
+        let now = format!(
+            "Now {} of 100 go in (95 % interval {}).",
+            of_100(p.mean),
+            interval_of_100(p.low, p.high)
         );
-    }
-    text += &format!(
-        "gain of the best {} shot  {}, P {} (95 %: {:.1} to {:.1} %); better in {:.0} % of the draws\n",
-        advice.kind.name(),
-        points(gain),
-        percent(probability.mean),
-        100.0 * probability.low,
-        100.0 * probability.high,
-        100.0 * advice.gain_is_positive
-    );
-    text += "usual shot: as measured; advised shot: with the changes that are sure; best shot: the best of its kind\n";
-    text += &words.release("usual shot", &advice.usual);
-    if let Some(steps) = &advice.steps {
-        text += &words.release("advised shot", &steps.advised);
-    }
-    text += &words.release("best shot", &values_of(&best.nominal));
-    if let Some([usual, advised]) = &advice.landings {
-        text += "at the height of the hoop; depth from the front of the ring; of the release alone: the mean depth of all shots is less, as scatter in the angle shortens them\n";
-        text += &words.landing("usual shot", usual);
-        text += &words.landing("advised shot", advised);
-    }
-    text
-}
-
-/// Each step from the usual to the best shot with its gain.
-fn steps_in_figures(advice: &Advice, words: &ChangeWords) -> String {
-    let Some(steps) = &advice.steps else {
-        return String::new();
-    };
-    let mut text = "\nstep by step: speed, angle with a speed of its own, aim, backspin; each on top of the supported ones before".to_owned();
-    if !steps.steps.iter().all(AdviceStep::is_sure) {
-        text += " (in brackets: less than half a point, not surely above 0, or to a side that is not sure, so not advised";
-        let speed_then_angle = steps.steps.windows(2).any(|pair| {
-            let causes = [pair[0].cause, pair[1].cause];
-            causes == [Cause::SPEED, Cause::PITCH] && !pair[0].is_sure() && pair[1].is_sure()
+        if let Some(steps) = self.supported() {
+            let changes = self.words().of_releases(&advice.usual, &steps.advised);
+            let gain = &steps.gain;
+            let mut sentences = vec![
+                format!(
+                    "{}: {} of 100 instead of {}.",
+                    capitalised(&changes),
+                    of_100(p.mean + gain.mean),
+                    of_100(p.mean)
+                ),
+                format!(
+                    "Gain: {} per 100 (95 % interval {} to {}), with the same scatter.",
+                    per_100(gain.mean),
+                    per_100(gain.low),
+                    per_100(gain.high)
+                ),
+            ];
+            sentences.extend(landing_in_words(advice, self.units));
+            sentences.extend(first_change_in_words(advice, steps));
+            return sentences;
+        }
+        let more = more_shots(advice).map_or_else(String::new, |more| {
+            format!(" About {more:.0} more shots could settle it.")
         });
-        if speed_then_angle {
-            text += " alone; the new angle comes with a speed of its own";
+        let why = match &advice.gain {
+            Some(gain) if gain.low > 0.0 && gain.mean > 0.005 => format!(
+                "Keep your release for now: another one adds {} per 100 (95 % interval {}), but the data support no single step.{more}",
+                per_100(gain.mean),
+                difference_interval(gain.low, gain.high)
+            ),
+            Some(gain) if gain.mean > 0.005 => format!(
+                "Keep your release for now: another one may add {} per 100, but that may be luck.{more}",
+                per_100(gain.mean)
+            ),
+            Some(_) => "Keep your release: no other one is worth a change.".to_owned(),
+            None => "No exact shot of this kind goes in from here.".to_owned(),
+        };
+        vec![why, now]
+    }
+
+    /// The steps, if one of them is supported.
+    fn supported(&self) -> Option<&AdviceSteps> {
+        let steps = self.advice.steps.as_ref()?;
+        steps.steps.iter().any(AdviceStep::is_sure).then_some(steps)
+    }
+
+    /// What to train: the scatter that costs most, and what costs about as much.
+    fn training(&self) -> Option<String> {
+        let as_good = most_worth_training(&self.advice.training);
+        let (first, others) = as_good.split_first()?;
+        let start = match self.supported() {
+            Some(_) => "Then train",
+            None => "Train",
+        };
+        let gain = |of: &TrainingGain| per_100(of.gain.mean);
+        Some(match others {
+            [] => format!(
+                "{start} the {}: 10 % less scatter there adds {} per 100 (95 % interval {} to {}).",
+                scatter_in_words(first.cause),
+                gain(first),
+                per_100(first.gain.low),
+                per_100(first.gain.high)
+            ),
+            others => {
+                let names: Vec<&str> = as_good
+                    .iter()
+                    .map(|of| scatter_in_words(of.cause))
+                    .collect();
+                let gains: Vec<String> = std::iter::once(first)
+                    .chain(others)
+                    .map(|of| gain(of))
+                    .collect();
+                format!(
+                    "{start} the {}: 10 % less scatter in one adds {} per 100.",
+                    names.join(" or the "),
+                    gains.join(" or ")
+                )
+            }
+        })
+    }
+
+    /// The other kind of shot, where the data support that it is better and by a shot in 100: its
+    /// probability of being better.
+    fn other_kind(&self) -> Option<f64> {
+        let kinds = self.advice.kinds.as_ref()?;
+        let (better, gain) = match self.advice.kind {
+            ShotKind::Direct => (kinds.bank_is_better, kinds.difference.mean),
+            ShotKind::Bank => (1.0 - kinds.bank_is_better, -kinds.difference.mean),
+        };
+        (better >= SUPPORTED && gain >= WORTH_IT).then_some(better)
+    }
+
+    /// Bank or direct.
+    fn kind_in_words(&self) -> Option<String> {
+        let kinds = self.advice.kinds.as_ref()?;
+        let [direct, bank] = kinds.probabilities.map(|p| of_100(p.mean));
+        let (own, other) = match self.advice.kind {
+            ShotKind::Direct => (direct, bank),
+            ShotKind::Bank => (bank, direct),
+        };
+        let [own_name, other_name] =
+            [self.advice.kind, self.advice.kind.other()].map(ShotKind::name);
+        let own_is_better = match self.advice.kind {
+            ShotKind::Direct => 1.0 - kinds.bank_is_better,
+            ShotKind::Bank => kinds.bank_is_better,
+        };
+        Some(match self.other_kind() {
+            Some(better) => format!(
+                "{} instead: the best {other_name} shot makes {other}, the best {own_name} shot {own} (probability that {other_name} is better: {}).",
+                match self.advice.kind {
+                    ShotKind::Direct => "Bank it",
+                    ShotKind::Bank => "Shoot direct",
+                },
+                likely(better)
+            ),
+            None if own_is_better >= SUPPORTED => format!(
+                "{}, not {other_name}: the best {other_name} shot makes {other}.",
+                capitalised(own_name)
+            ),
+            None => format!(
+                "Bank or direct is not clear yet: the best {own_name} shot makes {own}, the best {other_name} shot {other} (probability that {own_name} is better: {}).",
+                likely(own_is_better)
+            ),
+        })
+    }
+
+    /// The step that is nearest to being supported, and those at the limit.
+    fn not_suggested(&self) -> Vec<String> {
+        let words = self.words();
+        let limit = at_the_limit(&words, self.advice);
+        let mut notes = Vec::new();
+        if !limit.is_empty() {
+            notes.push(format!(
+                "At the limit of what these shots support: {}.",
+                limit.join("; ")
+            ));
         }
-        text += ")";
-    }
-    text += "\n";
-    let mut from = advice.usual;
-    for step in &steps.steps {
-        let mut what = words.of_step(step, &from);
-        if step.is_sure() {
-            from = step.release;
-        } else {
-            what = format!("({what})");
+        let mut from = self.advice.usual;
+        let steps = self.advice.steps.iter().flat_map(|steps| &steps.steps);
+        let mut open = Vec::new();
+        for step in steps {
+            if step.is_sure() {
+                from = step.release;
+            } else if step.support != Support::AtTheLimit && step.gain.mean >= 0.005 {
+                open.push(format!(
+                    "{}, {} ({})",
+                    words.of_step(step, &from),
+                    difference_per_100(step.gain.mean),
+                    difference_interval(step.gain.low, step.gain.high)
+                ));
+            }
         }
-        text += &format!("  {what:<42} {}\n", points(&step.gain));
+        if !open.is_empty() {
+            notes.push(format!("Not suggested, may be luck: {}.", open.join("; ")));
+        }
+        notes
     }
-    text
-}
 
-/// What is assumed of the backspin.
-fn backspin_in_words(advice: &Advice, units: UnitSystem) -> String {
-    let mut text = String::new();
-    if uses_all_backspin(advice) {
-        text += "  The best shot uses all the backspin allowed: max_backspin of the profile, assumed.\n";
+    /// What is assumed of the backspin.
+    fn spin_in_words(&self) -> Option<String> {
+        let advice = self.advice;
+        let spin = advice.usual[3] / value_units(self.units)[3].1;
+        (advice.spin != SpinSource::Measured).then(|| {
+            format!(
+                "Backspin was not measured: {spin:.1} rev/s is {} and kept.",
+                advice.spin.name()
+            )
+        })
     }
-    if advice.spin != SpinSource::Measured {
-        text += &format!(
-            "  The backspin was not measured: {:.1} rev/s is {}. Advice keeps it; `best` and `team` do where `choose` in the profile leaves it out.\n",
-            advice.usual[3] / value_units(units)[3].1,
-            advice.spin.name()
+
+    /// That a suggested backspin is the most that the profile allows.
+    fn spin_at_limit(&self) -> Option<String> {
+        let changes = self.advice.steps.as_ref()?.is_changed[Cause::BACKSPIN.0];
+        (changes && uses_all_backspin(self.advice))
+            .then(|| "That backspin is max_backspin in the profile, which is assumed.".to_owned())
+    }
+
+    /// The current, the suggested and the best shot: where the ball comes down, then the release.
+    fn table(&self) -> TextTable {
+        let (long, metre) = self.units.length();
+        let (short, _) = self.units.short_length();
+        let speed_unit = format!("{long}/s");
+        let mut table = TextTable::new(&[
+            ("", "", Side::Left),
+            ("entry", "deg", Side::Right),
+            ("depth", short, Side::Right),
+            ("left/right", short, Side::Left),
+            ("speed", &speed_unit, Side::Right),
+            ("angle", "deg", Side::Right),
+            ("makes", "per 100", Side::Right),
+            ("95 %", "interval", Side::Left),
+        ]);
+        let advice = self.advice;
+        let mut add = |name: String, release: &Values, p: &Interval| {
+            let landing = self.landing(release);
+            let [entry, depth, side] = self.landing_cells(landing.as_ref());
+            table.add([
+                name,
+                entry,
+                depth,
+                side,
+                format!("{:.2}", release[0] / metre),
+                format!("{:.1}", release[1] / DEGREE_RAD),
+                per_100(p.mean),
+                format!("{} to {}", per_100(p.low), per_100(p.high)),
+            ]);
+        };
+        add(
+            "current".to_owned(),
+            &advice.usual,
+            &advice.usual_probability,
         );
+        if let Some(steps) = self.supported() {
+            add(
+                "suggested".to_owned(),
+                &steps.advised,
+                &advice.advised_probability,
+            );
+        }
+        if let Some((best, p)) = advice.best.as_ref().zip(advice.best_probability) {
+            let name = format!("best {}", advice.kind.name());
+            add(name, &values_of(&best.nominal), &p);
+        }
+        table
     }
-    text
-}
 
-/// What less scatter of each value gains.
-fn training_in_figures(advice: &Advice) -> String {
-    let steps = advice.steps.as_ref();
-    let shot = match steps.is_some_and(|steps| steps.is_changed.contains(&true)) {
-        true => "advised",
-        false => "usual",
-    };
-    let mut text = format!("\n10 % less scatter, at the {shot} shot\n");
-    for training in &advice.training {
-        text += &format!(
-            "  {:<38} {}\n",
-            scatter_in_words(training.cause),
-            points(&training.gain)
-        );
+    /// Where a direct shot comes down.
+    fn landing(&self, release: &Values) -> Option<Landing> {
+        let is_direct = self.advice.kind == ShotKind::Direct;
+        let place = Place {
+            location: self.profile.location(),
+            release_height_m: self.profile.shooter().release_height_m,
+        };
+        is_direct
+            .then(|| landing_of(self.profile.simulator(), &place, release))
+            .flatten()
     }
-    text
-}
 
-/// The best bank shot against the best direct one.
-fn kinds_in_figures(advice: &Advice) -> String {
-    let Some(kinds) = &advice.kinds else {
-        return String::new();
-    };
-    let [direct, bank] = kinds.probabilities;
-    format!(
-        "\nbank against direct: {} against {}, {}; bank is better in {:.0} % of the draws\n",
-        percent(bank.mean),
-        percent(direct.mean),
-        points(&kinds.difference),
-        100.0 * kinds.bank_is_better
-    )
+    fn landing_cells(&self, landing: Option<&Landing>) -> [String; 3] {
+        let (_, size) = self.units.short_length();
+        let Some(landing) = landing else {
+            return ["-", "-", "-"].map(str::to_owned);
+        };
+        let right = landing.right_m / size;
+        let side = match right.abs() < 0.05 {
+            true => "centre".to_owned(),
+            false if right < 0.0 => format!("{:.1} left", -right),
+            false => format!("{right:.1} right"),
+        };
+        [
+            format!("{:.1}", landing.entry_angle_rad / DEGREE_RAD),
+            format!("{:.1}", landing.depth_m / size),
+            side,
+        ]
+    }
+
+    fn details(&self) -> String {
+        let advice = self.advice;
+        let mut text = self.steps();
+        let shot = match self.supported() {
+            Some(_) => "suggested",
+            None => "current",
+        };
+        text += &format!("10 % less scatter, at the {shot} shot\n");
+        for training in &advice.training {
+            text += &format!(
+                "  {:<12} {} ({})\n",
+                scatter_in_words(training.cause),
+                difference_per_100(training.gain.mean),
+                difference_interval(training.gain.low, training.gain.high)
+            );
+        }
+        if let Some(kinds) = &advice.kinds {
+            let [direct, bank] = kinds.probabilities;
+            text += &paragraph(&format!(
+                "Bank less direct: {} ({}); best bank shot {}, best direct shot {}; probability that bank is better {}.",
+                difference_per_100(kinds.difference.mean),
+                difference_interval(kinds.difference.low, kinds.difference.high),
+                per_100(bank.mean),
+                per_100(direct.mean),
+                likely(kinds.bank_is_better)
+            ));
+        }
+        if let Some(gain) = &advice.gain {
+            text += &paragraph(&format!(
+                "Best {} shot less current shot: {} ({}); probability that the best one is better {}.",
+                advice.kind.name(),
+                difference_per_100(gain.mean),
+                difference_interval(gain.low, gain.high),
+                likely(advice.gain_is_positive)
+            ));
+        }
+        if let Some((made, shots)) = self.observed.filter(|(_, shots)| *shots > 0) {
+            text += &format!("Counted: {made} of {shots} went in.\n");
+        }
+        let words = self.words();
+        text += &words.release("current", &advice.usual);
+        if let Some(steps) = &advice.steps {
+            text += &words.release("suggested", &steps.advised);
+        }
+        if let Some(best) = &advice.best {
+            text += &words.release("best", &values_of(&best.nominal));
+        }
+        if uses_all_backspin(advice) {
+            let spin = self.profile.shooter().max_backspin_rad_s / REV_RAD;
+            text += &format!("The best shot has max_backspin ({spin:.1} rev/s, assumed).\n");
+        }
+        text += "current: as measured. suggested: only the changes the data support. best: the\noptimum for this kind of shot. depth: from the front of the ring, at rim height,\nfor an exact release (scatter in the angle makes the average shot shorter).\n";
+        text + &format!(
+            "Simulation error of the current shot: {} per 100.\n",
+            simulation_error(advice.numerical_standard_error)
+        )
+    }
+
+    /// Each step from the current to the best shot with its gain.
+    fn steps(&self) -> String {
+        let Some(steps) = &self.advice.steps else {
+            return String::new();
+        };
+        let words = self.words();
+        let mut text = "Step by step; each gain is on top of the supported steps above it. Brackets: not\nsuggested, because the gain is below 0.5 per 100 or could be luck.\n".to_owned();
+        let mut from = self.advice.usual;
+        for step in &steps.steps {
+            let mut what = words.of_step(step, &from);
+            if step.is_sure() {
+                from = step.release;
+            } else {
+                what = format!("({what})");
+            }
+            text += &format!(
+                "  {what:<44} {} ({})\n",
+                difference_per_100(step.gain.mean),
+                difference_interval(step.gain.low, step.gain.high)
+            );
+        }
+        text
+    }
 }
 
 /// Whether the best shot uses all the backspin that is allowed.

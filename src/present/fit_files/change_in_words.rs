@@ -1,9 +1,7 @@
 //! The changes of a release in a coach's words.
 
-use super::fit_text::chance;
-use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, AloneGains, Cause, Landing, SAME_SPEED_M_S, Values,
-};
+use crate::fitting::{Advice, AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S, Values};
+use crate::present::words::{likely, of_100};
 use crate::store::parameters::value_units;
 use crate::units::{DEGREE_RAD, UnitSystem, with_decimals};
 
@@ -28,7 +26,7 @@ impl ChangeWords {
         if is_nothing || amount.chars().all(|c| !('1'..='9').contains(&c)) {
             return format!(
                 "keep {}",
-                ["the speed", "the angle", "the aim", "the backspin"][cause.0]
+                ["the speed", "the angle", "the direction", "the backspin"][cause.0]
             );
         }
         let grows = to > from;
@@ -71,25 +69,12 @@ impl ChangeWords {
         }
     }
 
-    /// Where a ball falls, as a line of the answer: what a gym sensor shows.
-    pub(super) fn landing(&self, title: &str, landing: &Landing) -> String {
-        let (unit, size) = self.units.short_length();
-        let right = landing.right_m / size;
-        let side = if right < 0.0 { "left" } else { "right" };
-        format!(
-            "{title:<12} entry {:.1} deg, depth {:.1} {unit}, {:.1} {unit} to the {side}\n",
-            landing.entry_angle_rad / DEGREE_RAD,
-            landing.depth_m / size,
-            right.abs()
-        )
-    }
-
     /// A release as a line of the answer.
     pub(super) fn release(&self, title: &str, values: &Values) -> String {
         let units = value_units(self.units);
         let aim = with_decimals((values[2] - self.court_angle_rad) / units[2].1, 1);
         format!(
-            "{title:<12} speed {:.2} {}, pitch {:.1} deg, aim {:+.1} deg, backspin {:.2} rev/s\n",
+            "  {title:<12} speed {:.2} {}, angle {:.1} deg, direction {:+.1} deg, backspin {:.2} rev/s\n",
             values[0] / units[0].1,
             units[0].0,
             values[1] / units[1].1,
@@ -111,24 +96,22 @@ pub fn changes_in_words(advice: &Advice, court_angle_rad: f64, units: UnitSystem
     })
 }
 
-/// Which of speed and angle to change first, and how sure that is, in a sentence with a space
-/// before it; empty where they do not change together.
-pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> String {
-    let Some(alone) = gains_alone(advice, steps) else {
-        return String::new();
-    };
+/// Which of speed and angle to change first, in a sentence; `None` where they do not change
+/// together.
+pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> Option<String> {
+    let alone = gains_alone(advice, steps)?;
     let p = advice.usual_probability.mean;
-    let [of_speed, of_pitch] = [alone.speed, alone.pitch].map(|gain| 100.0 * (p + gain.mean));
+    let [of_speed, of_pitch] = [alone.speed, alone.pitch].map(|gain| of_100(p + gain.mean));
     let both =
-        format!("the new speed alone makes {of_speed:.0} %, the new angle alone {of_pitch:.0} %");
+        format!("with only the new speed {of_speed} go in, with only the new angle {of_pitch}");
     let (name, chance) = likelier_beginning(&alone);
-    let chance = format!("the {name} first is better with a chance of {chance}");
-    match first_change(steps) {
-        FirstChange::Both => format!(" Change speed and angle together: {both}."),
-        FirstChange::Speed => format!(" Begin with the speed: {both} ({chance})."),
-        FirstChange::Pitch => format!(" Begin with the angle: {both} ({chance})."),
-        FirstChange::Either => format!(" Begin with either: {both} ({chance})."),
-    }
+    let chance = format!("probability that starting with the {name} is better: {chance}");
+    Some(match first_change(steps) {
+        FirstChange::Both => format!("Change both together: {both}."),
+        FirstChange::Speed => format!("Start with the speed: {both} ({chance})."),
+        FirstChange::Pitch => format!("Start with the angle: {both} ({chance})."),
+        FirstChange::Either => format!("Start with either: {both} ({chance})."),
+    })
 }
 
 /// What speed and angle gain alone; `None` where they do not both change.
@@ -137,13 +120,13 @@ pub(super) fn gains_alone(advice: &Advice, steps: &AdviceSteps) -> Option<AloneG
     steps.alone.filter(|_| by_m_s >= SAME_SPEED_M_S)
 }
 
-/// What more of the draws call the better beginning, and the chance that it is.
+/// What is more likely to be the better start, and the probability that it is.
 pub(super) fn likelier_beginning(alone: &AloneGains) -> (&'static str, String) {
     let (name, share) = match alone.speed_is_better {
         share if share >= 0.5 => ("speed", share),
         share => ("angle", 1.0 - share),
     };
-    (name, chance(share))
+    (name, likely(share))
 }
 
 /// What to change first.
@@ -180,15 +163,13 @@ pub(super) fn first_change(steps: &AdviceSteps) -> FirstChange {
     }
 }
 
-/// Where the advised release should land, against the usual one, in a sentence: what a player sees.
-/// Empty where that is the same.
+/// How the ball comes down with the suggested release, compared with now, in a sentence; `None`
+/// where nobody would see a difference.
 #[must_use]
-pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> String {
+pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> Option<String> {
     /// Less than this cannot be seen, m.
     const SEEN_M: f64 = 0.012;
-    let Some([usual, advised]) = &advice.landings else {
-        return String::new();
-    };
+    let [usual, advised] = advice.landings.as_ref()?;
     let (unit, size) = units.short_length();
     let deeper_m = advised.depth_m - usual.depth_m;
     let right_m = advised.right_m - usual.right_m;
@@ -200,26 +181,21 @@ pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> String {
         moved(deeper_m, ["deeper", "shorter"]),
         moved(right_m, ["further right", "further left"]),
     ];
-    let moves: Vec<String> = moves.into_iter().flatten().collect();
     let [now, then] =
         [usual, advised].map(|landing| format!("{:.0}", landing.entry_angle_rad / DEGREE_RAD));
-    if moves.is_empty() && now == then {
-        return String::new();
-    }
-    let now = if now == then {
-        "as now".to_owned()
-    } else {
-        format!("now {now}")
+    let steeper = match advised.entry_angle_rad > usual.entry_angle_rad {
+        true => "steeper",
+        false => "flatter",
     };
-    if moves.is_empty() {
-        return format!(
-            "It should then come down where it does, at an entry angle of {then} deg ({now}).\n"
-        );
-    }
-    format!(
-        "It should then come down {} (entry angle {then} deg, {now}).\n",
-        moves.join(" and ")
-    )
+    let angle =
+        (now != then).then(|| format!("{steeper} (entry angle {then} deg instead of {now})"));
+    let parts: Vec<String> = moves.into_iter().flatten().chain(angle).collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "The ball should then come down {}.",
+            crate::present::words::list(&parts)
+        )
+    })
 }
 
 #[cfg(test)]

@@ -1,28 +1,26 @@
 //! What should be said of a fit, in words.
 
 use crate::fitting::{FitNote, SurprisingShot};
+use crate::present::words::variable_name;
 use crate::shooter::ReleaseVariable;
 use crate::units::{DEGREE_RAD, FOOT_M, Measure, REV_RAD};
 
-/// What makes chances wrong.
-const LOOK_AT: &str = "look at the place (a free throw is 13.75 ft or 4.19 m from the hoop's centre) and the height of the release, the columns (units, left and right, what depth is counted from, made), the physics (air, and this ring may be softer or harder) and the tracker's noise (--tracker)";
-
-/// A note in words.
+/// A note in words, without a full stop.
 #[must_use]
 pub fn fit_note_text(note: &FitNote) -> String {
     match note {
         FitNote::NoisyTracker { of, share } => format!(
-            "{}: {:.0} % of the variance of the measurements is the tracker's error; the shooter's own scatter is what is left of it, and uncertain",
-            of.name(),
-            100.0 * share
+            "{:.0} % of the measured variance of the {} is tracker noise, so the scatter is uncertain",
+            100.0 * share,
+            variable_name(*of)
         ),
         FitNote::MostlyPopulation { of, weight } => format!(
-            "{}: {:.0} % of what is known of its scatter comes from the population of shooters, not from these shots",
-            of.name(),
-            100.0 * weight
+            "{:.0} % of the estimate of the scatter of the {} comes from other players (the prior), not from these shots",
+            100.0 * weight,
+            variable_name(*of)
         ),
         FitNote::OtherNoise { scatter_ratio } => format!(
-            "the trajectories scatter {scatter_ratio:.1} times as much about the fitted flights as the tracker should; give its noise with --tracker FILE: the error of a position is about so many times what the tracker says"
+            "the points scatter {scatter_ratio:.1} times as much about the fitted flights as the tracker's noise predicts; give its noise with --tracker FILE"
         ),
         FitNote::OtherDrag {
             best,
@@ -30,16 +28,18 @@ pub fn fit_note_text(note: &FitNote) -> String {
             high,
             of_physics,
         } => format!(
-            "the flights fit a drag coefficient of {best:.3} (95 % interval {low:.3} to {high:.3}), the physics has {of_physics:.3}: speeds and angles rest on it; `bankshot fit --free drag_coefficient` shows how to use another"
+            "the flights fit a drag coefficient of {best:.3} (95 % interval {low:.3} to {high:.3}), but the physics has {of_physics:.3}; `bankshot fit --free drag_coefficient` shows how to use another"
         ),
         FitNote::NotNormal {
             skewness_p,
             kurtosis_p,
             sessions_differ,
         } => format!(
-            "the releases are not normal (Mardia: skewness p = {skewness_p:.4}, kurtosis p = {kurtosis_p:.4}); {}",
+            "the releases are not normally distributed (Mardia: skewness {}, kurtosis {}); {}",
+            p_value(*skewness_p),
+            p_value(*kurtosis_p),
             if *sessions_differ {
-                "the sessions differ (see there), which alone can be the reason: fit each with --session"
+                "the sessions differ, which can be the reason: fit each with --session"
             } else {
                 "look for outliers, or for shots of two kinds"
             }
@@ -48,11 +48,11 @@ pub fn fit_note_text(note: &FitNote) -> String {
             degrees_of_freedom,
             is_seen,
         } => format!(
-            "{} a t distribution with {degrees_of_freedom:.1} degrees of freedom was fitted. profile.toml holds its standard deviations, draws.parquet all of it (`--draws`)",
+            "a t distribution with {degrees_of_freedom:.1} degrees of freedom was fitted {}; profile.toml has its standard deviations, draws.parquet all of it",
             if *is_seen {
-                "far releases are more frequent than normal ones;"
+                "because outliers are more frequent than in a normal distribution"
             } else {
-                "the shots do not show more far releases than normal ones have; as asked for,"
+                "(as requested), although the shots show no more outliers than a normal distribution has"
             }
         ),
         FitNote::OtherMakes {
@@ -60,7 +60,7 @@ pub fn fit_note_text(note: &FitNote) -> String {
             expected,
             expected_sd,
         } => format!(
-            "{made} shots went in where {expected:.1} \u{b1} {expected_sd:.1} were expected of the measured releases; {LOOK_AT}"
+            "{made} shots went in, but the measured shots predict {expected:.1} (standard deviation {expected_sd:.1}); check the distance (a free throw is 13.75 ft or 4.19 m from the hoop's centre), the release height, the columns and units, the physics and the tracker's noise"
         ),
         FitNote::TooSure {
             calibration_z,
@@ -68,29 +68,29 @@ pub fn fit_note_text(note: &FitNote) -> String {
         } => {
             let shown: Vec<String> = shots.iter().map(surprising_shot).collect();
             format!(
-                "the chances of single shots are too sure (Spiegelhalter's z {calibration_z:+.1}; above 3 in about 1 of 700 tests if they are right). The most surprising: {}. First suspect the tracker's noise (--tracker FILE with a greater one) and these rows; then look at the place, the height of the release, the columns and the physics",
+                "the chances of single shots are overconfident (Spiegelhalter's z {calibration_z:+.1}, limit 3); most surprising: {}. Try more tracker noise (--tracker FILE), then check these rows, the distance, the release height and the columns",
                 shown.join(", ")
             )
         }
         FitNote::Drift { of, p, by } => format!(
-            "{} drifts by {} from the first shot to the last ({}): the last shots differ from the mean, on which P and the advice are based",
-            of.name(),
+            "the {} drifts by {} from the first shot to the last ({}), so the last shots differ from the average that the results describe",
+            variable_name(*of),
             drift_in_words(*of, *by),
             p_value(*p)
         ),
         FitNote::SessionsDiffer { of, p } => format!(
-            "{} differs between the sessions ({}): the scatter here holds that too, and is wider than that of one session (fit one alone with --session NAME)",
-            of.name(),
+            "the {} differs between sessions ({}), so the scatter includes that difference; fit one session with --session NAME",
+            variable_name(*of),
             p_value(*p)
         ),
         FitNote::ScatterDiffers { of, p } => format!(
-            "the scatter of {} differs between the sessions ({}): this fit describes their mixture, not the latest one (fit one alone with --session NAME; `bankshot compare-sessions` compares two)",
-            of.name(),
+            "the scatter of the {} differs between sessions ({}), so the fit describes their mixture; fit one session with --session NAME",
+            variable_name(*of),
             p_value(*p)
         ),
         FitNote::SerialCorrelation { of, p } => format!(
-            "{}: a shot is like the one before it ({}); intervals are then too narrow",
-            of.name(),
+            "the {} depends on that of the shot before ({}), so the intervals are too narrow",
+            variable_name(*of),
             p_value(*p)
         ),
     }
@@ -98,7 +98,7 @@ pub fn fit_note_text(note: &FitNote) -> String {
 
 fn surprising_shot(shot: &SurprisingShot) -> String {
     let result = if shot.made { "went in" } else { "missed" };
-    format!("line {} (chance {:.2}) {result}", shot.row, shot.chance)
+    format!("row {} (chance {:.2}) {result}", shot.row, shot.chance)
 }
 
 /// How much and to which side a value drifts.

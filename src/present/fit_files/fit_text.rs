@@ -1,265 +1,481 @@
-//! The answer of `fit` for people.
+//! The answer of `fit` in text.
 
 use super::fit_note_text::{fit_note_text, p_value};
 use crate::answers::fit::FitSource;
 use crate::fitting::{
-    CENTRE_DEPTH_M, DrawProbabilities, ShooterFit, VALUE_NAMES, WARNING_LEVEL, values_at_height,
+    CENTRE_DEPTH_M, FitNote, ShooterFit, SpinSource, WARNING_LEVEL, values_at_height,
 };
 use crate::measured_shots::source::Source;
-use crate::store::parameters::{parameters, value_units};
+use crate::present::layout::{Side, TextAnswer, TextTable, paragraph};
+use crate::present::words::{
+    interval_of_100, list, of_100, per_100, physics_name, simulation_error, subject, variable_name,
+};
+use crate::shooter::ReleaseVariable;
+use crate::store::parameters::{Parameter, parameters, value_units};
 use crate::units::{DEGREE_RAD, FOOT_M, UnitSystem};
-
-/// A share of the draws as a chance: no count of draws shows 0 or 100 %.
-pub(super) fn chance(share: f64) -> String {
-    match share {
-        share if share < 0.01 => "under 1 %".to_owned(),
-        share if share > 0.99 => "over 99 %".to_owned(),
-        share => format!("{:.0} %", 100.0 * share),
-    }
-}
-
-/// A probability as a percentage.
-#[must_use]
-pub fn percent(p: f64) -> String {
-    format!("{:.1} %", 100.0 * p)
-}
-
-/// `P 65.2 %, 95 % 59.3 to 71.1 % (numerics ± 0.1)`.
-#[must_use]
-pub fn probability_text(probabilities: &DrawProbabilities) -> String {
-    let p = probabilities.interval();
-    format!(
-        "P {}, 95 %: {:.1} to {:.1} % (numerics ± {:.2})",
-        percent(p.mean),
-        100.0 * p.low,
-        100.0 * p.high,
-        100.0 * probabilities.numerical_standard_error()
-    )
-}
 
 /// The answer.
 #[must_use]
-pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
-    let (long, metre) = units.length();
-    let posterior = &fit.posterior;
-    let name = if fit.name.is_empty() {
-        "the shooter"
-    } else {
-        &fit.name
-    };
-    let mut text = format!(
-        "{name}: {} {}, tracker {} ({}), physics {}\n",
-        posterior.shots,
-        source.kind.name(),
-        source.tracker.0,
-        source.tracker.1,
-        source.physics
-    );
-    if source.kind == Source::Landings {
-        let (unit, size) = units.short_length();
-        text += &format!(
-            "depth   counted from the front of the ring: {:.1} {unit} is its centre\n",
-            CENTRE_DEPTH_M / size
-        );
+pub fn fit_text(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> TextAnswer {
+    let text = FitText { fit, source, units };
+    TextAnswer {
+        answer: text.answer(),
+        subject: text.subject(),
+        table: Some(match fit.places.len() {
+            1 => text.values(),
+            _ => text.places(),
+        }),
+        notes: text.notes(),
+        details: text.details(),
+        ..TextAnswer::default()
     }
-    for (index, (place, p)) in fit.places.iter().zip(&fit.probabilities).enumerate() {
-        let name = &source.place_names[index];
-        let number = match (fit.places.len(), name.as_str()) {
-            (1, "") => String::new(),
-            (1, name) => format!("{name}, "),
-            (_, "") => format!("place {}, ", index + 1),
-            (_, name) => format!("place {}, {name}, ", index + 1),
-        };
-        text += &format!(
-            "{number}{}, released at {:.2} {long}: the usual shot has {}\n",
-            place.location.in_words(units),
-            place.release_height_m / metre,
-            probability_text(p)
-        );
-        if source.kind == Source::Trajectories {
-            text += &at_another_height(fit, index, units);
-        }
+}
+
+struct FitText<'a> {
+    fit: &'a ShooterFit,
+    source: &'a FitSource<'a>,
+    units: UnitSystem,
+}
+
+impl FitText<'_> {
+    /// Whether the makes contradict the fit.
+    fn is_doubted(&self) -> bool {
+        let mut notes = self.fit.notes.iter();
+        notes.any(|note| matches!(note, FitNote::OtherMakes { .. }))
     }
-    if let Some(residuals) = &fit.residuals {
-        text += &format!(
-            "flights {} of {} used; their points lie {:.2} times as far from the fitted flights as the tracker's noise puts them (chi-square {:.0}, expected {:.0})\n",
-            posterior.shots,
-            posterior.shots + source.rejected.len(),
-            residuals.ratio(),
-            residuals.chi_square,
-            residuals.expected
-        );
-    }
-    let makes = &fit.makes;
-    if makes.labelled > 0 {
-        let share = &makes.share;
-        text += &format!(
-            "made    {} of {}: {}, 95 %: {:.1} to {:.1} %; expected from these shots: {:.1} ± {:.1} makes{}\n",
-            makes.made,
-            makes.labelled,
-            percent(share.share),
-            100.0 * share.low,
-            100.0 * share.high,
-            makes.expected,
-            makes.expected_sd,
-            makes
-                .made_z()
-                .map_or_else(String::new, |z| format!(" (z {z:+.1})"))
-        );
-        if fit.places.len() > 1 {
-            for place in 0..fit.places.len() {
-                let makes = makes.at_place(place);
-                if makes.labelled == 0 {
-                    continue;
-                }
-                text += &format!(
-                    "        place {}: {} of {}, expected {:.1} ± {:.1}\n",
-                    place + 1,
-                    makes.made,
-                    makes.labelled,
-                    makes.expected,
-                    makes.expected_sd
-                );
-            }
-        }
-        if makes.labelled < posterior.shots {
-            text += &format!(
-                "        {} of the {} shots have no result\n",
-                posterior.shots - makes.labelled,
-                posterior.shots
+
+    /// How many go in, and what was counted.
+    fn answer(&self) -> Vec<String> {
+        let (fit, makes) = (self.fit, &self.fit.makes);
+        let mut answer = Vec::new();
+        if self.is_doubted() {
+            answer.push(format!(
+                "Do not use this fit yet: {} of {} went in, but the measured shots predict {:.0}.",
+                makes.made, makes.labelled, makes.expected
+            ));
+            answer.push(
+                "Check the units, the distance, the release height, the columns and the physics."
+                    .to_owned(),
             );
         }
+        let p = fit.probabilities[0].interval();
+        let from = match fit.places.len() {
+            1 => String::new(),
+            _ => format!(" from {}", self.place_name(0)),
+        };
+        answer.push(format!(
+            "{} of 100 shots go in{from} (95 % interval {}), from {} measured shots.",
+            of_100(p.mean),
+            interval_of_100(p.low, p.high),
+            fit.posterior.shots
+        ));
+        if makes.labelled > 0 && !self.is_doubted() {
+            let without = match fit.posterior.shots - makes.labelled {
+                0 => String::new(),
+                n => format!(" ({n} shots have no result.)"),
+            };
+            answer.push(format!(
+                "Counted: {} of {} went in. The measured shots predict {:.0}, so the two agree.{without}",
+                makes.made, makes.labelled, makes.expected
+            ));
+        }
+        answer
+    }
+
+    /// A place in a sentence.
+    fn place_name(&self, index: usize) -> String {
+        match self.source.place_names[index].as_str() {
+            "" => format!("place {}", index + 1),
+            name => name.to_owned(),
+        }
+    }
+
+    fn subject(&self) -> String {
+        let profile = &self.fit.profiles[0];
+        match self.fit.places.len() {
+            1 => {
+                let name = match self.source.place_names[0].as_str() {
+                    "" => String::new(),
+                    name => format!(" Place: {name}."),
+                };
+                subject(profile, self.units) + &name
+            }
+            n => format!(
+                "{}: {n} places. Physics: {}.",
+                self.fit.name,
+                physics_name(profile)
+            ),
+        }
+    }
+
+    /// Average and scatter of each value.
+    fn values(&self) -> TextTable {
+        let mut table = TextTable::new(&[
+            ("", "", Side::Left),
+            ("average", "", Side::Right),
+            ("95 % interval", "", Side::Left),
+            ("scatter", "", Side::Right),
+            ("95 % interval", "", Side::Left),
+            ("", "", Side::Left),
+        ]);
+        let (posterior, place) = (&self.fit.posterior, &self.fit.places[0]);
+        let value_units = value_units(self.units);
+        for (i, (unit, size)) in value_units.into_iter().enumerate() {
+            let variable = ReleaseVariable::ALL[i];
+            let start = match variable {
+                ReleaseVariable::Polar => place.location.angle_rad,
+                _ => 0.0,
+            };
+            let mean = posterior
+                .summary(|draw| draw.means[0][i] - start)
+                .scaled(1.0 / size);
+            let sd = posterior.summary(|draw| draw.sds[i]).scaled(1.0 / size);
+            let name = match variable {
+                ReleaseVariable::Polar => "direction (deg left)".to_owned(),
+                _ => format!("{} ({unit})", variable_name(variable)),
+            };
+            let decimals = if i == 0 { 2 } else { 1 };
+            let number = |value: f64| format!("{:.decimals$}", value + 0.0);
+            let source = match (variable, posterior.spin) {
+                (ReleaseVariable::Backspin, SpinSource::Assumed) => "assumed",
+                (ReleaseVariable::Backspin, SpinSource::Given) => "given",
+                _ => "",
+            };
+            table.add([
+                name,
+                number(mean.mean),
+                format!("{} to {}", number(mean.low), number(mean.high)),
+                significant(sd.mean, sd.mean),
+                format!(
+                    "{} to {}",
+                    significant(sd.low, sd.mean),
+                    significant(sd.high, sd.mean)
+                ),
+                source.to_owned(),
+            ]);
+        }
+        table
+    }
+
+    /// The makes from each place.
+    fn places(&self) -> TextTable {
+        let mut table = TextTable::new(&[
+            ("place", "", Side::Left),
+            ("makes", "per 100", Side::Right),
+            ("95 %", "interval", Side::Left),
+            ("went in", "", Side::Right),
+            ("predicted", "", Side::Right),
+        ]);
+        for (index, p) in self.fit.probabilities.iter().enumerate() {
+            let (p, makes) = (p.interval(), self.fit.makes.at_place(index));
+            let counted = match makes.labelled {
+                0 => ["-".to_owned(), "-".to_owned()],
+                _ => [
+                    format!("{} of {}", makes.made, makes.labelled),
+                    format!("{:.0}", makes.expected),
+                ],
+            };
+            let [made, expected] = counted;
+            let where_it_is = self.fit.places[index].location.in_words(self.units);
+            let place = match self.source.place_names[index].as_str() {
+                "" => format!("{}: {where_it_is}", index + 1),
+                name => format!("{name}\n{where_it_is}"),
+            };
+            table.add([
+                place,
+                per_100(p.mean),
+                format!("{} to {}", per_100(p.low), per_100(p.high)),
+                made,
+                expected,
+            ]);
+        }
+        table
+    }
+
+    /// What can change the decision.
+    fn notes(&self) -> Vec<String> {
+        let (fit, source) = (self.fit, self.source);
+        let mut notes = Vec::new();
+        if fit.places.len() > 1 {
+            let sds = (0..3).map(|i| {
+                let (unit, size) = value_units(self.units)[i];
+                let sd = fit.posterior.summary(|draw| draw.sds[i]).mean / size;
+                format!(
+                    "{} {} {unit}",
+                    variable_name(ReleaseVariable::ALL[i]),
+                    significant(sd, sd)
+                )
+            });
+            notes.push(format!(
+                "Scatter, the same at all places: {}.",
+                list(&sds.collect::<Vec<_>>())
+            ));
+        }
+        let shown = fit
+            .notes
+            .iter()
+            .filter(|note| !matches!(note, FitNote::OtherMakes { .. }));
+        let warnings: Vec<String> = shown
+            .map(|note| format!("Warning: {}.", fit_note_text(note)))
+            .collect();
+        let checks = 2 + fit.trends.iter().map(number_of_tests).sum::<usize>();
+        let is_of_checks = |note: &FitNote| {
+            matches!(
+                note,
+                FitNote::NotNormal { .. }
+                    | FitNote::Drift { .. }
+                    | FitNote::SessionsDiffer { .. }
+                    | FitNote::ScatterDiffers { .. }
+                    | FitNote::SerialCorrelation { .. }
+            )
+        };
+        let passed = match fit.notes.iter().any(is_of_checks) {
+            true => String::new(),
+            false => format!(
+                " All {checks} checks of the data passed (normal distribution; drift and dependence between shots)."
+            ),
+        };
+        notes.push(format!(
+            "Scatter: standard deviation from shot to shot, with the sensor's noise ({}, {}) removed.{passed}",
+            source.tracker.0, source.tracker.1
+        ));
+        notes.extend(warnings);
+        notes.push(
+            "Not included: another ring, ball or air (`bankshot physics`), and a sensor that reads too high or too low."
+                .to_owned(),
+        );
+        notes
+    }
+
+    fn details(&self) -> String {
+        let (fit, source) = (self.fit, self.source);
+        let posterior = &fit.posterior;
+        let mut table = TextTable::new(&[
+            ("parameter", "", Side::Left),
+            ("mean", "", Side::Right),
+            ("2.5 %", "", Side::Right),
+            ("97.5 %", "", Side::Right),
+            ("unit", "", Side::Left),
+            ("source", "", Side::Left),
+        ]);
+        let listed = parameters(posterior, source.kind.name()).into_iter();
+        for parameter in listed.map(|parameter| parameter.in_results(self.units)) {
+            table.add(cells(&parameter));
+        }
+        let mut text = table.text();
+        let mut add = |words: String| text += &paragraph(&words);
+        for (index, p) in fit.probabilities.iter().enumerate() {
+            add(format!(
+                "Makes per 100 from {}: {}, simulation error {}.",
+                self.place_name(index),
+                per_100(p.interval().mean),
+                simulation_error(p.numerical_standard_error())
+            ));
+        }
+        self.add_measured(&mut add);
+        if fit.makes.labelled > 0 {
+            add(self.chances());
+        }
+        let [speed, pitch, polar, _] = posterior.prior_weights.map(|weight| 100.0 * weight);
+        add(format!(
+            "Sampler: {} draws, R-hat {:.3}, effective sample size {:.0}. Weight of the prior: {speed:.0} % (speed), {pitch:.0} % (angle), {polar:.0} % (direction).",
+            posterior.draws.len(),
+            posterior.r_hat,
+            posterior.effective_sample_size
+        ));
+        add(tests_text(fit));
+        text + &self.constant_errors()
+    }
+
+    /// What was measured, and how the release follows from it.
+    fn add_measured(&self, add: &mut dyn FnMut(String)) {
+        let (fit, source) = (self.fit, self.source);
+        if source.kind == Source::Landings {
+            let (unit, size) = self.units.short_length();
+            add(format!(
+                "Depth is measured from the front of the ring; {:.1} {unit} is its centre.",
+                CENTRE_DEPTH_M / size
+            ));
+        }
+        if let Some(residuals) = &fit.residuals {
+            let shots = fit.posterior.shots;
+            add(format!(
+                "Flights: {shots} of {} used. Their points lie {:.2} times as far from the fitted flights as the tracker's noise predicts (chi-square {:.0}, expected {:.0}).",
+                shots + source.rejected.len(),
+                residuals.ratio(),
+                residuals.chi_square,
+                residuals.expected
+            ));
+        }
+        if source.kind == Source::Trajectories {
+            for index in 0..fit.places.len() {
+                if let Some(words) = at_another_height(fit, index, self.units) {
+                    add(words);
+                }
+            }
+        }
+        let of_value = value_units(self.units);
+        for difference in source.differences {
+            let (unit, size) = of_value[difference.value];
+            add(format!(
+                "Column {}: {:+.2} {unit} (standard error {:.2}) compared with the {} that the landings give under {} ({} shots).",
+                difference.column,
+                difference.mean / size,
+                difference.standard_error / size,
+                variable_name(ReleaseVariable::ALL[difference.value]),
+                source.physics,
+                difference.shots
+            ));
+        }
+    }
+
+    /// How well the chances of the measured shots predict the makes.
+    fn chances(&self) -> String {
+        let makes = &self.fit.makes;
+        let share = &makes.share;
+        let z = makes
+            .made_z()
+            .map_or_else(String::new, |z| format!(", z {z:+.1}"));
         let auc = makes
             .area_under_curve
             .map_or_else(|| "-".to_owned(), |auc| format!("{auc:.2}"));
         let calibration = makes.calibration_z.map_or_else(String::new, |z| {
-            format!(", calibration z {z:+.1} (above 3: too sure)")
+            format!(" Calibration z {z:+.1}; above 3 the chances would be overconfident.")
         });
         let swishes = match makes.swishes {
-            (0, _) => "no shot was predicted to be a swish".to_owned(),
-            (all, made) => format!("{made} of {all} predicted swishes went in"),
+            (0, _) => "No shot was predicted to be a swish.".to_owned(),
+            (all, made) => format!("Of {all} shots predicted to be swishes, {made} went in."),
         };
-        text += &format!(
-            "chances Brier {:.3} ({:.3} for the share of makes alone), log loss {:.3} ({:.3}), area under the curve {auc}{calibration}; {swishes}\n",
-            makes.brier, makes.losses_of_share[0], makes.log_loss, makes.losses_of_share[1]
+        format!(
+            "Counted: {} of {} ({:.1} %, 95 % interval {:.1} to {:.1}); predicted {:.1} (standard deviation {:.1}{z}). Predicted chances: Brier score {:.3} ({:.3} if every shot had the average chance), log loss {:.3} ({:.3}), AUC {auc}.{calibration} {swishes}",
+            makes.made,
+            makes.labelled,
+            100.0 * share.share,
+            100.0 * share.low,
+            100.0 * share.high,
+            makes.expected,
+            makes.expected_sd,
+            makes.brier,
+            makes.losses_of_share[0],
+            makes.log_loss,
+            makes.losses_of_share[1]
+        )
+    }
+
+    /// What a constant offset of the tracker would do, where releases were measured.
+    fn constant_errors(&self) -> String {
+        let errors = self.source.constant_errors(self.fit);
+        if errors.is_empty() {
+            return String::new();
+        }
+        let has_z = errors.iter().any(|error| error.made_z.is_some());
+        let mut text = paragraph(
+            "If the tracker had a constant offset of one noise standard deviation, the makes per 100 would be:",
         );
+        let mut columns = vec![
+            ("offset", "", Side::Left),
+            ("too high", "makes", Side::Right),
+            ("too low", "makes", Side::Right),
+        ];
+        if has_z {
+            columns.extend([
+                ("too high", "z", Side::Right),
+                ("too low", "z", Side::Right),
+            ]);
+        }
+        let mut table = TextTable::new(&columns);
+        for pair in errors.chunks(2) {
+            let (unit, size) = value_units(self.units)[pair[0].value];
+            let decimals = if pair[0].value == 0 { 3 } else { 2 };
+            let name = variable_name(ReleaseVariable::ALL[pair[0].value]);
+            let mut cells = vec![format!(
+                "{name} {:.decimals$} {unit}",
+                pair[0].by.abs() / size
+            )];
+            cells.extend(pair.iter().map(|error| per_100(error.probability)));
+            if has_z {
+                let z = |z: Option<f64>| z.map_or("-".to_owned(), |z| format!("{z:+.1}"));
+                cells.extend(pair.iter().map(|error| z(error.made_z)));
+            }
+            table.add(cells);
+        }
+        text += &table.text();
+        if has_z {
+            text +=
+                "z compares the makes with that prediction; beyond 3 the offset is ruled out.\n";
+        }
+        text
     }
-    let of_value = value_units(units);
-    for difference in source.differences {
-        let (unit, size) = of_value[difference.value];
-        text += &format!(
-            "column  {} says {:+.2} \u{b1} {:.2} {unit} more {} than the landings give under {} ({} shots)\n",
-            difference.column,
-            difference.mean / size,
-            difference.standard_error / size,
-            VALUE_NAMES[difference.value],
-            source.physics,
-            difference.shots
-        );
-    }
-    text += &format!(
-        "\n{:<24} {:>9} {:>9} {:>9}  {:<5} {}\n",
-        "", "mean", "2.5 %", "97.5 %", "unit", "source"
-    );
-    for parameter in parameters(posterior, source.kind.name()) {
-        let parameter = parameter.in_results(units);
-        let interval = &parameter.interval;
-        text += &format!(
-            "{:<24} {:>9.3} {:>9.3} {:>9.3}  {:<5} {}\n",
-            parameter.name,
-            interval.mean,
-            interval.low,
-            interval.high,
-            parameter.unit.name(),
-            parameter.source
-        );
-    }
-    text += &format!(
-        "\n{} draws, kept from chains with R-hat {:.3} and an effective sample size of {:.0}; weight of the prior (the population): {:.0} % (speed), {:.0} % (pitch), {:.0} % (polar)\n",
-        posterior.draws.len(),
-        posterior.r_hat,
-        posterior.effective_sample_size,
-        100.0 * posterior.prior_weights[0],
-        100.0 * posterior.prior_weights[1],
-        100.0 * posterior.prior_weights[2]
-    );
-    text += &tests_text(fit);
-    text += "The intervals hold what these shots do not tell. They leave out the physics of this gym: see `bankshot physics`.";
-    text += &of_constant_error(fit, source, units);
-    for note in &fit.notes {
-        text += &format!("warning: {}\n", fit_note_text(note));
-    }
-    text
 }
 
-/// That a constant error of the tracker is in no interval, and what one of the size of its noise
-/// would do where releases were measured.
-fn of_constant_error(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
-    let errors = source.constant_errors(fit);
-    if errors.is_empty() {
-        return " They leave out a constant error of the tracker too.\n".to_owned();
-    }
-    let has_z = errors.iter().any(|error| error.made_z.is_some());
-    let mut text = " They leave out a constant error of the tracker too. If it reads a value of all shots too high or too low by one standard deviation of its noise, so many of 100 usual shots go in".to_owned();
-    text += match has_z {
-        true => {
-            ", and the makes differ from what is then expected by z of their standard deviations (beyond 3 they speak against it):\n"
-        }
-        false => ":\n",
+/// A number with as many decimals as two significant digits of another one need.
+fn significant(value: f64, of: f64) -> String {
+    let decimals = match of.abs() {
+        of if of >= 9.95 => 0,
+        of if of >= 0.995 => 1,
+        of if of >= 0.0995 => 2,
+        _ => 3,
     };
-    for pair in errors.chunks(2) {
-        let (unit, size) = value_units(units)[pair[0].value];
-        let decimals = if pair[0].value == 0 { 3 } else { 2 };
-        text += &format!(
-            "  {:<5} {:>5.decimals$} {unit:<4}",
-            VALUE_NAMES[pair[0].value],
-            pair[0].by / size
-        );
-        for error in pair {
-            let side = if error.by > 0.0 { "high" } else { "low" };
-            let z = error
-                .made_z
-                .map_or_else(String::new, |z| format!(" (z {z:+.1})"));
-            text += &format!("   too {side} {:>3.0}{z}", 100.0 * error.probability);
-        }
-        text += "\n";
-    }
-    text
+    format!("{value:.decimals$}")
 }
 
-/// The tests of the shots in one sentence, whether they warn or not.
+fn cells(parameter: &Parameter) -> [String; 6] {
+    let interval = &parameter.interval;
+    let [mean, low, high] =
+        [interval.mean, interval.low, interval.high].map(|value| format!("{value:.3}"));
+    [
+        parameter.name.clone(),
+        mean,
+        low,
+        high,
+        parameter.unit.name().to_owned(),
+        parameter.source.to_owned(),
+    ]
+}
+
+/// The tests of one value.
+fn number_of_tests(trend: &crate::fitting::SessionTrend) -> usize {
+    2 + usize::from(trend.sessions_p.is_some()) + usize::from(trend.spreads_p.is_some())
+}
+
+/// The tests of the shots in a sentence, whether a warning comes of them or not.
 #[must_use]
 pub fn tests_text(fit: &ShooterFit) -> String {
     let all = fit.trends.iter().flat_map(|trend| {
+        let name = variable_name(trend.of);
         [
-            Some(("drift", trend.drift_p)),
-            Some(("a shot like the one before", trend.serial_p)),
-            trend.sessions_p.map(|p| ("unequal sessions", p)),
+            Some((format!("a drift in {name}"), trend.drift_p)),
+            Some((
+                format!("{name} depends on that of the shot before"),
+                trend.serial_p,
+            )),
+            trend
+                .sessions_p
+                .map(|p| (format!("{name} differs between sessions"), p)),
             trend
                 .spreads_p
-                .map(|p| ("unequal scatter of the sessions", p)),
+                .map(|p| (format!("the scatter of {name} differs between sessions"), p)),
         ]
-        .map(|test| test.map(|(what, p)| (what, trend.of.name(), p)))
     });
-    let all: Vec<_> = all.flatten().collect();
-    let least = all.iter().min_by(|a, b| a.2.total_cmp(&b.2));
-    let order = least.map_or_else(String::new, |(what, name, p)| {
+    let all: Vec<(String, f64)> = all.flatten().collect();
+    let least = all.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    let order = least.map_or_else(String::new, |(what, p)| {
         format!(
-            "; least p of {} tests of the order of the shots: {} ({what} of {name})",
+            " Closest of {} tests of the order: {what}, {}.",
             all.len(),
             p_value(*p)
         )
     });
     format!(
-        "Tests: normal releases (Mardia) skewness {}, kurtosis {}{order}. Each warns below {WARNING_LEVEL}.\n",
+        "Tests (limit {WARNING_LEVEL}): normal distribution (Mardia), skewness {}, kurtosis {}.{order}",
         p_value(fit.shape.skewness_p),
         p_value(fit.shape.kurtosis_p)
     )
 }
 
-/// What the means rest on where balls were tracked: on the height at which the release is taken,
-/// which the tracks tell only roughly.
-fn at_another_height(fit: &ShooterFit, place: usize, units: UnitSystem) -> String {
+/// How speed and angle depend on the height at which the release is taken, where balls were
+/// tracked.
+fn at_another_height(fit: &ShooterFit, place: usize, units: UnitSystem) -> Option<String> {
     let (long, metre) = units.length();
     let by_m = match units {
         UnitSystem::Imperial => 0.1 * FOOT_M,
@@ -267,13 +483,12 @@ fn at_another_height(fit: &ShooterFit, place: usize, units: UnitSystem) -> Strin
     };
     let (at, usual) = (&fit.places[place], &fit.typical.means[place]);
     let simulator = fit.profiles[place].simulator();
-    let higher = values_at_height(simulator, at, usual, at.release_height_m + by_m);
-    higher.map_or_else(String::new, |higher| {
-        format!(
-            "        speed and pitch are those at that height: {:.2} {long} higher they are {:.2} {long}/s less and {:.1} deg less; P hardly depends on it\n",
-            by_m / metre,
-            (usual[0] - higher[0]) / metre,
-            (usual[1] - higher[1]) / DEGREE_RAD
-        )
-    })
+    let higher = values_at_height(simulator, at, usual, at.release_height_m + by_m)?;
+    Some(format!(
+        "Speed and angle are those at a height of {:.2} {long}; {:.2} {long} higher they are {:.2} {long}/s and {:.1} deg less. The makes hardly depend on it.",
+        at.release_height_m / metre,
+        by_m / metre,
+        (usual[0] - higher[0]) / metre,
+        (usual[1] - higher[1]) / DEGREE_RAD
+    ))
 }

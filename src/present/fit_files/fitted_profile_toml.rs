@@ -50,13 +50,13 @@ pub fn fitted_profile_toml(
         quoted(&source.file)
     ));
     line(format!(
-        "# Tracker: {} (its noise is {}). Physics: {}. The profile holds for this physics.",
+        "# Tracker: {} (noise {}). Physics: {}. The profile is valid for this physics only.",
         source.tracker.0, source.tracker.1, source.physics
     ));
-    line("# An error is the root mean square over all draws; its interval and its source are beside it.".to_owned());
+    line("# Each error is the root mean square over the fit's draws, with its 95 % interval and source.".to_owned());
     if has_several_places {
         line(format!(
-            "# The location, the usual shot and `speed` are those of place {} of {}{}.",
+            "# The location, the current shot and `speed` are for place {} of {}{}.",
             place_index + 1,
             fit.places.len(),
             match source.place_names[place_index].as_str() {
@@ -156,17 +156,17 @@ pub fn fitted_profile_toml(
     let keeps_backspin = fit.posterior.spin != SpinSource::Measured;
     if keeps_backspin {
         line("[search]".to_owned());
-        line("# The backspin was not measured: a search keeps that of the usual shot. With \"backspin\" in".to_owned());
+        line("# The backspin was not measured, so a search keeps the value below. With \"backspin\" in".to_owned());
         line("# the list it tries others, up to max_backspin.".to_owned());
         line("choose = [\"speed\", \"pitch\", \"polar\"]".to_owned());
         line(String::new());
     }
     line(format!(
-        "# The usual shot. A search for the best shot {}.",
+        "# The current shot. A search for the best shot {}.",
         if keeps_backspin {
-            "looks at its backspin alone"
+            "uses its backspin only"
         } else {
-            "does not look at it"
+            "does not use it"
         }
     ));
     line("[nominal]".to_owned());

@@ -1,35 +1,40 @@
-//! The best shots at several pitch angles: for people, as CSV and JSON.
+//! The best shots at several release angles in text.
 
-use super::notes::{physics_note, speed_limit_in_words};
-use super::table_text::{both_sides, decimal, line, wrapped};
+use super::notes::speed_limit_in_words;
 use crate::best_shot::{ShotAtPitch, TableKind, TableShot};
+use crate::fitting::AngleOverDraws;
+use crate::present::layout::{Side, TextAnswer, TextTable};
+use crate::present::words::{
+    of_100, per_100, scatter_note, simulation_error, subject, taken_as_exact,
+};
 use crate::shooter::{NominalVariable, Profile};
-use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, REV_RAD};
 
-/// A loss of P that the sentence about the angles counts as none.
-const LEVEL: f64 = 0.01;
+/// A loss of P that is worth no word.
+const LEVEL: f64 = 0.005;
 
-/// Name, unit and width of the columns after the pitch angle.
-fn titles(speed_unit: &str, kind: TableKind) -> Vec<(&str, &str, usize)> {
-    let other_kind = match kind {
-        TableKind::One(kind) => kind.other().name(),
-        TableKind::Better => "other",
-    };
-    let mut titles = vec![
-        ("speed", speed_unit, 6),
-        ("aim", "deg", 6),
-        ("spin", "rev/s", 5),
-        ("entry", "deg", 5),
-        ("P", "", 6),
-        ("less", "", 6),
-        (other_kind, "P", 6),
-        ("margin", speed_unit, 10),
-        ("margin", "deg", 8),
-    ];
-    if kind == TableKind::Better {
-        titles.push(("kind", "", 6));
-    }
-    titles
+/// The shots at several release angles, and what a fit says of them.
+#[derive(Clone, Copy, Debug)]
+pub struct AngleCurve<'a> {
+    /// The profile.
+    pub profile: &'a Profile,
+    /// The kind of the shots.
+    pub kind: TableKind,
+    /// The shots.
+    pub rows: &'a [ShotAtPitch],
+    /// P over the draws of a fit at each angle; empty without a fit.
+    pub over_draws: &'a [Option<AngleOverDraws>],
+    /// The first and the last of the angles between which the best one lies in 95 of 100 draws.
+    pub best_of_draws: Option<(usize, usize)>,
+    /// Angle and P of the current shot of a fit.
+    pub current: Option<(f64, f64)>,
+}
+
+/// A release angle: `55`, `52.5`.
+#[must_use]
+pub(super) fn degrees(rad: f64) -> String {
+    let text = format!("{:.1}", rad / DEGREE_RAD + 0.0);
+    text.trim_end_matches(".0").to_owned()
 }
 
 /// The kind in a sentence, with a space after it.
@@ -40,225 +45,318 @@ pub(super) fn kind_before_shot(kind: TableKind) -> String {
     }
 }
 
-/// The shots with their angles, those that exist.
-fn found(rows: &[ShotAtPitch]) -> impl Iterator<Item = (f64, &TableShot)> {
-    rows.iter()
-        .filter_map(|row| Some((row.pitch_rad, row.shot.as_ref()?)))
-}
-
-/// The row with the highest P.
-fn best_row(rows: &[ShotAtPitch]) -> Option<(usize, &TableShot)> {
-    let shots = rows.iter().enumerate();
-    shots
-        .filter_map(|(i, row)| Some((i, row.shot.as_ref()?)))
-        .max_by(|a, b| a.1.probability.total_cmp(&b.1.probability))
-}
-
-/// The shots for people, at most 80 columns wide: what the angle is worth, then a line for each.
+/// A value with decimals, or a dash.
 #[must_use]
-pub fn by_pitch_text(
-    rows: &[ShotAtPitch],
-    kind: TableKind,
-    profile: &Profile,
-    units: UnitSystem,
-) -> String {
-    let (long, metre) = units.length();
-    let name = &profile.shooter().name;
-    let of = if name.is_empty() {
-        String::new()
-    } else {
-        format!("{name}, ")
-    };
-    let mut text = wrapped(&format!("{of}{}.", profile.location().in_words(units)));
-    let Some((best_row, best)) = best_row(rows) else {
-        let most = rows.iter().map(ShotAtPitch::probability);
-        let most = most.fold(0.0, f64::max);
-        let words = if most > 0.0 {
-            format!(
-                "No clean shot at these pitch angles: the most probable ones, P up to {most:.3}, miss without errors."
-            )
-        } else {
-            "No shot at these pitch angles goes in.".to_owned()
-        };
-        text += &wrapped(&words);
-        for row in rows {
-            text += &row_without_shot(row, profile, units);
-        }
-        return text;
-    };
-    text += &wrapped(&in_words(rows, (best_row, best), kind, units));
-    text += &at_speed_limit_in_words(rows, profile);
-    text += &other_kind_in_words(rows, best, kind);
-    text += &wrapped(&physics_note(profile, units));
-    let spin = if profile.search().choice.includes(NominalVariable::Backspin) {
-        "the speed, the aim and the spin are the best ones (--backspin keeps one)"
-    } else {
-        "the speed and the aim are the best ones, and the spin is the given one"
-    };
-    text += &wrapped(&format!(
-        "At each pitch angle {spin}; the errors are taken to be the same at all angles. aim: positive to the left. entry: \
-         -, if it meets the ring on its way up. less: than the highest P. margin: by how much speed \
-         and pitch can be off, down and up, one at a time and with all else exact, until the shot \
-         first misses.",
-    ));
-    let speed_unit = format!("{long}/s");
-    let titles = titles(&speed_unit, kind);
-    let widths: Vec<usize> = std::iter::once(5)
-        .chain(titles.iter().map(|(.., width)| *width))
-        .collect();
-    let names = std::iter::once("pitch").chain(titles.iter().map(|(name, ..)| *name));
-    text += &line(names, &widths);
-    let unit_names = std::iter::once("deg").chain(titles.iter().map(|(_, unit, _)| *unit));
-    text += &line(unit_names, &widths);
-    for row in rows {
-        let Some(shot) = &row.shot else {
-            text += &row_without_shot(row, profile, units);
-            continue;
-        };
-        let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
-        let [speed_sides, pitch_sides] = shot.tolerances;
-        let mut cells = vec![
-            pitch,
-            decimal(shot.nominal.speed_m_s / metre, 3),
-            decimal(shot.aim_rad / DEGREE_RAD, 2),
-            decimal(shot.nominal.backspin_rad_s / REV_RAD, 2),
-            decimal(shot.entry_rad.map_or(f64::NAN, |rad| rad / DEGREE_RAD), 1),
-            decimal(shot.probability, 4),
-            decimal(best.probability - shot.probability, 4),
-            decimal(shot.other_kind.unwrap_or(f64::NAN), 3),
-            both_sides(speed_sides.map(|side| side / metre), 2),
-            both_sides(pitch_sides.map(|side| side / DEGREE_RAD), 1),
-        ];
-        if kind == TableKind::Better {
-            cells.push(shot.kind.name().to_owned());
-        }
-        text += &line(cells.iter().map(String::as_str), &widths);
-    }
-    let error = found(rows).map(|(_, shot)| shot.standard_error);
-    let error = error.fold(0.0, f64::max);
-    let other = match kind {
-        TableKind::One(kind) => format!("the {} shot", kind.other().name()),
-        TableKind::Better => "the other kind (other)".to_owned(),
-    };
-    text + &wrapped(&format!(
-        "P has a numerical standard error of at most {error:.4}; P of {other} at that angle is from a short search.",
-    ))
+pub(super) fn or_dash(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(
+        || "-".to_owned(),
+        |value| format!("{:.decimals$}", value + 0.0),
+    )
 }
 
-/// The line of a pitch angle without a clean shot.
-fn row_without_shot(row: &ShotAtPitch, profile: &Profile, units: UnitSystem) -> String {
-    let (long, metre) = units.length();
-    let pitch = decimal(row.pitch_rad / DEGREE_RAD, 1);
-    match row.not_clean {
-        Some(shot) => format!(
-            "{pitch:>5} no clean shot; most probable: {:.2} {long}/s, P {:.3}, a miss without errors\n",
-            shot.nominal.speed_m_s / metre,
-            shot.probability
-        ),
-        None => format!(
-            "{pitch:>5} no shot within the limits{} goes in\n",
-            speed_limit_in_words(profile, units)
-        ),
-    }
+/// The tolerances below and above, such as `-0.24 +0.31`.
+#[must_use]
+pub(super) fn tolerance(sides: [f64; 2], decimals: usize) -> String {
+    let [below, above] = sides.map(|side| {
+        let decimals = if side < 9.95 { decimals } else { 0 };
+        format!("{side:.decimals$}")
+    });
+    format!("-{below} +{above}")
 }
 
-/// That the other kind makes more than the best of these, if it does.
-fn other_kind_in_words(rows: &[ShotAtPitch], best: &TableShot, kind: TableKind) -> String {
-    let TableKind::One(kind) = kind else {
-        return String::new();
-    };
-    let others = found(rows).filter_map(|(_, shot)| shot.other_kind);
-    let most = others.fold(0.0, f64::max);
-    if most <= best.probability + LEVEL {
-        return String::new();
+impl AngleCurve<'_> {
+    /// P at an angle: over the draws of a fit, if it is known.
+    fn p(&self, row: usize) -> Option<f64> {
+        let shot = self.rows[row].shot.as_ref()?;
+        let over = self.over_draws.get(row).copied().flatten();
+        Some(over.map_or(shot.probability, |over| over.probability.mean))
     }
-    wrapped(&format!(
-        "At some of these angles the {} shot makes up to {:.0} of 100: --kind best takes the better one.",
-        kind.other().name(),
-        100.0 * most
-    ))
-}
 
-/// At which angles the speed is the greatest one of the profile; empty where at none.
-fn at_speed_limit_in_words(rows: &[ShotAtPitch], profile: &Profile) -> String {
-    let Some(most_m_s) = profile.search().speed_max_m_s else {
-        return String::new();
-    };
-    let at_limit = found(rows).filter(|(_, shot)| shot.nominal.speed_m_s > (1.0 - 1e-6) * most_m_s);
-    let angles: Vec<String> = at_limit
-        .map(|(rad, _)| {
-            decimal(rad / DEGREE_RAD, 1)
-                .trim_end_matches(".0")
-                .to_owned()
+    fn found(&self) -> impl Iterator<Item = (f64, &TableShot)> {
+        let rows = self.rows.iter();
+        rows.filter_map(|row| Some((row.pitch_rad, row.shot.as_ref()?)))
+    }
+
+    /// The row with the highest P.
+    fn best(&self) -> Option<usize> {
+        let rows = (0..self.rows.len()).filter(|row| self.p(*row).is_some());
+        rows.max_by(|a, b| {
+            self.p(*a)
+                .partial_cmp(&self.p(*b))
+                .unwrap_or(std::cmp::Ordering::Equal)
         })
-        .collect();
-    if angles.is_empty() {
-        return String::new();
     }
-    wrapped(&format!(
-        "At {} deg the speed is speed_max of the profile: a faster launcher makes more there.",
-        angles.join(", ")
-    ))
-}
 
-/// How much the angle matters, in two sentences.
-fn in_words(
-    rows: &[ShotAtPitch],
-    (best_row, best): (usize, &TableShot),
-    kind: TableKind,
-    units: UnitSystem,
-) -> String {
-    let (long, metre) = units.length();
-    let best_rad = rows[best_row].pitch_rad;
-    let degrees = |rad: f64| {
-        let text = format!("{:.1}", rad / DEGREE_RAD);
-        text.trim_end_matches(".0").to_owned()
-    };
-    let is_level = |row: &ShotAtPitch| {
-        row.shot
-            .as_ref()
-            .is_some_and(|shot| best.probability - shot.probability <= LEVEL)
-    };
-    // The angles around the best one without a gap.
-    let low = (0..best_row)
-        .rev()
-        .take_while(|&i| is_level(&rows[i]))
-        .last();
-    let high = (best_row + 1..rows.len())
-        .take_while(|&i| is_level(&rows[i]))
-        .last();
-    let (low, high) = (low.unwrap_or(best_row), high.unwrap_or(best_row));
-    let mut text = format!(
-        "The best {}shot of these makes {:.1} of 100, at {} deg.",
-        kind_before_shot(kind),
-        100.0 * best.probability,
-        degrees(best_rad)
-    );
-    let is_at_end = best_row + 1 == rows.len() || best_row == 0;
-    if is_at_end && rows.len() > 1 {
-        text += " That is the end of the list: angles beyond, where the profile allows them, may be better (--pitches).";
+    /// The curve in text. `scatter` are the changes of the scatter, as they were typed.
+    #[must_use]
+    pub fn text(&self, scatter: &[String]) -> TextAnswer {
+        let units = self.profile.output().units;
+        let mut notes = self.notes();
+        notes.extend(scatter_note(scatter));
+        notes.push(self.what_is_left_out());
+        TextAnswer {
+            answer: self.answer(),
+            subject: subject(self.profile, units),
+            table: Some(self.table()),
+            notes,
+            details: self.details(),
+            ..TextAnswer::default()
+        }
     }
-    if low < high {
-        text += &format!(
-            " From {} to {} deg the best speed of each makes at most one of 100 less.",
-            degrees(rows[low].pitch_rad),
-            degrees(rows[high].pitch_rad)
-        );
-    }
-    let slowest =
-        found(rows).min_by(|a, b| a.1.nominal.speed_m_s.total_cmp(&b.1.nominal.speed_m_s));
-    if let Some((slowest_rad, slowest)) = slowest {
-        text += &format!(
-            " The least speed of these, {:.2} {long}/s, is that of {} deg",
-            slowest.nominal.speed_m_s / metre,
-            degrees(slowest_rad)
-        );
-        let steeper = best_rad - slowest_rad;
-        text += &match steeper {
-            _ if steeper > 1e-9 => format!(": the best is {} deg steeper.", degrees(steeper)),
-            _ if steeper < -1e-9 => format!(": the best is {} deg flatter.", degrees(-steeper)),
-            _ => ".".to_owned(),
+
+    /// The best angle, what its neighbours cost, and the interval of the best angle.
+    fn answer(&self) -> Vec<String> {
+        let Some(best) = self.best() else {
+            let most = self.rows.iter().map(ShotAtPitch::probability);
+            let most = most.fold(0.0, f64::max);
+            return vec![match most > 0.0 {
+                true => format!(
+                    "No exact shot goes in at these angles; the most probable release makes {} of 100.",
+                    of_100(most)
+                ),
+                false => "No shot goes in at these angles.".to_owned(),
+            }];
         };
+        let highest = self.p(best).unwrap_or(0.0);
+        let angle = |row: usize| degrees(self.rows[row].pitch_rad);
+        let cost = |row: usize| {
+            let loss = highest - self.p(row)?;
+            (loss >= LEVEL / 10.0).then(|| format!("{} deg costs {}", angle(row), per_100(loss)))
+        };
+        let neighbours = [best.checked_sub(1), Some(best + 1), best.checked_sub(2)];
+        let in_list = neighbours
+            .into_iter()
+            .flatten()
+            .filter(|row| *row < self.rows.len());
+        let costs: Vec<String> = in_list.filter_map(cost).collect();
+        let costs = match costs.is_empty() {
+            true => String::new(),
+            false => format!(" Per 100 shots, {}.", costs.join(", ")),
+        };
+        let mut answer = vec![format!(
+            "Release at about {} deg: {} of 100 go in.{costs}",
+            angle(best),
+            of_100(highest)
+        )];
+        answer.extend(self.best_of_draws.map(|(low, high)| match low < high {
+            true => format!(
+                "95 % interval of the best angle: {} to {} deg, from the measured shots.",
+                angle(low),
+                angle(high)
+            ),
+            false => format!(
+                "The probability that {} deg is best is above 95 %.",
+                angle(low)
+            ),
+        }));
+        answer
     }
-    text
+
+    fn table(&self) -> TextTable {
+        let (long, metre) = self.profile.output().units.length();
+        let speed_unit = format!("{long}/s");
+        let other = match self.kind {
+            TableKind::One(kind) => format!("{} makes", kind.other().name()),
+            TableKind::Better => "other kind".to_owned(),
+        };
+        let has_draws = !self.over_draws.is_empty();
+        let mut columns = vec![
+            ("angle", "deg", Side::Right),
+            ("speed", speed_unit.as_str(), Side::Right),
+            ("entry", "deg", Side::Right),
+            ("makes", "per 100", Side::Right),
+        ];
+        if has_draws {
+            columns.push(("95 %", "interval", Side::Left));
+        }
+        columns.extend([
+            ("below", "best", Side::Right),
+            (&*other, "per 100", Side::Right),
+        ]);
+        if !has_draws {
+            columns.extend([
+                ("tolerance", speed_unit.as_str(), Side::Right),
+                ("tolerance", "deg", Side::Right),
+            ]);
+        }
+        if self.kind == TableKind::Better {
+            columns.push(("kind", "", Side::Left));
+        }
+        let mut table = TextTable::new(&columns);
+        let highest = self.best().and_then(|best| self.p(best)).unwrap_or(0.0);
+        for (i, row) in self.rows.iter().enumerate() {
+            let (angle, p) = (format!("{:.1}", row.pitch_rad / DEGREE_RAD), self.p(i));
+            let Some((shot, p)) = row.shot.as_ref().zip(p) else {
+                let makes = row.not_clean.map(|shot| shot.probability);
+                let speed = row.not_clean.map(|shot| shot.nominal.speed_m_s / metre);
+                let mut cells = vec![
+                    angle,
+                    or_dash(speed, 2),
+                    "-".to_owned(),
+                    makes.map_or("-".to_owned(), |p| format!("{}*", per_100(p))),
+                ];
+                cells.resize(columns.len(), "-".to_owned());
+                table.add(cells);
+                continue;
+            };
+            let [speed_sides, pitch_sides] = shot.tolerances;
+            let mut cells = vec![
+                angle,
+                format!("{:.2}", shot.nominal.speed_m_s / metre),
+                or_dash(shot.entry_rad.map(|rad| rad / DEGREE_RAD), 1),
+                per_100(p),
+            ];
+            if has_draws {
+                let over = self.over_draws[i].map(|over| over.probability);
+                cells.push(over.map_or("-".to_owned(), |p| {
+                    format!("{} to {}", per_100(p.low), per_100(p.high))
+                }));
+            }
+            cells.extend([
+                per_100(highest - p),
+                shot.other_kind.map_or("-".to_owned(), per_100),
+            ]);
+            if !has_draws {
+                cells.push(tolerance(speed_sides.map(|side| side / metre), 2));
+                cells.push(tolerance(pitch_sides.map(|side| side / DEGREE_RAD), 1));
+            }
+            if self.kind == TableKind::Better {
+                cells.push(shot.kind.name().to_owned());
+            }
+            table.add(cells);
+        }
+        table
+    }
+
+    /// What can change the decision.
+    fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let units = self.profile.output().units;
+        if let Some((pitch_rad, p)) = self.current {
+            notes.push(format!(
+                "The current shot ({} deg, as measured) makes {} of 100; its speed and direction are not optimised.",
+                degrees(pitch_rad),
+                per_100(p)
+            ));
+        }
+        let is_at_end = |best: usize| best == 0 || best + 1 == self.rows.len();
+        if self.rows.len() > 1 && self.best().is_some_and(is_at_end) {
+            notes.push(
+                "The best angle is at the end of the list; angles beyond it may be better (--pitches)."
+                    .to_owned(),
+            );
+        }
+        notes.extend(self.other_kind());
+        notes.extend(self.at_speed_limit());
+        if self
+            .rows
+            .iter()
+            .any(|row| row.shot.is_none() && row.not_clean.is_some())
+        {
+            notes.push("*: the most probable release; an exact shot with it misses.".to_owned());
+        }
+        if self
+            .rows
+            .iter()
+            .any(|row| row.shot.is_none() && row.not_clean.is_none())
+        {
+            notes.push(format!(
+                "-: no shot within the limits{} goes in.",
+                speed_limit_in_words(self.profile, units)
+            ));
+        }
+        notes
+    }
+
+    /// That the other kind makes more than the best of these, if it does.
+    fn other_kind(&self) -> Option<String> {
+        let TableKind::One(kind) = self.kind else {
+            return None;
+        };
+        let highest = self.p(self.best()?)?;
+        let others = self.found().filter_map(|(_, shot)| shot.other_kind);
+        let most = others.fold(0.0, f64::max);
+        (most > highest + 2.0 * LEVEL).then(|| {
+            format!(
+                "At some angles the {} shot makes up to {} of 100 (--kind best).",
+                kind.other().name(),
+                of_100(most)
+            )
+        })
+    }
+
+    /// At which angles the speed is the greatest one of the profile.
+    fn at_speed_limit(&self) -> Option<String> {
+        let most_m_s = self.profile.search().speed_max_m_s?;
+        let is_at_limit = |shot: &TableShot| shot.nominal.speed_m_s > (1.0 - 1e-6) * most_m_s;
+        let at_limit = self.found().filter(|(_, shot)| is_at_limit(shot));
+        let angles: Vec<String> = at_limit.map(|(rad, _)| degrees(rad)).collect();
+        (!angles.is_empty()).then(|| {
+            format!(
+                "At {} deg the speed is speed_max; a faster launcher makes more there.",
+                angles.join(", ")
+            )
+        })
+    }
+
+    fn what_is_left_out(&self) -> String {
+        let errors = self.found().map(|(_, shot)| shot.standard_error);
+        let choice = self.profile.search().choice;
+        let best = match choice.includes(NominalVariable::Backspin) {
+            true => "Speed, direction and spin are the best ones at each angle.",
+            false => "Speed and direction are the best ones at each angle.",
+        };
+        format!(
+            "{best} {} Simulation error: {} per 100.",
+            taken_as_exact(!self.over_draws.is_empty()),
+            simulation_error(errors.fold(0.0, f64::max))
+        )
+    }
+
+    fn details(&self) -> String {
+        let (long, metre) = self.profile.output().units.length();
+        let speed_unit = format!("{long}/s");
+        let mut table = TextTable::new(&[
+            ("angle", "deg", Side::Right),
+            ("speed", &speed_unit, Side::Right),
+            ("direction", "deg left", Side::Right),
+            ("spin", "rev/s", Side::Right),
+            ("makes", "per 100", Side::Right),
+            ("simulation", "error", Side::Right),
+        ]);
+        for (pitch_rad, shot) in self.found() {
+            table.add([
+                format!("{:.2}", pitch_rad / DEGREE_RAD),
+                format!("{:.3}", shot.nominal.speed_m_s / metre),
+                format!("{:.2}", shot.aim_rad / DEGREE_RAD + 0.0),
+                format!("{:.2}", shot.nominal.backspin_rad_s / REV_RAD + 0.0),
+                format!("{:.2}", 100.0 * shot.probability),
+                simulation_error(shot.standard_error),
+            ]);
+        }
+        let mut text = table.text();
+        let slowest = self
+            .found()
+            .min_by(|a, b| a.1.nominal.speed_m_s.total_cmp(&b.1.nominal.speed_m_s));
+        if let Some((pitch_rad, shot)) = slowest {
+            text += &format!(
+                "The angle that needs the least speed is {} deg ({:.2} {long}/s).\n",
+                degrees(pitch_rad),
+                shot.nominal.speed_m_s / metre
+            );
+        }
+        text += "Tolerance: how far below or above its value speed or angle can be before an\nexact shot misses. The scatter is taken to be the same at all angles.\n";
+        for (row, over) in self.rows.iter().zip(self.over_draws) {
+            if let Some(over) = over {
+                text += &format!(
+                    "{} deg, below the best angle: {} (95 % interval {} to {})\n",
+                    degrees(row.pitch_rad),
+                    per_100(over.below_best.mean),
+                    per_100(over.below_best.low),
+                    per_100(over.below_best.high)
+                );
+            }
+        }
+        text
+    }
 }

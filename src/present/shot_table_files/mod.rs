@@ -1,4 +1,5 @@
-//! A table of best shots: as text, CSV, JSON, and as source of a program that interpolates in it.
+//! A table of best shots as text, and as source of a program that interpolates in it. Its CSV and
+//! JSON are the rows of `answers/table_rows.rs`.
 
 pub mod by_pitch;
 pub mod notes;

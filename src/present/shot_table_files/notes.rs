@@ -5,6 +5,21 @@ use crate::model::SolidId;
 use crate::shooter::{Location, Nominal, Profile, ReleaseVariable};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
+/// What can change the decision: at most three.
+#[must_use]
+pub(super) fn key_notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<String> {
+    let notes = [
+        steep_note(table, units),
+        no_shot_note(table, profile, units),
+        other_kind_note(table, units),
+        limit_note(table, profile, units),
+        reserve_note(table, profile, units),
+        jump_note(table, units),
+        unlikely_note(table, units),
+    ];
+    notes.into_iter().flatten().take(3).collect()
+}
+
 /// What a reader of the table must know: what interpolation costs, which nodes were added, where
 /// shots are not clean, and where the other kind is better.
 #[must_use]
@@ -24,7 +39,7 @@ pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<Str
         nearly_other_kind_note(table, units),
         unlikely_note(table, units),
         other_kind_note(table, units),
-        Some("P rests on what nobody measured in your gym (the losses at ring and board, friction, drag): `bankshot physics PROFILE` says how much.".to_owned()),
+        Some("These numbers assume a typical ring, board and air; `bankshot physics PROFILE` shows how much that matters.".to_owned()),
     ];
     notes.into_iter().flatten().collect()
 }
@@ -37,7 +52,7 @@ pub(super) fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSyst
     let is_allowed = |c: char| !c.is_control() && c != '\\';
     let name: String = shooter.name.chars().filter(|c| is_allowed(*c)).collect();
     let mut note = format!(
-        "Shooter: {name}, released at {} {long}",
+        "Shooter: {name}, release height {} {long}",
         short(shooter.release_height_m / metre)
     );
     let first = table.shots.iter().position(Option::is_some);
@@ -54,7 +69,7 @@ pub(super) fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSyst
             String::new()
         };
         note += &format!(
-            ", with standard deviations (at {} {long}) of {} {long}/s{percent}, {} deg up, {} deg sideways, {} rev/s",
+            ", scatter (at {} {long}): speed {} {long}/s{percent}, angle {} deg, direction {} deg, backspin {} rev/s",
             short(distance_m / metre),
             short(sd(ReleaseVariable::Speed) / metre),
             short(sd(ReleaseVariable::Pitch) / DEGREE_RAD),
@@ -90,7 +105,7 @@ pub fn physics_note(profile: &Profile, units: UnitSystem) -> String {
 
 /// From where to where P is high, for the levels of [`HIGH`] that some rows of a table with one
 /// angle reach and others do not.
-fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
+pub(super) fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     if table.angles_rad.len() > 1 {
         return None;
     }
@@ -111,10 +126,17 @@ fn range_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
             }
         });
         let ranges: Vec<String> = ranges.collect();
-        is_some.then(|| format!("{level} or more {}", ranges.join(" and ")))
+        is_some.then(|| {
+            format!(
+                "{:.0} of 100 or more go in {}",
+                100.0 * level,
+                ranges.join(" and ")
+            )
+        })
     });
-    let texts: Vec<String> = of_levels.collect();
-    (!texts.is_empty()).then(|| format!("P is {}.", texts.join("; ")))
+    // The highest level that is reached.
+    let mut of_levels = of_levels;
+    of_levels.next().map(|text| text + ".")
 }
 
 /// The greatest speed of a profile in brackets, with a space before it; empty without one.
@@ -144,8 +166,8 @@ fn mean_note(table: &ShotTable) -> Option<String> {
     }
     (places > 1).then(|| {
         format!(
-            "The mean of P over the {places} places that were asked for is {:.3} (0 where there is no shot).",
-            sum / f64::from(places)
+            "Average over the {places} requested places: {:.1} per 100 (a place without a shot counts as 0).",
+            100.0 * sum / f64::from(places)
         )
     })
 }
@@ -155,7 +177,7 @@ fn no_shot_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Opti
     let places = Places::where_row(table, |shot| shot.is_none());
     (!places.is_empty()).then(|| {
         format!(
-            "No clean shot within the limits{}: {}. (One that misses without errors may go in with them: `bankshot pitch-curve PROFILE --distances ..` has its P.)",
+            "No exact shot goes in within the limits{}: {}. (`bankshot angles PROFILE --distances ..` shows releases that go in by chance.)",
             speed_limit_in_words(profile, units),
             places.text(table, units)
         )
@@ -182,20 +204,19 @@ fn crossing_m(table: &ShotTable, row: usize, step: isize, level: f64) -> f64 {
 }
 
 /// Levels of P that are told from where to where they are reached.
-const HIGH: [f64; 3] = [0.9, 0.8, 0.5];
+const HIGH: [f64; 2] = [0.8, 0.5];
 
 /// What interpolation costs, and by how much the interpolated P errs.
 fn check_note(table: &ShotTable, units: UnitSystem) -> String {
     let (Some(costliest), Some(most_wrong)) = (table.costliest(), table.most_wrong()) else {
-        return "Not checked between the table's places.".to_owned();
+        return "Not checked between the rows.".to_owned();
     };
     format!(
-        "Checked at {} places, the quarters between the table's: interpolated shots lose at most \
-         {:.4} in P there (at {}), and their interpolated P errs by at most {:.4} (at {}).",
+        "Checked at {} places between the rows: interpolated shots lose at most {:.2} per 100 (at {}), and the interpolated number is off by at most {:.2} (at {}).",
         table.checks.len(),
-        costliest.loss().max(0.0),
+        100.0 * costliest.loss().max(0.0),
         place_text(table, &costliest.location, units),
-        most_wrong.error().abs(),
+        100.0 * most_wrong.error().abs(),
         place_text(table, &most_wrong.location, units),
     )
 }
@@ -316,7 +337,8 @@ fn added_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
         list(&table.added_angles_rad, DEGREE_RAD, "deg"),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
-    (!parts.is_empty()).then(|| format!("Added for the interpolation: {}.", parts.join(" and ")))
+    (!parts.is_empty())
+        .then(|| format!("Rows added for the interpolation: {}.", parts.join(" and ")))
 }
 
 /// Where the best shot jumps.
@@ -324,20 +346,19 @@ fn jump_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     let (long, metre) = units.length();
     let jumps: Vec<String> = table
         .jumps_m()
-        .map(|jump_m| short(jump_m / metre))
+        .map(|jump_m| format!("{:.2}", jump_m / metre))
         .collect();
     let what = match table.kind {
-        TableKind::One(_) => "the best shot jumps",
-        TableKind::Better => "the better kind changes or the best shot jumps",
+        TableKind::One(_) => "The best shot jumps",
+        TableKind::Better => "The better kind changes, or the best shot jumps,",
     };
     (!jumps.is_empty()).then(|| {
         format!(
-            "At {} {long} {what}: of two rows the first holds below, the second from \
-             there on.{}",
+            "{what} at {} {long}: the first of the two rows applies below it, the second from it on.{}",
             jumps.join(", "),
             match table.kind {
                 // Where P is nearly the same over a range of angles.
-                TableKind::One(_) => " pitch_min and pitch_max of [search] nearer to each other, or --pitch, keep the angle steadier: look at the loss of P with `bankshot pitch-curve`.",
+                TableKind::One(_) => " A narrower range of angles (pitch_min, pitch_max, or --pitch) avoids the jump; `bankshot angles` shows what that costs.",
                 TableKind::Better => "",
             }
         )
@@ -384,7 +405,7 @@ fn steep_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     }
     (!steep.is_empty()).then(|| {
         format!(
-            "Do not interpolate from {}: the pitch changes by so much that a shot between may miss. Without --draft the table finds where the best shot jumps.",
+            "Do not interpolate from {}: the angle changes so much that a shot between may miss. Without --draft the table finds the jump.",
             steep.join(", from ")
         )
     })
@@ -416,7 +437,7 @@ fn kinds_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
         })
         .collect();
     // The borders are only tried as far as interpolation needs them.
-    (!texts.is_empty()).then(|| format!("The better kind, about: {}.", texts.join(", ")))
+    (!texts.is_empty()).then(|| format!("Better kind, about: {}.", texts.join(", ")))
 }
 
 /// Where the pitch angle is a limit of the launcher.
@@ -433,7 +454,7 @@ fn limit_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option
         });
         (!places.is_empty()).then(|| {
             format!(
-                "In {} the pitch is the limit {key} ({} deg): {}.",
+                "In {} the angle is at its limit {key} ({} deg): {}.",
                 places.count_text(),
                 short(limit_rad / DEGREE_RAD),
                 places.text(table, units)
@@ -446,7 +467,7 @@ fn limit_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Option
         let (long, metre) = units.length();
         if !places.is_empty() {
             texts.push(format!(
-                "In {} the speed is the limit speed_max ({} {long}/s): {}. Errors lead beyond it, so for a motor that cannot turn faster P is too high there.",
+                "In {} the speed is at its limit speed_max ({} {long}/s): {}. The scatter reaches beyond the limit, so a motor that cannot turn faster makes fewer there.",
                 places.count_text(),
                 short(limit_m_s / metre),
                 places.text(table, units)
@@ -472,7 +493,7 @@ fn reserve_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Opti
     let places = Places::of(table, |shot| has_no_reserve(profile, &shot.nominal));
     (!places.is_empty()).then(|| {
         format!(
-            "In {} the speed is within one standard deviation of speed_max: {}. There nothing is left to set it higher in the gym.",
+            "In {} the speed is within one standard deviation of speed_max: {}. It cannot be set much higher in the gym.",
             places.count_text(),
             places.text(table, units)
         )
@@ -489,7 +510,7 @@ fn bounce_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     };
     (!bouncing.is_empty()).then(|| {
         format!(
-            "In {} of {} even the best shot without an error {touches} before it goes in: {}.",
+            "In {} of {} even an exact shot {touches} first: {}.",
             bouncing.count(),
             count_text(table.shots.len()),
             bouncing.text(table, units)
@@ -515,15 +536,15 @@ fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String
         is_many
     });
     let touch = match table.kind {
-        TableKind::One(ShotKind::Direct) => "direct shot touch the board first",
-        TableKind::One(ShotKind::Bank) => "bank shot do not touch the board first",
-        TableKind::Better => "shot are of the other kind",
+        TableKind::One(ShotKind::Direct) => "touch the board first",
+        TableKind::One(ShotKind::Bank) => "do not touch the board first",
+        TableKind::Better => "are of the other kind",
     };
     (!places.is_empty()).then(|| {
         format!(
-            "Nearly the other kind: more than a quarter, up to {:.0} %, of the makes of the {touch} at {}. What is set stays right; only the name of the kind is open.",
-            100.0 * most,
-            places.text(table, units)
+            "Bank and direct merge at {}: up to {:.0} % of the makes {touch}. The settings are right; only the label is arbitrary.",
+            places.text(table, units),
+            100.0 * most
         )
     })
 }
@@ -533,8 +554,9 @@ fn unlikely_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     let places = Places::of(table, |shot| shot.probability < UNLIKELY);
     (!places.is_empty()).then(|| {
         format!(
-            "At {} even the best shot goes in by luck, with P below {UNLIKELY}: {}.",
+            "In {} fewer than {:.0} of 100 go in: {}.",
             places.count_text(),
+            100.0 * UNLIKELY,
             places.text(table, units)
         )
     })
@@ -557,14 +579,15 @@ fn other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String> {
     });
     let (gain, place) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let most = format!(
-        "most at {} (P {gain:.3} higher)",
-        place_text(table, &place, units)
+        "most at {} ({:+.1} per 100)",
+        place_text(table, &place, units),
+        100.0 * gain
     );
     if places.count() == table.shots.len() {
-        return Some(format!("A {other} shot is better at every place, {most}."));
+        return Some(format!("The {other} shot is better everywhere, {most}."));
     }
     Some(format!(
-        "A {other} shot is better at {}, {most}: {}.",
+        "The {other} shot is better in {}, {most}: {}.",
         places.count_text(),
         places.text(table, units),
     ))
@@ -578,6 +601,6 @@ const LEAST_GAIN: f64 = 0.005;
 pub(super) fn what_shots(kind: TableKind) -> String {
     match kind {
         TableKind::One(kind) => format!("Best {} shots", kind.name()),
-        TableKind::Better => "Best shots, direct or bank, the kind with the higher P".to_owned(),
+        TableKind::Better => "Best shots, direct or bank, whichever makes more".to_owned(),
     }
 }

@@ -1,14 +1,15 @@
-//! The best shots at several pitch angles from several distances: which one pitch angle suits a
+//! The best shots at several release angles from several distances in text: which one angle suits a
 //! launcher whose angle is fixed.
 
-use super::by_pitch::kind_before_shot;
-use super::notes::{has_no_reserve, physics_note, speed_limit_in_words};
-use super::table_text::{decimal, line, wrapped};
+use super::by_pitch::{degrees, kind_before_shot};
+use super::notes::{has_no_reserve, speed_limit_in_words};
 use crate::best_shot::{ShotAtPitch, TableKind};
+use crate::present::layout::{Side, TextAnswer, TextTable};
+use crate::present::words::{list, of_100, per_100, physics_name, scatter_note, taken_as_exact};
 use crate::shooter::{Profile, ShotKind};
-use crate::units::{DEGREE_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, UnitSystem, rounded};
 
-/// The shots from one distance, one for each pitch angle. All distances have the same angles.
+/// The shots from one distance, one for each release angle. All distances have the same angles.
 #[derive(Clone, Debug)]
 pub struct DistanceShots {
     /// The profile at that distance.
@@ -19,252 +20,291 @@ pub struct DistanceShots {
 
 impl DistanceShots {
     fn distance(&self, units: UnitSystem) -> f64 {
-        let distance = self.profile.location().distance_m / units.length().1;
-        // Without what its conversion cost in the last digits.
-        (distance * 1e9).round() / 1e9
+        rounded(self.profile.location().distance_m / units.length().1)
     }
 
-    /// P at a pitch angle; zero where no shot goes in.
+    /// P at an angle; zero where no shot goes in.
     fn probability(&self, row: usize) -> f64 {
         self.shots[row].probability()
     }
 
-    /// Whether a clean shot goes in at one of the angles.
+    /// Whether an exact shot goes in at one of the angles.
     fn is_in_reach(&self) -> bool {
         self.shots.iter().any(|at| at.shot.is_some())
     }
 
-    /// P at a pitch angle in a table.
+    /// The makes at an angle in a table.
     fn cell(&self, row: usize, kind: TableKind) -> String {
         let at = &self.shots[row];
-        let p = decimal(at.probability(), 3);
+        let makes = per_100(at.probability());
         match (&at.shot, at.not_clean) {
-            (Some(shot), _) if kind == TableKind::Better && shot.kind == ShotKind::Bank => p + "b",
-            (Some(_), _) => p,
-            (None, Some(_)) => p + "*",
-            (None, None) => decimal(f64::NAN, 3),
+            (Some(shot), _) if kind == TableKind::Better && shot.kind == ShotKind::Bank => {
+                makes + "b"
+            }
+            (Some(_), _) => makes,
+            (None, Some(_)) => makes + "*",
+            (None, None) => "-".to_owned(),
         }
     }
 }
 
-/// Angles of the list on both sides of one, deg, where they are more than a degree from it: between
-/// them the mean can have a peak.
-fn neighbours_apart(from: &[&DistanceShots], row: usize) -> Option<(String, String)> {
-    const NEAR_RAD: f64 = 1.01 * DEGREE_RAD;
-    let angles = &from.first()?.shots;
-    let [low, high] = [row.saturating_sub(1), (row + 1).min(angles.len() - 1)];
-    let apart = |other: usize| (angles[other].pitch_rad - angles[row].pitch_rad).abs();
-    (apart(low).max(apart(high)) > NEAR_RAD).then(|| (degrees(from, low), degrees(from, high)))
-}
-
-/// A loss of the mean P that the sentence about the angles counts as none.
+/// A loss of the mean that is worth no word.
 const LEVEL: f64 = 0.01;
 /// Distances side by side in 80 columns.
-const ACROSS: usize = 8;
+const ACROSS: usize = 7;
 
-/// Mean and least P over the distances at a pitch angle.
-fn mean_and_least(from: &[&DistanceShots], row: usize) -> (f64, f64) {
-    let all = from.iter().map(|shots| shots.probability(row));
-    let (sum, least) = all.fold((0.0, 1.0_f64), |(sum, least), p| (sum + p, least.min(p)));
-    (sum / from.len() as f64, least)
+/// The distances that are in reach, and what one angle does over them.
+struct OverDistances<'a> {
+    all: &'a [DistanceShots],
+    in_reach: Vec<&'a DistanceShots>,
+    beyond: Vec<&'a DistanceShots>,
+    kind: TableKind,
+    units: UnitSystem,
 }
 
-/// The pitch angle of a row, in degrees.
-fn degrees(from: &[&DistanceShots], row: usize) -> String {
-    let text = format!("{:.1}", from[0].shots[row].pitch_rad / DEGREE_RAD);
-    text.trim_end_matches(".0").to_owned()
-}
-
-/// What one pitch angle costs against the best of the angles at each distance.
-fn cost_in_words(from: &[&DistanceShots], row: usize, units: UnitSystem) -> String {
-    let costs: Vec<(f64, &DistanceShots)> = from
-        .iter()
-        .map(|&shots| {
-            let all = (0..shots.shots.len()).map(|row| shots.probability(row));
-            (all.fold(0.0, f64::max) - shots.probability(row), shots)
-        })
-        .collect();
-    let mean = costs.iter().map(|(cost, _)| cost).sum::<f64>() / costs.len().max(1) as f64;
-    let most = costs.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-    most.map_or_else(String::new, |(most, shots)| {
-        format!(
-            " Against the best of these angles at each distance {} deg makes {:.1} less on average, and {:.1} less at most, from {} {}.",
-            degrees(from, row),
-            100.0 * mean,
-            100.0 * most,
-            shots.distance(units),
-            units.length().0
-        )
-    })
-}
-
-/// From where the shots at a pitch angle have no reserve of speed, with a space before it; empty
-/// where all have one.
-fn reserve_in_words(from: &[&DistanceShots], row: usize, units: UnitSystem) -> String {
-    let is_short = |shots: &&&DistanceShots| {
-        let shot = shots.shots[row].shot.as_ref();
-        shot.is_some_and(|shot| has_no_reserve(&shots.profile, &shot.nominal))
-    };
-    let places: Vec<String> = from
-        .iter()
-        .filter(is_short)
-        .map(|shots| shots.distance(units).to_string())
-        .collect();
-    if places.is_empty() {
-        return String::new();
-    }
-    format!(
-        " But from {} {} its speed is within one standard deviation of speed_max: there nothing is left to set it higher in the gym.",
-        places.join(", "),
-        units.length().0
-    )
-}
-
-/// P at each pitch angle and distance for people, at most 80 columns wide: the angle with the
-/// greatest mean and that with the greatest least P, then a table.
+/// The best angle over several distances in text. `scatter` are the changes of the scatter, as
+/// they were typed.
 #[must_use]
 pub fn pitch_over_distances_text(
     from: &[DistanceShots],
     kind: TableKind,
     units: UnitSystem,
-) -> String {
-    let [first, ..] = from else {
-        return String::new();
-    };
-    let (long, _) = units.length();
-    let everywhere = from;
-    let (mut from, beyond): (Vec<&DistanceShots>, Vec<&DistanceShots>) =
-        everywhere.iter().partition(|shots| shots.is_in_reach());
-    let out_of_reach: Vec<String> = match from.is_empty() {
-        true => Vec::new(),
-        false => beyond
-            .iter()
-            .map(|shots| format!("{}", shots.distance(units)))
-            .collect(),
-    };
-    if from.is_empty() {
-        from = beyond;
+    scatter: &[String],
+) -> TextAnswer {
+    let (mut in_reach, mut beyond): (Vec<_>, Vec<_>) =
+        from.iter().partition(|shots| shots.is_in_reach());
+    if in_reach.is_empty() {
+        std::mem::swap(&mut in_reach, &mut beyond);
     }
-    let from = &from[..];
-    let rows: Vec<(f64, f64)> = (0..first.shots.len())
-        .map(|row| mean_and_least(from, row))
-        .collect();
-    let degrees = |row: usize| degrees(from, row);
-    let greatest = |value: &dyn Fn(usize) -> f64| {
-        (0..rows.len()).max_by(|&a, &b| value(a).total_cmp(&value(b)))
+    let over = OverDistances {
+        all: from,
+        in_reach,
+        beyond,
+        kind,
+        units,
     };
-    let mut text = String::new();
-    let best = greatest(&|row| rows[row].0).filter(|&row| rows[row].0 > 0.0);
-    let Some(best) = best else {
-        return wrapped("No shot at these pitch angles goes in.");
-    };
-    let is_level = |row: &usize| rows[best].0 - rows[*row].0 <= LEVEL;
-    let low = (0..best).rev().take_while(is_level).last().unwrap_or(best);
-    let high = (best + 1..rows.len()).take_while(is_level).last();
-    let high = high.unwrap_or(best);
-    let mut words = format!(
-        "One pitch angle for {} {}: {} deg makes the most {}shots on average, {:.1} of 100",
-        if out_of_reach.is_empty() {
-            "all"
-        } else {
-            "the"
-        },
-        match from.len() {
-            1 => "1 distance".to_owned(),
-            more => format!("{more} distances"),
-        },
-        degrees(best),
-        kind_before_shot(kind),
-        100.0 * rows[best].0
-    );
-    let wide = neighbours_apart(from, best);
-    let of_list = wide.map_or(String::new(), |(low, high)| {
-        format!(
-            " Angles between those of the list can be better: --pitches '{low} deg to {high} deg by 0.5 deg'."
-        )
-    });
-    words += &match low < high {
-        true => format!(
-            "; at the angles of this list from {} to {} deg it is at most one less.",
-            degrees(low),
-            degrees(high)
-        ),
-        false => ".".to_owned(),
-    };
-    words += &of_list;
-    words += &reserve_in_words(from, best, units);
-    if rows.len() > 1 && from.len() > 1 {
-        words += &cost_in_words(from, best, units);
+    over.text(scatter)
+}
+
+impl OverDistances<'_> {
+    fn rows(&self) -> std::ops::Range<usize> {
+        0..self.all.first().map_or(0, |first| first.shots.len())
     }
-    if let Some(steady) = greatest(&|row| rows[row].1).filter(|&row| rows[row].1 > 0.0) {
-        let worst = from
-            .iter()
-            .min_by(|a, b| a.probability(steady).total_cmp(&b.probability(steady)));
-        let where_least = worst.map_or(0.0, |shots| shots.distance(units));
-        words += &format!(
-            " The lowest P over the distances is highest at {} deg: {:.1} of 100, from {where_least} {long}.",
-            degrees(steady),
-            100.0 * rows[steady].1
-        );
-        if steady != best {
-            words += &cost_in_words(from, steady, units);
-        }
+
+    fn angle(&self, row: usize) -> String {
+        degrees(self.all[0].shots[row].pitch_rad)
     }
-    if !out_of_reach.is_empty() {
-        words += &format!(
-            " Left out of these, and of mean and least: {} {long}, where no clean shot goes in at any of the angles.",
-            out_of_reach.join(", ")
-        );
+
+    /// Mean of P over the distances in reach.
+    fn mean(&self, row: usize) -> f64 {
+        let all = self.in_reach.iter().map(|shots| shots.probability(row));
+        all.sum::<f64>() / self.in_reach.len().max(1) as f64
     }
-    if rows.len() > 1 && (best == 0 || best + 1 == rows.len()) {
-        words += &format!(
-            " {} deg is at the end of the angles that were asked for: look beyond it.",
-            degrees(best)
-        );
+
+    /// The least P over the distances in reach.
+    fn least(&self, row: usize) -> f64 {
+        let all = self.in_reach.iter().map(|shots| shots.probability(row));
+        all.fold(1.0, f64::min)
     }
-    text += &wrapped(&words);
-    text += &wrapped(&physics_note(&first.profile, units));
-    text += &wrapped(&format!(
-        "P of the best {}shot at each pitch angle and distance ({long}); speed, aim and spin are the best ones there (--backspin keeps one). CSV and JSON have the shots.",
-        kind_before_shot(kind)
-    ));
-    let limit = speed_limit_in_words(&first.profile, units);
-    let all = || everywhere.iter().flat_map(|shots| &shots.shots);
-    let signs = [
-        (
-            all().any(|row| row.shot.is_none() && row.not_clean.is_none()),
-            format!(
-                "-: no shot within the limits{limit} goes in; where other angles have one it counts as 0."
+
+    /// The row with the greatest value, if it is positive.
+    fn greatest(&self, value: impl Fn(usize) -> f64) -> Option<usize> {
+        let row = self.rows().max_by(|&a, &b| value(a).total_cmp(&value(b)))?;
+        (value(row) > 0.0).then_some(row)
+    }
+
+    fn text(&self, scatter: &[String]) -> TextAnswer {
+        let Some(best) = self.greatest(|row| self.mean(row)) else {
+            return TextAnswer {
+                answer: vec!["No shot goes in at these angles.".to_owned()],
+                ..TextAnswer::default()
+            };
+        };
+        let profile = &self.all[0].profile;
+        let who = match profile.shooter().name.as_str() {
+            "" => String::new(),
+            name => format!("{name}: "),
+        };
+        let mut notes = self.notes(best);
+        notes.extend(scatter_note(scatter));
+        notes.push(format!(
+            "Speed, direction and spin are the best ones in each cell. {}",
+            taken_as_exact(false)
+        ));
+        TextAnswer {
+            answer: self.answer(best),
+            subject: format!(
+                "{who}the best {}shot at {} distances. Physics: {}.",
+                kind_before_shot(self.kind),
+                self.all.len(),
+                physics_name(profile)
             ),
-        ),
-        (
-            all().any(|row| row.not_clean.is_some() && row.shot.is_none()),
-            "*: no clean shot: the most probable one misses without errors.".to_owned(),
-        ),
-        (kind == TableKind::Better, "b: a bank shot.".to_owned()),
-    ];
-    for (_, words) in signs.iter().filter(|(is_there, _)| *is_there) {
-        text += &wrapped(words);
-    }
-    let mut widths = vec![5];
-    widths.extend([6; ACROSS]);
-    widths.extend([6, 6]);
-    for (number, across) in everywhere.chunks(ACROSS).enumerate() {
-        let is_last = (number + 1) * ACROSS >= everywhere.len();
-        let last = ["mean", "least"].map(str::to_owned);
-        let last = || last.iter().filter(|_| is_last).cloned();
-        let heads = across.iter().map(|shots| decimal(shots.distance(units), 2));
-        let mut head: Vec<String> = vec!["pitch".to_owned()];
-        head.extend(heads.chain(last()));
-        text += &line(head.iter().map(String::as_str), &widths);
-        for (row, (mean, least)) in rows.iter().enumerate() {
-            let mut cells = vec![decimal(first.shots[row].pitch_rad / DEGREE_RAD, 1)];
-            cells.extend(across.iter().map(|shots| shots.cell(row, kind)));
-            if is_last {
-                cells.extend([decimal(*mean, 3), decimal(*least, 3)]);
-            }
-            text += &line(cells.iter().map(String::as_str), &widths);
+            table: self.tables().into_iter().next(),
+            notes,
+            details: self.tables().iter().skip(1).map(TextTable::text).collect(),
+            ..TextAnswer::default()
         }
     }
-    text
+
+    /// The angle with the greatest mean, and the one with the greatest least value.
+    fn answer(&self, best: usize) -> Vec<String> {
+        let is_level = |row: &usize| self.mean(best) - self.mean(*row) <= LEVEL;
+        let low = (0..best).rev().take_while(is_level).last().unwrap_or(best);
+        let high = (best + 1..self.rows().end).take_while(is_level).last();
+        let high = high.unwrap_or(best);
+        let level = match low < high {
+            true => format!(
+                " From {} to {} deg you lose at most 1 per 100.",
+                self.angle(low),
+                self.angle(high)
+            ),
+            false => String::new(),
+        };
+        let mut answer = vec![format!(
+            "Fix the angle at {} deg: {} of 100 go in on average over the distances.{level}",
+            self.angle(best),
+            of_100(self.mean(best))
+        )];
+        answer.extend(self.cost(best));
+        if let Some(steady) = self
+            .greatest(|row| self.least(row))
+            .filter(|row| *row != best)
+        {
+            answer.push(format!(
+                "The hardest distance is easiest at {} deg: {} of 100 there.",
+                self.angle(steady),
+                of_100(self.least(steady))
+            ));
+        }
+        answer
+    }
+
+    /// What one angle costs against the best angle at each distance.
+    fn cost(&self, row: usize) -> Option<String> {
+        if self.rows().len() < 2 || self.in_reach.len() < 2 {
+            return None;
+        }
+        let cost = |shots: &&DistanceShots| {
+            let all = self.rows().map(|row| shots.probability(row));
+            all.fold(0.0, f64::max) - shots.probability(row)
+        };
+        let mean = self.in_reach.iter().map(cost).sum::<f64>() / self.in_reach.len() as f64;
+        let most = self
+            .in_reach
+            .iter()
+            .max_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        Some(format!(
+            "Compared with the best angle at each distance, {} deg costs {} per 100 on average and {} at most, from {} {}.",
+            self.angle(row),
+            per_100(mean),
+            per_100(cost(most)),
+            most.distance(self.units),
+            self.units.length().0
+        ))
+    }
+
+    fn notes(&self, best: usize) -> Vec<String> {
+        let (long, _) = self.units.length();
+        let mut notes = Vec::new();
+        let distances = |shots: &[&DistanceShots]| {
+            let words = shots
+                .iter()
+                .map(|shots| shots.distance(self.units).to_string());
+            list(&words.collect::<Vec<_>>())
+        };
+        if !self.beyond.is_empty() {
+            notes.push(format!(
+                "Left out of mean and least: {} {long}, where no exact shot goes in.",
+                distances(&self.beyond)
+            ));
+        }
+        let has_no_reserve = |shots: &&&DistanceShots| {
+            let shot = shots.shots[best].shot.as_ref();
+            shot.is_some_and(|shot| has_no_reserve(&shots.profile, &shot.nominal))
+        };
+        let short: Vec<&DistanceShots> = self
+            .in_reach
+            .iter()
+            .filter(has_no_reserve)
+            .copied()
+            .collect();
+        if !short.is_empty() {
+            notes.push(format!(
+                "From {} {long} the speed is within one standard deviation of speed_max, so it cannot be set higher in the gym.",
+                distances(&short)
+            ));
+        }
+        if self.rows().len() > 1 && (best == 0 || best + 1 == self.rows().end) {
+            notes.push(format!(
+                "{} deg is at the end of the list; angles beyond it may be better (--pitches).",
+                self.angle(best)
+            ));
+        } else {
+            notes.extend(self.finer(best));
+        }
+        notes.extend(self.signs());
+        notes
+    }
+
+    /// How to look between the angles of the list, where they are more than a degree apart.
+    fn finer(&self, best: usize) -> Option<String> {
+        const NEAR_RAD: f64 = 1.01 * DEGREE_RAD;
+        let angles = &self.all.first()?.shots;
+        let [low, high] = [best.saturating_sub(1), (best + 1).min(angles.len() - 1)];
+        let apart = |row: usize| (angles[row].pitch_rad - angles[best].pitch_rad).abs();
+        (apart(low).max(apart(high)) > NEAR_RAD).then(|| {
+            format!(
+                "An angle between those of the list may be better: `--pitches '{} deg to {} deg by 0.5 deg'`.",
+                self.angle(low),
+                self.angle(high)
+            )
+        })
+    }
+
+    /// The signs of the table.
+    fn signs(&self) -> Vec<String> {
+        let all = || self.all.iter().flat_map(|shots| &shots.shots);
+        let limit = speed_limit_in_words(&self.all[0].profile, self.units);
+        let signs = [
+            (
+                all().any(|row| row.shot.is_none() && row.not_clean.is_none()),
+                format!("-: no shot within the limits{limit} goes in; it counts as 0."),
+            ),
+            (
+                all().any(|row| row.not_clean.is_some() && row.shot.is_none()),
+                "*: the most probable release; an exact shot with it misses.".to_owned(),
+            ),
+            (self.kind == TableKind::Better, "b: a bank shot.".to_owned()),
+        ];
+        let there = signs.into_iter().filter(|(is_there, _)| *is_there);
+        there.map(|(_, words)| words).collect()
+    }
+
+    /// The makes per 100 at each angle and distance, so many distances in each table.
+    fn tables(&self) -> Vec<TextTable> {
+        let (long, _) = self.units.length();
+        let table = |(number, across): (usize, &[DistanceShots])| {
+            let is_last = (number + 1) * ACROSS >= self.all.len();
+            let heads: Vec<String> = across
+                .iter()
+                .map(|shots| format!("{:.2}", shots.distance(self.units)))
+                .collect();
+            let mut columns = vec![("angle", "deg", Side::Right)];
+            columns.extend(heads.iter().map(|head| (head.as_str(), long, Side::Right)));
+            if is_last {
+                columns.extend([("mean", "", Side::Right), ("least", "", Side::Right)]);
+            }
+            let mut table = TextTable::new(&columns);
+            for row in self.rows() {
+                let mut cells = vec![self.angle(row)];
+                cells.extend(across.iter().map(|shots| shots.cell(row, self.kind)));
+                if is_last {
+                    cells.extend([per_100(self.mean(row)), per_100(self.least(row))]);
+                }
+                table.add(cells);
+            }
+            table
+        };
+        self.all.chunks(ACROSS).enumerate().map(table).collect()
+    }
 }

@@ -1,7 +1,7 @@
 //! A table of best shots for programs.
 
 use super::notes::{notes, physics_note, shooter_note};
-use crate::answers::shots::{TableAnswer, TableWords};
+use crate::answers::table_rows::{TableAnswer, TableWords};
 use crate::best_shot::ShotTable;
 use crate::shooter::Profile;
 use crate::units::UnitSystem;

@@ -1,207 +1,236 @@
-//! A table of best shots for people, at most 80 columns wide.
+//! A table of best shots in text.
 
-use super::notes::{notes, physics_note, shooter_note, speed_limit_in_words, what_shots};
-use crate::best_shot::{ShotTable, TableShot};
+use super::by_pitch::{or_dash, tolerance};
+use super::notes::{
+    key_notes, notes, physics_note, range_note, shooter_note, speed_limit_in_words,
+};
+use crate::best_shot::{ShotTable, TableKind, TableShot};
+use crate::dynamics::OutcomeKind;
+use crate::present::layout::{Side, TextAnswer, TextTable, paragraphs};
+use crate::present::words::{of_100, per_100, physics_name};
 use crate::shooter::Profile;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem, rounded};
 
-/// A column of the text: two lines of header, a width, and what it says of a shot.
-struct TextColumn {
-    name: &'static str,
-    unit: String,
-    width: usize,
-    cell: Box<dyn Fn(&TableShot) -> String>,
-}
-
-/// Whether the table has one angle alone. It then has no column of angles, and room for both sides
-/// of the margins.
-fn has_one_angle(table: &ShotTable) -> bool {
-    table.angles_rad.len() == 1
-}
-
-/// The columns that follow the place.
-fn shot_columns(table: &ShotTable, units: UnitSystem) -> Vec<TextColumn> {
-    let (long, metre) = units.length();
-    let speed_unit = format!("{long}/s");
-    let column = |name, unit: &str, width, cell| TextColumn {
-        name,
-        unit: unit.to_owned(),
-        width,
-        cell,
-    };
-    let value = |name, unit: &str, width, decimals, value: fn(&TableShot) -> f64, size| {
-        let cell = move |shot: &TableShot| decimal(value(shot) / size, decimals);
-        column(name, unit, width, Box::new(cell))
-    };
-    let mut shown = vec![
-        value("speed", &speed_unit, 5, 2, |s| s.nominal.speed_m_s, metre),
-        value("pitch", "deg", 5, 1, |s| s.nominal.pitch_rad, DEGREE_RAD),
-        value("aim", "deg", 6, 2, |s| s.aim_rad, DEGREE_RAD),
-        value("spin", "rev/s", 5, 2, |s| s.nominal.backspin_rad_s, REV_RAD),
-        value("time", "s", 4, 2, |s| s.time_s.unwrap_or(f64::NAN), 1.0),
-        value(
-            "entry",
-            "deg",
-            5,
-            1,
-            |s| s.entry_rad.unwrap_or(f64::NAN),
-            DEGREE_RAD,
-        ),
-        value("P", "", 5, 3, |s| s.probability, 1.0),
-    ];
-    let speed_sides = move |shot: &TableShot| shot.tolerances[0].map(|side| side / metre);
-    let pitch_sides = |shot: &TableShot| shot.tolerances[1].map(|side| side / DEGREE_RAD);
-    if has_one_angle(table) {
-        let of_speed = move |shot: &TableShot| both_sides(speed_sides(shot), 2);
-        let of_pitch = move |shot: &TableShot| both_sides(pitch_sides(shot), 1);
-        shown.push(column("margin", &speed_unit, 10, Box::new(of_speed)));
-        shown.push(column("margin", "deg", 8, Box::new(of_pitch)));
-    } else {
-        let smaller_sides = move |shot: &TableShot| {
-            let [speed, pitch] =
-                [speed_sides(shot), pitch_sides(shot)].map(|[below, above]| below.min(above));
-            format!("{speed:.2}, {pitch:.2}")
-        };
-        let unit = format!("{speed_unit}, deg");
-        shown.push(column("margin", &unit, 10, Box::new(smaller_sides)));
-    }
-    let outcome = |shot: &TableShot| shot.outcome.name().to_owned();
-    shown.push(column("goes in", "", 0, Box::new(outcome)));
-    shown
-}
-
-/// A node.
-struct TableNode<'a> {
-    /// In units of the results.
-    distance: f64,
-    /// Court angle, deg.
-    angle: f64,
-    is_added: bool,
-    shot: Option<&'a TableShot>,
-}
-
-/// The nodes, angle by angle.
-fn nodes(table: &ShotTable, units: UnitSystem) -> impl Iterator<Item = TableNode<'_>> {
-    let metre = units.length().1;
-    (0..table.angles_rad.len()).flat_map(move |a| {
-        (0..table.distances_m.len()).map(move |d| TableNode {
-            distance: rounded(table.distances_m[d] / metre),
-            angle: rounded(table.angles_rad[a] / DEGREE_RAD),
-            is_added: table.added_distances_m.contains(&table.distances_m[d])
-                || table.added_angles_rad.contains(&table.angles_rad[a]),
-            shot: table.at(a, d),
-        })
-    })
-}
-
-/// The table for people, at most 80 columns wide.
+/// The table for people.
 #[must_use]
-pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> String {
-    let has_one_angle = has_one_angle(table);
-    let mut text = String::new();
-    for sentence in [
-        shooter_note(table, profile, units),
-        physics_note(profile, units),
-        format!(
-            "{}. from: distance from the hoop's centre. aim: positive to the left. P: \
-             the chance of each. margin: by how much speed and pitch can be off, {}, one \
-             at a time and with all else exact, until the shot first misses (beyond that more may go \
-             in). time, entry: where it \
-             first falls to the height of the hoop, as if there were no ring (-: it meets the ring on its way up, or would fall behind the board).{}",
-            what_shots(table.kind),
-            if has_one_angle {
-                "down and up"
-            } else {
-                "to the side that allows less (CSV and JSON have both)"
-            },
-            if table.added_distances_m.is_empty() && table.added_angles_rad.is_empty() {
-                ""
-            } else {
-                " +: added for the interpolation."
-            }
-        ),
-    ] {
-        text += &wrapped(&sentence);
-    }
-    let columns = shot_columns(table, units);
-    // The columns of the place: name, unit, width.
-    let mut of_place = vec![("from", units.length().0, 6)];
-    if !has_one_angle {
-        of_place.push(("angle", "deg", 5));
-    }
-    let of_place_widths = of_place.iter().map(|(.., width)| *width);
-    let widths: Vec<usize> = of_place_widths
-        .chain(columns.iter().map(|column| column.width))
-        .collect();
-    let names = of_place.iter().map(|(name, ..)| *name);
-    let names = names.chain(columns.iter().map(|column| column.name));
-    text += &line(names, &widths);
-    let unit_names = of_place.iter().map(|(_, unit, _)| *unit);
-    let unit_names = unit_names.chain(columns.iter().map(|column| column.unit.as_str()));
-    text += &line(unit_names, &widths);
-    let limit = speed_limit_in_words(profile, units);
-    for TableNode {
-        distance,
-        angle,
-        is_added,
-        shot,
-    } in nodes(table, units)
-    {
-        let from = format!("{distance:.2}");
-        let from = format!(
-            "{}{}",
-            if is_added { "+" } else { "" },
-            from.trim_end_matches('0').trim_end_matches('.')
-        );
-        let mut cells = vec![from];
-        if !has_one_angle {
-            cells.push(format!("{angle:.1}"));
-        }
-        let Some(shot) = shot else {
-            text += &format!(
-                "{} no clean shot within the limits{limit}\n",
-                line(cells.iter().map(String::as_str), &widths).trim_end_matches('\n')
-            );
-            continue;
+pub fn table_text(table: &ShotTable, profile: &Profile, units: UnitSystem) -> TextAnswer {
+    let text = TableText {
+        table,
+        profile,
+        units,
+    };
+    text.answer()
+}
+
+struct TableText<'a> {
+    table: &'a ShotTable,
+    profile: &'a Profile,
+    units: UnitSystem,
+}
+
+/// A column of shots: name, unit, side and cell.
+type Column<'a> = (
+    &'static str,
+    String,
+    Side,
+    Box<dyn Fn(&TableShot) -> String + 'a>,
+);
+
+impl TableText<'_> {
+    fn answer(&self) -> TextAnswer {
+        let (table, profile, units) = (self.table, self.profile, self.units);
+        let draft = match table.checks.is_empty() && table.shots.len() > 1 {
+            true => " (Draft: not checked between rows.)",
+            false => "",
         };
-        cells.extend(columns.iter().map(|column| (column.cell)(shot)));
-        text += &line(cells.iter().map(String::as_str), &widths);
+        let reach = range_note(table, units).unwrap_or_else(|| self.extremes());
+        let mut details = vec![
+            shooter_note(table, profile, units),
+            physics_note(profile, units),
+            "tolerance: how far below or above its value speed or angle can be before an exact shot misses."
+                .to_owned(),
+            "time, entry: when and at which angle the ball comes down through rim height, ignoring the ring (-: it meets the ring on its way up)."
+                .to_owned(),
+        ];
+        details.extend(notes(table, profile, units));
+        let mut last = Vec::new();
+        if !(table.added_distances_m.is_empty() && table.added_angles_rad.is_empty()) {
+            last.push("+: added row.");
+        }
+        last.push("-o FILE.csv, .java, .hpp or .py has all columns.");
+        let mut notes = key_notes(table, profile, units);
+        notes.push(last.join(" "));
+        TextAnswer {
+            answer: vec![format!("{reach}{draft}")],
+            subject: self.subject(),
+            table: Some(self.rows()),
+            notes,
+            details: paragraphs(&details),
+            ..TextAnswer::default()
+        }
     }
-    let notes = notes(table, profile, units);
-    text + &notes.iter().map(|note| wrapped(note)).collect::<String>()
-}
 
-/// A number with these decimals; a dash if there is none.
-pub(super) fn decimal(value: f64, decimals: usize) -> String {
-    if value.is_nan() {
-        return "-".to_owned();
+    fn shots(&self) -> impl Iterator<Item = &TableShot> {
+        self.table.shots.iter().flatten()
     }
-    let text = format!("{value:.decimals$}");
-    // No negative zero.
-    let is_zero = text.starts_with('-') && !text.contains(|c: char| ('1'..='9').contains(&c));
-    if is_zero { text[1..].to_owned() } else { text }
-}
 
-/// The margins below and above, such as `-0.24+0.31`.
-pub(super) fn both_sides(sides: [f64; 2], decimals: usize) -> String {
-    let [below, above] = sides.map(|side| {
-        let decimals = if side < 9.95 { decimals } else { 0 };
-        format!("{side:.decimals$}")
-    });
-    format!("-{below}+{above}")
-}
-
-/// A line of cells, right-aligned; one of width 0, the last, is left-aligned.
-pub(super) fn line<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> String {
-    let mut line = String::new();
-    for (cell, width) in cells.zip(widths) {
-        line += &format!("{cell:>width$} ");
+    /// The most and the fewest makes.
+    fn extremes(&self) -> String {
+        let makes = || self.shots().map(|shot| shot.probability);
+        let (least, most) = (makes().fold(1.0, f64::min), makes().fold(0.0, f64::max));
+        match self.shots().count() {
+            0 => "No shot goes in.".to_owned(),
+            1 => format!("{} of 100 go in.", of_100(most)),
+            _ => format!("{} to {} of 100 go in.", of_100(least), of_100(most)),
+        }
     }
-    line.truncate(line.trim_end().len());
-    line + "\n"
+
+    /// The one value of all shots, as it is printed.
+    fn same(&self, text: impl Fn(&TableShot) -> String) -> Option<String> {
+        let mut texts = self.shots().map(text);
+        let first = texts.next()?;
+        texts.all(|text| text == first).then_some(first)
+    }
+
+    /// What is the same in each row.
+    fn fixed(&self) -> [Option<String>; 3] {
+        [
+            self.same(pitch_text)
+                .map(|text| format!("angle {text} deg")),
+            self.same(spin_text)
+                .map(|text| format!("spin {text} rev/s")),
+            self.same(aim_text)
+                .map(|text| format!("direction {text} deg")),
+        ]
+    }
+
+    fn subject(&self) -> String {
+        let name = &self.profile.shooter().name;
+        let mut parts: Vec<String> = Vec::new();
+        if let TableKind::One(kind) = self.table.kind {
+            parts.push(format!("{} shots", kind.name()));
+        }
+        // A table of one row has no column that is worth leaving out.
+        if self.shots().count() > 1 {
+            parts.extend(self.fixed().into_iter().flatten());
+        }
+        let parts = match (name.as_str(), &parts[..]) {
+            ("", parts) => parts.join(", "),
+            (name, []) => name.to_owned(),
+            (name, parts) => format!("{name}: {}", parts.join(", ")),
+        };
+        format!("{parts}. Physics: {}.", physics_name(self.profile))
+    }
+
+    /// The columns of shots; those whose value is the same in each row stand in the subject.
+    fn columns(&self) -> Vec<Column<'_>> {
+        let (long, metre) = self.units.length();
+        let speed_unit = format!("{long}/s");
+        let has_one = self.shots().count() <= 1;
+        let [angle, spin, direction] = self.fixed().map(|fixed| fixed.is_none() || has_one);
+        let mut columns: Vec<Column<'_>> = Vec::new();
+        let mut add = |name, unit: &str, side, cell: Box<dyn Fn(&TableShot) -> String>| {
+            columns.push((name, unit.to_owned(), side, cell));
+        };
+        if self.table.kind == TableKind::Better {
+            add(
+                "kind",
+                "",
+                Side::Left,
+                Box::new(|s| s.kind.name().to_owned()),
+            );
+        }
+        let speed = move |s: &TableShot| format!("{:.2}", s.nominal.speed_m_s / metre);
+        add("speed", &speed_unit, Side::Right, Box::new(speed));
+        let of_speed = move |s: &TableShot| tolerance(s.tolerances[0].map(|side| side / metre), 2);
+        add("tolerance", &speed_unit, Side::Right, Box::new(of_speed));
+        if angle {
+            add("angle", "deg", Side::Right, Box::new(pitch_text));
+        }
+        if direction {
+            add("direction", "deg left", Side::Right, Box::new(aim_text));
+        }
+        if spin {
+            add("spin", "rev/s", Side::Right, Box::new(spin_text));
+        }
+        add("time", "s", Side::Right, Box::new(|s| or_dash(s.time_s, 2)));
+        let entry = |s: &TableShot| or_dash(s.entry_rad.map(|rad| rad / DEGREE_RAD), 1);
+        add("entry", "deg", Side::Right, Box::new(entry));
+        add(
+            "makes",
+            "per 100",
+            Side::Right,
+            Box::new(|s| per_100(s.probability)),
+        );
+        add(
+            "error-free",
+            "shot",
+            Side::Left,
+            Box::new(|s| error_free(s.outcome).to_owned()),
+        );
+        columns
+    }
+
+    fn rows(&self) -> TextTable {
+        let (long, metre) = self.units.length();
+        let table = self.table;
+        let has_angles = table.angles_rad.len() > 1;
+        let columns = self.columns();
+        let mut heads = vec![("from", long, Side::Right)];
+        if has_angles {
+            heads.push(("court", "deg", Side::Right));
+        }
+        let of_shots = columns.iter();
+        heads.extend(of_shots.map(|(name, unit, side, _)| (*name, unit.as_str(), *side)));
+        let mut text = TextTable::new(&heads);
+        for (a, angle_rad) in table.angles_rad.iter().enumerate() {
+            for (d, distance_m) in table.distances_m.iter().enumerate() {
+                let is_added = table.added_distances_m.contains(distance_m)
+                    || table.added_angles_rad.contains(angle_rad);
+                let plus = if is_added { "+" } else { "" };
+                let mut cells = vec![format!("{plus}{:.2}", rounded(distance_m / metre))];
+                if has_angles {
+                    cells.push(format!("{:.1}", rounded(angle_rad / DEGREE_RAD)));
+                }
+                match table.at(a, d) {
+                    Some(shot) => cells.extend(columns.iter().map(|(.., cell)| cell(shot))),
+                    None => {
+                        let count = columns.len() - 1;
+                        cells.extend(std::iter::repeat_n("-".to_owned(), count));
+                        let limit = speed_limit_in_words(self.profile, self.units);
+                        cells.push(format!("none{limit}"));
+                    }
+                }
+                text.add(cells);
+            }
+        }
+        text
+    }
 }
 
-/// The lines of a text, each of at most 80 columns.
-pub(super) fn wrapped(text: &str) -> String {
-    textwrap::fill(text, 80) + "\n"
+fn pitch_text(shot: &TableShot) -> String {
+    format!("{:.1}", shot.nominal.pitch_rad / DEGREE_RAD)
+}
+
+fn spin_text(shot: &TableShot) -> String {
+    format!("{:.1}", shot.nominal.backspin_rad_s / REV_RAD + 0.0)
+}
+
+fn aim_text(shot: &TableShot) -> String {
+    let text = format!("{:.2}", shot.aim_rad / DEGREE_RAD);
+    match text.as_str() {
+        "-0.00" => "0.00".to_owned(),
+        _ => text,
+    }
+}
+
+/// How the shot without errors goes in.
+fn error_free(outcome: OutcomeKind) -> &'static str {
+    match outcome {
+        OutcomeKind::Swish => "swish",
+        OutcomeKind::RimIn => "rim, in",
+        OutcomeKind::BankIn => "board, in",
+        OutcomeKind::BankRimIn => "board, rim, in",
+        other => other.name(),
+    }
 }

@@ -34,7 +34,7 @@ pub(crate) fn run(options: &FitOptions) -> Result<u8, Failure> {
     });
     if same_file(&options.shots, &out.join(SHOTS_FILE)) {
         return Err(Failure::usage(format!(
-            "--out {}: the fit would write its own {SHOTS_FILE} over your file; name another folder",
+            "--output {}: the fit would write its own {SHOTS_FILE} over your file; name another folder",
             out.display()
         )));
     }

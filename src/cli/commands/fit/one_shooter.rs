@@ -13,7 +13,9 @@ use crate::answers::json::{self, document};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::run_folder::{self, RunKind};
-use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
+use crate::cli::terminal::{
+    is_quiet, print_answer, print_next, print_prose, print_remark, print_text,
+};
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::present::fit_files::fit_text::fit_text;
@@ -32,7 +34,7 @@ pub(super) fn fit(
     run_folder::refuse_other_results(folder, RunKind::Fit)?;
     if folder.join(TABLE_FILE).exists() {
         return Err(Failure::usage(format!(
-            "{0}: holds the fits of several shooters; name a folder in it: --out {1}",
+            "{0}: has the fits of several shooters; name a folder in it: --output {1}",
             folder.display(),
             folder
                 .join(run_folder::safe_name(&file.name_of(shots)))
@@ -85,7 +87,7 @@ fn refuse_other_shooter(folder: &Path, name: &str) -> Result<(), Failure> {
     // One that cannot be read is replaced now.
     match store::fit::shooter(folder) {
         Ok(other) if other != name => Err(Failure::usage(format!(
-            "{}: holds the fit of {other}; name another folder with --out",
+            "{}: has the fit of {other}; name another folder with --output",
             folder.display()
         ))),
         _ => Ok(()),
@@ -104,7 +106,7 @@ fn answer(
         let answer = FitAnswer::new(fit, &source, found_values(free));
         print_answer(&json::text(&document(&answer, units)))?;
     } else {
-        print_prose(&fit_text(fit, &source, units))?;
+        print_text(&fit_text(fit, &source, units))?;
         for parameter in free {
             print_prose(&parameter.text)?;
         }
@@ -117,15 +119,14 @@ fn answer(
         print_place_scatter(shots, units);
         if fit.places.len() > 1 {
             print_remark(
-                "profile.toml is that of place 1; each other place has its own, profile_place_2.toml and so on",
+                "profile.toml is for place 1; the other places have profile_place_2.toml and so on",
             );
         }
         print_unused(file);
-        print_remark(&format!(
-            "written to {}; next: bankshot advise {}",
-            folder.display(),
-            folder.display()
-        ));
     }
+    print_next(
+        Some(folder),
+        &format!("bankshot advise {}", folder.display()),
+    );
     Ok(())
 }

@@ -40,7 +40,7 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
         ));
     }
     print_remark(&format!(
-        "{of}{} shots are used, {} kept out: check whether they are misses, as P leaves them out",
+        "{of}{} shots are used, {} are left out: if these are misses, the makes per 100 are too high",
         shots.shots.len(),
         shots.rejected.len()
     ));
@@ -60,7 +60,7 @@ pub(super) fn print_sessions(file: &MeasuredFile) {
     }
     if names.len() > 1 {
         print_remark(&format!(
-            "{} sessions are fitted as one; --session NAME fits one alone, `bankshot compare-sessions` compares two",
+            "{} sessions are fitted as one; --session NAME fits one alone, `bankshot compare` compares two",
             names.len()
         ));
     }
@@ -103,13 +103,13 @@ pub(super) fn print_unused(file: &MeasuredFile) {
             .filter(|_| sessions.all(String::is_empty))
         {
             print_remark(&format!(
-                "if {name} tells the sessions apart: --map 'session={name}'; the fit then tests whether they differ"
+                "if column {name} names the sessions, type --map 'session={name}' to test whether they differ"
             ));
         }
         let mut shots = file.shooters.iter().flat_map(|shots| &shots.shots);
         if shots.all(|shot| shot.made.is_none()) {
             print_remark(
-                "no column says what went in, so the chances are not checked; if one does: --map 'made=COLUMN'",
+                "no column shows what went in, so nothing checks the prediction; if one does, type --map 'made=COLUMN'",
             );
         }
     }
@@ -143,7 +143,7 @@ pub(super) fn print_place_scatter(shots: &ShooterShots, units: UnitSystem) {
     }
     if !texts.is_empty() {
         print_remark(&format!(
-            "the places of release scatter (standard deviation): {}; each shot keeps its landing, and P is that from their middle",
+            "the releases are from scattered places (standard deviation): {}; the fit moves each to their middle and keeps its landing",
             texts.join("; ")
         ));
     }

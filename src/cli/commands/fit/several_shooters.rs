@@ -4,22 +4,23 @@ use super::files::{remove, write};
 use super::one_shooter::answer_drag;
 use super::options::FitOptions;
 use super::remarks::print_unused;
-use super::shooters_table::{TABLE_FILE, places_of, write_table};
+use super::shooters_table::{places_of, write_table};
 use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, drag, estimate, is_drag};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
-use crate::cli::terminal::{is_quiet, print_answer, print_prose, print_remark};
+use crate::cli::terminal::{is_quiet, print_next, print_prose, print_remark, print_text};
 use crate::fitting::{FitNote, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
 use crate::present::fit_files::fit_note_text::fit_note_text;
+use crate::present::layout::{Side, TextAnswer, TextTable};
+use crate::present::words::list;
 use crate::probability::Progress;
 use crate::store::fit::FIT_FILE;
 use crate::store::shooters::{ShooterPlace, Shooters, fits_within};
 use crate::units::{DEGREE_RAD, UnitSystem};
-use comfy_table::{Table, presets};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -120,37 +121,61 @@ fn remove_older(out: &Path, folders: &[PathBuf]) -> Result<(), Failure> {
 fn print_table(file: &MeasuredFile, rows: &[ShooterRow]) -> Result<(), Failure> {
     let fitted = || rows.iter().filter_map(|row| row.result.as_ref().ok());
     let names_places = fitted().any(|places| places.len() > 1);
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    let place = names_places.then_some("from");
-    let header = ["shooter"].into_iter().chain(place);
-    table.set_header(header.chain(["shots", "made", "expected", "P of the usual\nshot (95 %)"]));
+    let mut columns = vec![("player", "", Side::Left)];
+    if names_places {
+        columns.push(("from", "", Side::Left));
+    }
+    columns.extend([
+        ("shots", "", Side::Right),
+        ("went in", "", Side::Right),
+        ("predicted", "", Side::Right),
+        ("makes", "per 100", Side::Right),
+        ("95 %", "interval", Side::Left),
+    ]);
+    let mut table = TextTable::new(&columns);
     for place in fitted().flatten() {
-        let from = names_places.then_some(&place.from);
-        let cells = std::iter::once(&place.shooter).chain(from);
-        table.add_row(cells.chain(&place.cells));
+        let mut cells = vec![place.shooter.clone()];
+        cells.extend(names_places.then(|| place.from.clone()));
+        cells.extend(place.cells.iter().cloned());
+        table.add(cells);
     }
     let source = file.source(&file.shooters[0]);
-    print_answer(&format!(
-        "{} shooters: {}, tracker {} ({}), physics {}\n{}\n",
-        file.shooters.len(),
-        source.kind.name(),
-        source.tracker.0,
-        source.tracker.1,
-        source.physics,
-        table.trim_fmt()
-    ))?;
-    let mut shots = file.shooters.iter().flat_map(|shooter| &shooter.shots);
-    if shots.any(|shot| shot.made.is_some()) {
-        print_prose(
-            "made and expected: of these balls, as they were measured. P: of the fitted distribution, so of all balls like them.\n",
-        )?;
+    let fits = fitted().count();
+    let doubted: Vec<String> = rows
+        .iter()
+        .filter(|row| row.is_doubted)
+        .filter_map(|row| Some(row.fit.as_ref()?.name.clone()))
+        .collect();
+    let mut answer = vec![match fits == rows.len() {
+        true => format!("{fits} players fitted."),
+        false => format!(
+            "{fits} of {} players fitted; the messages say why not all.",
+            rows.len()
+        ),
+    }];
+    if !doubted.is_empty() {
+        answer.push(format!(
+            "Do not use these fits yet, as the count and the measured shots disagree: {}.",
+            list(&doubted)
+        ));
     }
-    if rows.iter().any(|row| row.is_doubted) {
-        print_prose(
-            "!: the makes and the measured shots do not belong together (see the warning): do not act on that P yet. `bankshot compare-sessions` says whether it is one session.\n",
-        )?;
-    }
+    let text = TextAnswer {
+        answer,
+        subject: format!(
+            "From {}, tracker {} ({}). Physics: {}.",
+            source.kind.name(),
+            source.tracker.0,
+            source.tracker.1,
+            source.physics
+        ),
+        table: Some(table),
+        notes: vec![
+            "predicted: from the balls as they were measured. makes per 100: for the fitted player."
+                .to_owned(),
+        ],
+        ..TextAnswer::default()
+    };
+    print_text(&text)?;
     Ok(())
 }
 
@@ -160,15 +185,11 @@ fn print_hints(file: &MeasuredFile, rows: &[ShooterRow], out: &Path, options: &F
         return;
     }
     print_unused(file);
-    print_remark(&format!(
-        "written: {}, and a folder for each shooter, whose report.html has the tests and the notes on each fit; next: bankshot advise {}",
-        out.join(TABLE_FILE).display(),
-        out.display()
-    ));
+    print_next(Some(out), &format!("bankshot advise {}", out.display()));
     let mut fits = rows.iter().filter_map(|row| row.fit.as_ref());
     if options.free.is_empty() && fits.any(|fit| fit.makes.labelled > 0) {
         print_remark(
-            "before a `bankshot team` with --sweep: the same command with --free hoop_restitution asks the makes about the ring of this gym, on which bank or direct rests",
+            "Before `bankshot team --sweep`: add --free hoop_restitution to estimate the ring of this gym, on which bank or direct depends.",
         );
     }
 }
@@ -225,7 +246,7 @@ struct ShooterRow {
 fn place_in_short(name: &str, place: &Place, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     format!(
-        "{}{:.2} {long}, {:.0} deg,\n{:.2} {long} up",
+        "{}{:.2} {long}, {:.0} deg,\n{:.2} {long} high",
         if name.is_empty() {
             String::new()
         } else {
@@ -243,7 +264,7 @@ struct PlaceRow {
     shooter: String,
     from: String,
     /// Shots, made, expected, P.
-    cells: [String; 4],
+    cells: [String; 5],
 }
 
 /// Whether the makes and the measured shots of a fit do not belong together.
@@ -283,13 +304,10 @@ fn fit_one(
         let p = fit.probabilities[index].interval();
         let makes = fit.makes.at_place(index);
         let percent = |p: f64| format!("{:.1}", 100.0 * p);
-        // A place takes two lines, so the interval does too.
-        let is_one = fit.places.len() == 1;
         let [made, expected] = if makes.labelled > 0 {
-            let mark = if is_doubted(&fit) { " !" } else { "" };
             [
-                format!("{} of {}{mark}", makes.made, makes.labelled),
-                format!("{:.1} \u{b1} {:.1}", makes.expected, makes.expected_sd),
+                format!("{} of {}", makes.made, makes.labelled),
+                format!("{:.0}", makes.expected),
             ]
         } else {
             [String::new(), String::new()]
@@ -309,14 +327,8 @@ fn fit_one(
                 makes.shots.len().to_string(),
                 made,
                 expected,
-                format!(
-                    "{} %{}{} to {}{}",
-                    percent(p.mean),
-                    if is_one { " (" } else { "\n" },
-                    percent(p.low),
-                    percent(p.high),
-                    if is_one { ")" } else { "" }
-                ),
+                percent(p.mean),
+                format!("{} to {}", percent(p.low), percent(p.high)),
             ],
         });
     }

@@ -20,7 +20,7 @@ pub(super) fn check_names(free: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses to ask shots for what they cannot tell, before anything is written.
+/// Refuses a parameter that these shots cannot determine, before anything is written.
 pub(super) fn check_shots(
     free: &[String],
     shots: &ShooterShots,
@@ -31,7 +31,7 @@ pub(super) fn check_shots(
         if is_drag(name) {
             if shots.tracks.is_empty() {
                 return Err(Failure::usage(
-                    "--free drag_coefficient: only trajectories tell it",
+                    "--free drag_coefficient: needs trajectories",
                 ));
             }
         } else if labelled == 0 || made == 0 || made == labelled {
@@ -104,14 +104,14 @@ pub(super) fn estimate(
                 file.physics.restitution_on(SolidId::Ring)
             ),
             physics_with(file, &format!("hoop_restitution = {best:.2}"))
-                + "`bankshot team` and `bankshot physics` of these fits heed the interval as it is: nothing need be fitted or swept again.\n",
+                + "`bankshot team` and `bankshot physics` use the interval of these fits; nothing has to be fitted or swept again.\n",
         ),
     };
     let [low, high] = curve.interval.map(|end| end / size);
     let ends = [curve.points.first(), curve.points.last()];
     let is_at_end = ends.iter().flatten().any(|(end, _)| *end == curve.best);
     let mut text = format!(
-        "{name}  {best:.2}{unit} (95 %: {low:.2} to {high:.2}) by made and missed of {labelled} shots{}{}; {fitted_with}\n",
+        "{name}  {best:.2}{unit} (95 % interval {low:.2} to {high:.2}), estimated from the results of {labelled} shots{}{}; {fitted_with}\n",
         match shooters.len() {
             1 => String::new(),
             all => format!(" of {all} shooters together"),
@@ -119,16 +119,16 @@ pub(super) fn estimate(
         if curve.is_decided {
             ""
         } else if is_at_end {
-            "; the likeliest value is at an end of the range, so more than this value is wrong: look at distance, release height, air, tracker, and how a make was recorded"
+            "; the most likely value is at an end of the range, so something else is wrong: check distance, release height, air, tracker, and how makes were recorded"
         } else {
-            "; the interval reaches the end of the range that was tried: these shots do not say how far beyond it the value may be"
+            "; the interval reaches the end of the range tried, so the value may lie beyond it"
         }
     );
     let usual = parameter.usual_range();
     let is_usual = (usual.0..=usual.1).contains(&curve.best);
     if curve.is_decided && !is_usual {
         text += &format!(
-            "That is not what sources give ({:.2} to {:.2}{unit}). Makes and misses answer for all that is wrong here: look first at distance, release height, air, tracker, and how a make was recorded.\n",
+            "Published values are {:.2} to {:.2}{unit}. Something else is probably wrong: check distance, release height, air, tracker, and how makes were recorded.\n",
             usual.0 / size,
             usual.1 / size
         );
@@ -136,7 +136,7 @@ pub(super) fn estimate(
     let tells_nothing = low <= usual.0 / size && high >= usual.1 / size;
     if curve.is_decided && tells_nothing {
         text += &format!(
-            "The interval holds all that sources give ({:.2} to {:.2}{unit}): these shots do not tell more than those.\n",
+            "The interval covers all published values ({:.2} to {:.2}{unit}), so these shots add nothing to them.\n",
             usual.0 / size,
             usual.1 / size
         );

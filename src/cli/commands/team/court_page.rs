@@ -29,7 +29,7 @@ pub(super) fn team_page(
     let (of_level, of_profiles) = remarks(players, &best, ring);
     let mut tables = vec![PageTable {
         caption: format!(
-            "Makes in 100 of each one's best shot (not of the usual one), {}",
+            "Makes per 100 with each player's best shot (not the current one), {}",
             ranking(players).in_words()
         ),
         columns: PLAYER_COLUMNS.map(|name| name.replace('\n', " ")).to_vec(),
@@ -37,7 +37,7 @@ pub(super) fn team_page(
     }];
     if best.len() <= MOST_PAGE_ROWS {
         tables.push(PageTable {
-            caption: "Makes in 100 at each place: direct/bank".to_owned(),
+            caption: "Makes per 100 at each place: direct/bank".to_owned(),
             columns: place_header(players, LONGEST_NAME),
             rows: place_rows(players, units),
         });
@@ -52,7 +52,7 @@ pub(super) fn team_page(
         }
         if advice.further_places > 0 {
             remarks.push(format!(
-                "The fit has {} more: `bankshot advise` tells them.",
+                "The fit has {} more (`bankshot advise`).",
                 match advice.further_places {
                     1 => "1 place".to_owned(),
                     places => format!("{places} places"),
@@ -97,7 +97,7 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
     let advised: Vec<&PlayerAdvice> = advised(players).collect();
     let mut columns = vec!["player", "best shots", "bank it from"];
     if !advised.is_empty() {
-        columns.extend(["now", "can make", "change", "train"]);
+        columns.extend(["now", "after", "change", "train"]);
     }
     let rows = ranking(players).order.into_iter().map(|number| {
         let mean = mean_over_places(&players[number]).value;
@@ -128,13 +128,13 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
         }
         row
     });
-    let mut caption = "In 100 shots. Best shots: makes with the best release, the mean of all places. Bank it from: makes of the best bank shot (of the best direct one)".to_owned();
+    let mut caption = "Makes per 100. Best shots: with the best release, mean of all places. Bank it from: the best bank shot (the best direct shot)".to_owned();
     let has_draws = |place: &PlaceProbabilities| place.bank_is_better.is_some();
     if players
         .iter()
         .any(|player| player.places.iter().any(has_draws))
     {
-        caption += ", and in how many of 100 draws of the fit it is the better one";
+        caption += ", and the probability that bank is better";
     }
     let mut banks = players.iter().flat_map(|player| player.bank_places());
     if banks.any(PlaceProbabilities::turns_with_the_hoop) {
@@ -144,7 +144,7 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
     if !advised.is_empty() {
         let from = one_place(&advised).map_or_else(String::new, |from| format!(", {from}"));
         caption += &format!(
-            " Now: makes with the measured release{from} (95 % interval). Can make: makes after the change, with the same scatter (95 % interval; ? where no change is surely better). Change: in brackets the chance that this beginning makes more than the other one. Train: the scatter that costs most."
+            " Now: with the current shot{from} (95 % interval). After: with the suggested shot and the same scatter (95 % interval; ? where no change is clearly better). Change: in brackets the probability that this change is the better one to start with. Train: the scatter that costs most."
         );
     }
     PageTable {
@@ -193,14 +193,14 @@ fn bank_lines(player: &PlayerSweep, units: UnitSystem) -> String {
         const LEANS: f64 = 0.6;
         let leaning = match same[0].share_of_preferred()? {
             share if share >= LEANS => format!(
-                ", rather {} ({})",
+                ", {} more likely ({})",
                 same[0].preference()?.name(),
                 sure_in_words(&same)?
             ),
             _ => String::new(),
         };
         Some(format!(
-            "not sure{leaning}: {}: {}",
+            "not clear{leaning}: {}: {}",
             words_of(&same, &unsure),
             p_of(&same)
         ))

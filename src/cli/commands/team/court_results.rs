@@ -47,11 +47,15 @@ pub(super) fn place_rows(players: &[PlayerSweep], units: UnitSystem) -> Vec<Vec<
 
 /// The names of the columns of [`place_rows`].
 pub(super) fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<String> {
-    // A word a line, so that a name is cut as late as possible.
+    // Two lines at most, so that a name is cut as late as possible.
     let name = |player: &PlayerSweep| {
-        let words = player.name.split_whitespace();
-        let words: Vec<String> = words.map(|word| shortened(word, longest_name)).collect();
-        words.join("\n")
+        let mut words = player.name.split_whitespace();
+        let first = shortened(words.next().unwrap_or_default(), longest_name);
+        let rest: Vec<&str> = words.collect();
+        match rest.is_empty() {
+            true => first,
+            false => format!("{first}\n{}", shortened(&rest.join(" "), longest_name)),
+        }
     };
     let names = players.iter().map(name);
     std::iter::once("from".to_owned()).chain(names).collect()
@@ -97,10 +101,10 @@ pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<V
             },
             format!("{} %", whole_percent(ranking.is_best[number])),
             match unsure {
-                0 => format!("{banks} of {places} places"),
-                unsure => format!("{banks} of {places}, perhaps {unsure} more"),
+                0 => format!("{banks} of {places}"),
+                unsure => format!("{banks} of {places}, {unsure} not clear"),
             },
-            format!("{own} of {} places", best.len()),
+            format!("{own} of {}", best.len()),
         ]
     };
     ranking.order.iter().map(row).collect()
@@ -109,10 +113,10 @@ pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<V
 /// The columns of [`player_rows`].
 pub(super) const PLAYER_COLUMNS: [&str; 5] = [
     "player",
-    "mean of\nall places,\nbest kind",
-    "is best",
-    "banks at",
-    "alone the\nbest at",
+    "average over\nall places",
+    "best of\nall",
+    "places\nto bank",
+    "places where\nbest alone",
 ];
 
 /// What is to be said of places where players are level, and of what is taken as exact.
@@ -124,7 +128,7 @@ pub(super) fn remarks(
     let level = best.iter().filter(|of| of.len() > 1).count();
     let of_level = if level > 0 {
         format!(
-            "At {level} of {} places two or more are level: within 1 in 100, or within what their shots leave open (team.csv names them).\n",
+            "At {level} of {} places two or more players are within 1 per 100, or within their uncertainty (listed in team.csv).\n",
             best.len()
         )
     } else {
@@ -136,11 +140,11 @@ pub(super) fn remarks(
     };
     let has_unsure_places = |player: &PlayerSweep| !player.unsure_places().is_empty();
     let of_profiles = if players.iter().any(has_unsure_places) {
-        "Not sure yet (?): the kind is the better one in fewer than 90 of 100 draws of the fit (team.csv has the share). P itself takes each profile as exact.\n"
+        "?: not clear, as the probability that this kind is better is below 90 % (listed in team.csv). Each profile is taken as exact.\n"
     } else if players.iter().any(has_draws) {
-        "P takes each profile as exact; team.csv has the share of the draws of the fit in which bank is better.\n"
+        "Each profile is taken as exact; team.csv has the probability that bank is better.\n"
     } else {
-        "Each profile is taken as exact; `bankshot fit` says how sure a measured one is.\n"
+        "Each profile is taken as exact; for a measured player see `bankshot advise`.\n"
     };
     (of_level + &of_hoops(players, ring), of_profiles)
 }
@@ -153,15 +157,15 @@ fn of_hoops(players: &[PlayerSweep], (low, high): (f64, f64)) -> String {
     let told = (low, high) != UnseenParameter::HoopRestitution.usual_range();
     let mut text = match told {
         true => format!(
-            "By the makes the restitution of the ring is {low:.2} to {high:.2}: P is that of the ring of the profiles, and where to bank was tried on these rings.\n"
+            "The makes support a ring restitution of {low:.2} to {high:.2}. The numbers use the ring of the profiles; bank or direct was checked on these rings too.\n"
         ),
         false if turns => format!(
-            "Nobody measured the ring of this gym; sources give restitutions from {low:.2} (a dead ring) to {high:.2} (a lively one). `bankshot fit SHOTS --free hoop_restitution` asks the makes about it; after that this command heeds what they say.\n"
+            "The ring of this gym was not measured. Published values of its restitution run from {low:.2} (dead) to {high:.2} (lively). `bankshot fit SHOTS --free hoop_restitution` estimates it from makes and misses; `team` then uses that estimate.\n"
         ),
         false => String::new(),
     };
     if turns {
-        text += "Boards were tried 0.05 to each side of the restitution of the profiles. On some of these rings and boards direct is better, at the places that say so.\n";
+        text += "Boards were checked with a restitution 0.05 lower and higher. On some rings and boards direct is better, at the places marked.\n";
     }
     text
 }
@@ -172,7 +176,8 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let aim = |same: &[&PlaceProbabilities]| {
         let aim = board_aim_of_sides(same, units);
         let aim = aim.map(|aim| format!("aim at the board, {aim}"));
-        let sure = sure_in_words(same).map(|sure| format!("bank is better with {sure} certainty"));
+        let sure =
+            sure_in_words(same).map(|sure| format!("probability that bank is better: {sure}"));
         let words = [sure, aim, hoop_in_words(same), sides_in_words(same)];
         let words: Vec<String> = words.into_iter().flatten().collect();
         (!words.is_empty()).then(|| words.join("; "))
@@ -182,12 +187,12 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
             let share = whole_percent(place.share_of_preferred()?);
             let more = match place.shots_to_be_sure() {
                 Some(more) if more < MOST_SHOTS => {
-                    format!(", about {} more shots would tell", two_digits(more))
+                    format!("; about {} more shots would settle it", two_digits(more))
                 }
                 _ => String::new(),
             };
             Some(format!(
-                "{} is better with {share} % certainty{more}",
+                "{} is probably better ({share} %){more}",
                 place.preference()?.name()
             ))
         });
@@ -199,12 +204,12 @@ fn bank_text(player: &PlayerSweep, units: UnitSystem) -> String {
     let surely = place_list(&player.bank_places(), ("  ", &aim), units);
     let perhaps = place_list(&player.unsure_places(), ("    ", &share), units);
     let mut text = match (surely.is_empty(), perhaps.is_empty()) {
-        (true, true) => format!("{name}: no place where a bank shot is better by 1 in 100.\n"),
-        (true, false) => format!("{name}: no place yet where a bank shot is surely better.\n"),
+        (true, true) => format!("{name}: no place where the bank shot is better by 1 per 100.\n"),
+        (true, false) => format!("{name}: no place where the bank shot is clearly better.\n"),
         (false, _) => format!("{name}: bank it from\n{surely}"),
     };
     if !perhaps.is_empty() {
-        text += &format!("  not sure yet which is better:\n{perhaps}");
+        text += &format!("  not clear yet which is better:\n{perhaps}");
     }
     text
 }
@@ -215,7 +220,7 @@ pub(super) fn sure_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
     let shares = same.iter().filter_map(|place| place.share_of_preferred());
     let least = shares.reduce(f64::min)?;
     Some(match whole_percent(least) {
-        100 => "over 99 %".to_owned(),
+        100 => "above 99 %".to_owned(),
         percent => format!("{percent} %"),
     })
 }
@@ -225,7 +230,7 @@ fn sides_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
     let agree = same.iter().filter_map(|place| place.sides_differ);
     let agree = agree.reduce(f64::min)?;
     Some(format!(
-        "left and right differ with {} % certainty",
+        "left and right differ (probability {} %)",
         whole_percent(agree).min(99)
     ))
 }
@@ -295,7 +300,7 @@ fn hoop_in_words(same: &[&PlaceProbabilities]) -> Option<String> {
         _ => "",
     };
     Some(format!(
-        "on a {} of restitution {:.2} direct is better by {}{side}",
+        "on a {} with restitution {:.2} direct is better by {}{side}",
         match least.solid {
             SolidId::Board => "board",
             _ => "ring",
@@ -322,7 +327,7 @@ pub(super) fn least_to_most(
     }
 }
 
-/// The same of all players, the surest first.
+/// Where to bank for each player, the clearest first.
 pub(super) fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<String> {
     let order = ranking(players).order.into_iter();
     order
@@ -333,23 +338,26 @@ pub(super) fn bank_texts(players: &[PlayerSweep], units: UnitSystem) -> Vec<Stri
 /// The answer for people.
 pub(super) fn team_text(players: &[PlayerSweep], ring: (f64, f64), units: UnitSystem) -> String {
     let best = best_players(players);
-    let mut table = table_of(PLAYER_COLUMNS.map(str::to_owned).to_vec());
+    let mut table = table_of(&PLAYER_COLUMNS.map(str::to_owned));
     for row in player_rows(players, &best) {
-        table.add_row(row);
+        table.add(row);
     }
     let (of_level, of_profiles) = remarks(players, &best, ring);
     let mut text = format!(
-        "makes in 100 of each one's best shot (not of the usual one), {}\n{}\n{of_level}",
+        "Makes per 100 with each player's best shot (not the current one), {}\n{}\n{of_level}",
         ranking(players).in_words(),
-        table.trim_fmt()
+        table.text().trim_end()
     );
     if players.len() <= MOST_COLUMNS && best.len() <= MOST_ROWS {
-        let mut table = table_of(place_header(players, LONGEST_IN_HEADER));
+        let mut table = table_of(&place_header(players, LONGEST_IN_HEADER));
         for mut row in place_rows(players, units) {
             row[0] = textwrap::fill(&row[0], 20);
-            table.add_row(row);
+            table.add(row);
         }
-        text += &format!("\nat each place: direct/bank\n{}\n", table.trim_fmt());
+        text += &format!(
+            "\nMakes per 100 at each place: direct/bank\n{}\n",
+            table.text().trim_end()
+        );
     }
     text += of_profiles;
     text + &bank_texts(players, units).concat()
@@ -374,9 +382,7 @@ fn measured_places(players: &[PlayerSweep]) -> String {
         true => format!("from one place, {}", first.from),
         false => "from the places of their fits".to_owned(),
     };
-    format!(
-        "Measured players shot {from}. At every other place P is computed with the scatter from there, which nobody measured.\n"
-    )
+    format!("Measured players shot {from}. Every other place assumes the same scatter.\n")
 }
 
 fn sides(players: &[PlayerSweep]) -> String {
@@ -387,9 +393,10 @@ fn sides(players: &[PlayerSweep]) -> String {
         return String::new();
     }
     let mut text =
-        "Left and right differ for players whose aim is correlated with speed or angle.".to_owned();
+        "Left and right differ for players whose direction is correlated with speed or angle."
+            .to_owned();
     if differing.iter().any(measured) {
-        text += " After a fit of few shots that can be chance: its profile.toml has the intervals.";
+        text += " With few shots that can be chance; profile.toml has the intervals.";
     }
     text + "\n"
 }

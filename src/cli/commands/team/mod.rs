@@ -19,12 +19,9 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Without --sweep each player shoots from the location of their profile, or all from --distance and --angle, and one table is printed.
+Without --sweep the players are compared at the places of their profiles, or all at --distance and --angle.
 
-With --sweep each player shoots from every place of the sweep; it needs no shooter of its own, and one that it has is left out. \
-A region \"places\" takes a list of places with names, from a CSV file. OUT/team.html is a page to look at, OUT/posters.html has a sheet to print for each player, OUT/team.csv has \
-every place and player, OUT/team.svg their maps side by side and who is best from where. Each player gets a folder in OUT with the sweep, its map and the poster. Stop it whenever you like; \
-the same command continues.
+With --sweep they are compared at every place of the sweep (its own shooter is ignored). The folder then has team.html to look at, posters.html with a sheet to print for each player, team.csv, team.svg, and a folder for each player. You can stop at any time; the same command continues.
 
 Examples:
   bankshot team ann.toml bo.toml cy.toml
@@ -34,7 +31,7 @@ Examples:
   bankshot team ann.toml bo.toml cy.toml \\
     --sweep configs/half_court_3ft.toml --plan
   bankshot team ann.toml bo.toml cy.toml \\
-    --sweep configs/half_court_3ft.toml --out team")]
+    --sweep configs/half_court_3ft.toml --output team")]
 pub(crate) struct TeamOptions {
     /// The players' profiles, the folders of their fits, or the folder of a fit of several
     /// shooters.
@@ -44,7 +41,13 @@ pub(crate) struct TeamOptions {
     #[arg(long, value_name = "SWEEP.toml")]
     pub(crate) sweep: Option<PathBuf>,
     /// Folder of the results of --sweep.
-    #[arg(long, value_name = "DIR", default_value = "results/team")]
+    #[arg(
+        long = "output",
+        short = 'o',
+        alias = "out",
+        value_name = "DIR",
+        default_value = "results/team"
+    )]
     pub(crate) out: PathBuf,
     /// Of fits with several places: the number of the place that each player shoots from, 1 for the
     /// first.
@@ -52,7 +55,7 @@ pub(crate) struct TeamOptions {
     pub(crate) place: Option<u32>,
     #[command(flatten)]
     pub(crate) from: PlaceOptions,
-    /// With --sweep: say how long it takes, and stop.
+    /// With --sweep: print how long it takes, and stop.
     #[arg(long, requires = "sweep")]
     pub(crate) plan: bool,
 }

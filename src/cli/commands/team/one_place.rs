@@ -2,19 +2,20 @@
 
 use super::ranking::{Ranking, Standing};
 use super::team_profiles::{load_players, warn_of};
-use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
+use super::words::{LONGEST_NAME, whole_percent};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
 use crate::best_shot::{ShotKind, find_kinds};
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::profile_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_hint, print_prose};
+use crate::cli::terminal::{print_hint, print_text};
 use crate::fitting::Interval;
 use crate::plots::svg::shortened;
+use crate::present::layout::{Side, TextAnswer, TextTable};
+use crate::present::words::{likely, list, per_100};
 use crate::shooter::Profile;
 use crate::sweep::probability_by_place::{Preference, SURE};
-use crate::units::DEGREE_RAD;
 use std::path::{Path, PathBuf};
 
 /// The share of the draws from which on a kind that is not sure is still named.
@@ -40,14 +41,17 @@ impl Verdict {
         Self::Unsure,
     ];
 
-    fn in_words(self) -> &'static str {
+    /// What these players should do; `who` are their names, or all of several.
+    fn in_words(self, who: &str) -> String {
         match self {
-            Self::Prefer(Preference::Bank) => "Bank it",
-            Self::Prefer(Preference::Direct) => "Shoot it direct",
-            Self::Prefer(Preference::Either) => "Either is as good",
-            Self::Lean(Preference::Bank) => "Rather bank it, but that is not sure",
-            Self::Lean(_) => "Rather shoot it direct, but that is not sure",
-            Self::Unsure => "Not sure yet, the measured shots leave both open",
+            Self::Prefer(Preference::Bank) => format!("{who} should bank it."),
+            Self::Prefer(Preference::Direct) => format!("{who} should shoot direct."),
+            Self::Prefer(Preference::Either) => format!("{who} can shoot either."),
+            Self::Lean(Preference::Bank) => {
+                format!("{who}: bank is more likely better, not clear yet.")
+            }
+            Self::Lean(_) => format!("{who}: direct is more likely better, not clear yet."),
+            Self::Unsure => format!("{who}: not clear yet, the shots support neither kind."),
         }
     }
 }
@@ -64,22 +68,19 @@ struct KindChance {
 }
 
 impl KindChance {
-    fn in_words(&self) -> String {
-        let mark = if self.is_nearly_other { " *" } else { "" };
+    fn cell(&self) -> String {
+        let mark = if self.is_nearly_other { "*" } else { "" };
         match (self.p, self.over_draws) {
-            (_, Some(p)) => format!(
-                "{:.0} ({:.0} to {:.0}){mark}",
-                100.0 * p.mean,
-                100.0 * p.low,
-                100.0 * p.high
-            ),
-            (Some(p), None) => format!(
-                "{} \u{b1} {}{mark}",
-                in_hundred(p.value),
-                in_hundred(p.standard_error)
-            ),
+            (_, Some(p)) => format!("{}{mark}", per_100(p.mean)),
+            (Some(p), None) => format!("{}{mark}", per_100(p.value)),
             (None, None) => "-".to_owned(),
         }
+    }
+
+    fn interval(&self) -> String {
+        self.over_draws.map_or("-".to_owned(), |p| {
+            format!("{:.0} to {:.0}", 100.0 * p.low, 100.0 * p.high)
+        })
     }
 
     fn standing(&self) -> Option<Standing> {
@@ -175,30 +176,33 @@ impl PlayerShots {
         })
     }
 
-    fn row(&self) -> Vec<String> {
-        let advice = self.preference.map_or("no clean shot", Preference::name);
-        let share = self.share_of_draws;
-        let share = share.map_or_else(String::new, |of| format!(" ({} %)", whole_percent(of)));
-        vec![
-            self.name.clone(),
-            self.place.clone(),
-            self.kinds[0].in_words(),
-            self.kinds[1].in_words(),
-            format!("{advice}{share}"),
-        ]
+    fn row(&self, has_fits: bool) -> Vec<String> {
+        let advice = match (self.verdict(), self.preference) {
+            (Some(Verdict::Lean(_) | Verdict::Unsure), Some(preference)) => {
+                format!("not clear, {}", preference.name())
+            }
+            (_, Some(preference)) => preference.name().to_owned(),
+            (_, None) => "no shot".to_owned(),
+        };
+        let share = self
+            .share_of_draws
+            .map(|share| format!(" {} %", whole_percent(share)));
+        let mut row = vec![self.name.clone(), self.place.clone()];
+        for kind in &self.kinds {
+            row.push(kind.cell());
+            if has_fits {
+                row.push(kind.interval());
+            }
+        }
+        row.push(advice + &share.unwrap_or_default());
+        row
     }
 }
 
-/// A place in two lines.
+/// A place in a cell.
 fn place_in_words(profile: &Profile) -> String {
-    let (long, metre) = profile.output().units.length();
-    let location = profile.location();
-    let side = match location.angle_rad / DEGREE_RAD {
-        angle if angle >= 0.5 => format!("{angle:.0} deg right"),
-        angle if angle <= -0.5 => format!("{:.0} deg left", -angle),
-        _ => "in front".to_owned(),
-    };
-    format!("{:.2} {long},\n{side}", location.distance_m / metre)
+    let words = profile.location().in_words(profile.output().units);
+    words.replace(" from the hoop", "")
 }
 
 /// Prints a table of the players, each from a place of their own or all `from` one.
@@ -216,7 +220,7 @@ pub(super) fn run(
     };
     if place.is_none() && profiles.iter().any(has_further_places) {
         print_hint(
-            "of fits with several places: each player shoots from the first one; --place 2 takes the second, and --sweep COURT.toml any (a region \"places\" takes a list of them)",
+            "Fits with several places: the first place is used; --place 2 uses the second, --sweep COURT.toml any place.",
         );
     }
     let bars = ProgressBars::new();
@@ -224,72 +228,92 @@ pub(super) fn run(
         PlayerShots::find(&path, &from.moved(profile)?, &bars)
     };
     let players: Vec<PlayerShots> = profiles.into_iter().map(find).collect::<Result<_, _>>()?;
-    let mut text = String::new();
-    for verdict in Verdict::ALL {
-        let told = players
-            .iter()
-            .filter(|player| player.verdict() == Some(verdict));
-        let names: Vec<&str> = told.map(|player| player.name.as_str()).collect();
-        if !names.is_empty() {
-            text += &format!("{}: {}.\n", verdict.in_words(), names.join(", "));
-        }
-    }
-    print_prose(&(text + &table_in_words(&players) + &notes(&players)))
+    print_text(&team_text(&players))?;
+    print_hint("Whole court, maps and posters: add --sweep configs/half_court_3ft.toml");
+    Ok(code::DONE)
 }
 
-/// The players in the order of their best shots.
-fn table_in_words(players: &[PlayerShots]) -> String {
+/// What each player should do, then a table of their best shots.
+fn team_text(players: &[PlayerShots]) -> TextAnswer {
     let standings: Vec<Standing> = players.iter().map(PlayerShots::standing).collect();
     let ranking = Ranking::of(&standings);
-    let names_best = players.len() > 1;
-    let header = ["player", "place", "direct", "bank", "shoot it"];
-    let best_column = names_best.then_some("is best");
-    let header = header.into_iter().chain(best_column).map(str::to_owned);
-    let mut table = table_of(header.collect());
-    for &number in &ranking.order {
-        let mut row = players[number].row();
-        if names_best {
-            row.push(format!("{} %", whole_percent(ranking.is_best[number])));
+    let in_order = || {
+        ranking
+            .order
+            .iter()
+            .map(|&number| (number, &players[number]))
+    };
+    let mut answer = Vec::new();
+    for verdict in Verdict::ALL {
+        let names = in_order().filter(|(_, player)| player.verdict() == Some(verdict));
+        let names: Vec<String> = names.map(|(_, player)| player.name.clone()).collect();
+        match names.len() {
+            0 => {}
+            n if n == players.len() && n > 1 => answer.push(verdict.in_words("All players")),
+            _ => answer.push(verdict.in_words(&list(&names))),
         }
-        table.add_row(row);
     }
-    format!(
-        "\nmakes in 100 of each one's best shot (not of the usual one), {}\n{}\n",
-        ranking.in_words(),
-        table.trim_fmt()
-    )
+    let has_fits = players.iter().any(|player| player.has_fit);
+    let mut columns = vec![("player", "", Side::Left), ("place", "", Side::Left)];
+    for kind in ["direct", "bank"] {
+        columns.push((kind, "", Side::Right));
+        if has_fits {
+            columns.push(("95 %", "", Side::Left));
+        }
+    }
+    columns.push(("shoot it", "", Side::Left));
+    let is_ranked = has_fits && players.len() > 1;
+    if is_ranked {
+        columns.push(("best of all", "", Side::Right));
+    }
+    let mut table = TextTable::new(&columns);
+    for (number, player) in in_order() {
+        let mut row = player.row(has_fits);
+        if is_ranked {
+            row.push(likely(ranking.is_best[number]));
+        }
+        table.add(row);
+    }
+    TextAnswer {
+        answer,
+        subject: format!(
+            "Makes per 100 with each player's best shot, {}.",
+            ranking.in_words()
+        ),
+        table: Some(table),
+        notes: notes(players),
+        ..TextAnswer::default()
+    }
 }
 
-/// What the marks of the table mean, those that are in it.
-fn notes(players: &[PlayerShots]) -> String {
+/// What the table means, as far as it needs words.
+fn notes(players: &[PlayerShots]) -> Vec<String> {
     let any = |is: &dyn Fn(&PlayerShots) -> bool| players.iter().any(is);
-    [
+    let has_fits = any(&|player| player.has_fit);
+    let notes = [
+        (
+            true,
+            "These are the best shots, not the ones the players take now (`bankshot advise`).",
+        ),
         (
             any(&|player| player.preference == Some(Preference::Either)),
-            "either: the two differ by less than 1 in 100, or by less than twice the error of their difference\n",
+            "either: the two differ by less than 1 per 100.",
         ),
         (
             any(&|player| player.kinds.iter().any(|kind| kind.is_nearly_other)),
-            "*: nearly the other kind: more than half of the makes of this bank shot do not touch the board first, or of this direct one do\n",
-        ),
-        (
-            any(&|player| !player.has_fit),
-            "\u{b1}: numerical; the profile is taken as exact\n",
-        ),
-        (
-            any(&|player| player.has_fit),
-            "(low to high): 95 % interval of the player's measured shots\n",
-        ),
-        (
-            players.len() > 1,
-            "is best: the probability that nobody's best shot makes more\n",
+            "*: more than half of these makes are of the other kind.",
         ),
         (
             any(&|player| player.share_of_draws.is_some()),
-            "in brackets: in how many of 100 draws of the fit this kind is the better one; from 90 on it is sure\n",
+            "shoot it: with the probability that this kind is better; below 90 % it is not clear.",
         ),
-    ]
-    .into_iter()
-    .filter_map(|(is_there, note)| is_there.then_some(note))
-    .collect()
+        (
+            has_fits && players.len() > 1,
+            "best of all: the probability that no other player's best shot makes more.",
+        ),
+        (!has_fits, "Each profile is taken as exact."),
+        (has_fits, "The ring is taken as exact."),
+    ];
+    let there = notes.into_iter().filter(|(is_there, _)| *is_there);
+    there.map(|(_, note)| note.to_owned()).collect()
 }

@@ -62,7 +62,7 @@ fn planned_players(players: &[PathBuf], sweep: &Path) -> Result<Vec<PlannedPlaye
         };
         Ok(PlannedPlayer {
             warnings: warnings
-                .map(|words| format!("{name}: the fit warned: {words}.\n"))
+                .map(|words| format!("{name}: {words}.\n"))
                 .collect(),
             config: parse_sweep(&texts, &sweep.display().to_string())?,
             fit: fit_folder::of_profile(&path)?,
@@ -79,7 +79,7 @@ pub(super) fn plan(players: &[PathBuf], sweep: &Path) -> Result<u8, Failure> {
     let planned = planned_players(players, sweep)?;
     print_answer(&match forecast_in_words(&planned) {
         Some(words) => format!("{words}\n"),
-        None => "nothing can be made from any place\n".to_owned(),
+        None => "No shot goes in from any place.\n".to_owned(),
     })
 }
 
@@ -173,12 +173,12 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path) -> Result<u8, Fai
     print_prose(&team_text(players, ring, units))?;
     print_prose(&notes(players))?;
     print_hint(&format!(
-        "written: {} (to look at, or to print: the table and the maps); beside it posters.html (a sheet to print for each player), team.csv and team.svg; in each player's folder bank_and_direct.svg and poster.html",
+        "Saved: {}, and beside it posters.html (a sheet for each player), team.csv and team.svg; each player's folder has bank_and_direct.svg and poster.html",
         page_file.display()
     ));
     if let [first, second, ..] = &folders[..] {
         print_hint(&format!(
-            "next, where one beats the other: bankshot compare {} --against {}",
+            "Next:  bankshot map {} --against {}",
             first.display(),
             second.display()
         ));
@@ -257,7 +257,7 @@ fn warn_of_other_players(out: &Path, folders: &[PathBuf], players: &[PlayerSweep
         return;
     }
     print_remark(&format!(
-        "{} also holds sweeps of other players ({}): its page, table and posters are now those of {} alone; name all to have all",
+        "{} also has sweeps of other players ({}): its page, table and posters now show {} only; name all players to show all",
         out.display(),
         others.join(", "),
         match players {

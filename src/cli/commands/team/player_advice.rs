@@ -3,7 +3,7 @@
 use crate::cli::failure::Failure;
 use crate::fitting::advise;
 use crate::present::fit_files::advice_for_team::{ShortAdvice, advice_for_poster, short_advice};
-use crate::present::fit_files::advice_text::player_advice_text;
+use crate::present::fit_files::advice_text as present;
 use crate::probability::Progress;
 use crate::shooter::OutputSettings;
 use crate::store::fit::Fit;
@@ -32,16 +32,23 @@ impl PlayerAdvice {
     ) -> Result<Self, Failure> {
         let (profile, units) = (&fit.profiles[0], output.units);
         let advice = advise(profile, &fit.posterior, 0, progress)?;
-        let (name, location) = (&profile.shooter().name, profile.location());
+        let location = profile.location();
         let (observed, angle) = (Some(fit.observed[0]), location.angle_rad);
+        let player = present::PlayerAdvice {
+            profile,
+            advice: &advice,
+            observed,
+            units,
+        };
         let from = location.in_words(units);
         let further_places = fit.profiles.len() - 1;
         let mut poster = advice_for_poster(&advice, observed, (&from, angle), units);
         if further_places == 0 && !poster.is_empty() {
-            poster += " (You were measured there alone: the map takes your scatter from there.)";
+            poster +=
+                " (You were measured only there; the map assumes the same scatter everywhere.)";
         }
         Ok(Self {
-            text: player_advice_text(name, &advice, observed, angle, units),
+            text: player.for_player(),
             poster,
             short: short_advice(&advice, observed, angle, units),
             from,

@@ -47,9 +47,9 @@ impl Ranking {
     /// How a table of the players is ordered.
     pub(super) fn in_words(&self) -> &'static str {
         if self.is_clear {
-            "the best player first"
+            "highest first"
         } else {
-            "as the players were named: who is best is not clear"
+            "in the given order, as the order is not clear"
         }
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn team_csv(players: &[PlayerSweep], units: UnitSystem) -> String {
             "bank",
             "bank error",
             "shoot",
-            "sure %",
+            "probability %",
             &format!("bank aim right of the board's middle {short}"),
             &format!("bank aim above the ring {short}"),
             "least bank gain over rings and boards",

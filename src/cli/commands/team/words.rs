@@ -1,6 +1,6 @@
 //! Words and tables that all answers of `team` share.
 
-use comfy_table::{Table, presets};
+use crate::present::layout::{Side, TextTable};
 
 /// Longest name of a player in the tables, in characters.
 pub(super) const LONGEST_NAME: usize = 24;
@@ -14,9 +14,12 @@ pub(super) fn whole_percent(share: f64) -> u32 {
     (100.0 * share + 1e-9) as u32
 }
 
-pub(super) fn table_of(header: Vec<String>) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(header);
-    table
+/// A table whose first column is text. A name can have two lines.
+pub(super) fn table_of(header: &[String]) -> TextTable {
+    let columns = header.iter().enumerate().map(|(i, name)| {
+        let (first, second) = name.split_once('\n').unwrap_or((name, ""));
+        let side = if i == 0 { Side::Left } else { Side::Right };
+        (first, second, side)
+    });
+    TextTable::new(&columns.collect::<Vec<_>>())
 }

@@ -1,4 +1,4 @@
-//! `bankshot compare`: maps of bank and direct shots, over the court or at one location; or of two
+//! `bankshot map`: maps of bank and direct shots, over the court or at one location; or of two
 //! shooters.
 
 use super::sweep_summary;
@@ -30,29 +30,28 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-For a sweep: P of the best direct and bank shots over the court and their difference; maps of the best P, kind, \
-pitch angle and spin; and, if they were computed, the gain from spin and the costliest error.
-For a profile: outcomes and P over speed and pitch angle about the best direct and bank shots, and their \
-difference.
+For a sweep: the best direct and bank shots over the court and their difference; the better kind, angle and spin; and, if they \
+were computed, the worth of spin and the costliest scatter.
+For a profile: outcomes and probabilities over speed and angle about the best direct and bank shots, and their difference.
 Each map is written as SVG and PNG.
 
 Examples:
-  bankshot compare half_court
-  bankshot compare half_court --against half_court_elite
-  bankshot compare configs/bank_wing.toml --out plots")]
-pub(crate) struct CompareOptions {
-    /// A sweep's folder, its TOML (for its usual folder), a shooter's profile, or the folder of a
+  bankshot map half_court
+  bankshot map half_court --against half_court_elite
+  bankshot map configs/bank_wing.toml --output plots")]
+pub(crate) struct MapOptions {
+    /// A sweep's folder, its TOML (for its default folder), a shooter's profile, or the folder of a
     /// fit.
     pub(crate) what: PathBuf,
     /// Another one of the same type, with another shooter or other settings.
     #[arg(long, value_name = "OTHER")]
     pub(crate) against: Option<PathBuf>,
     /// Folder of the plots [default: plots in the folder of the run].
-    #[arg(long, value_name = "DIR")]
+    #[arg(long = "output", short = 'o', alias = "out", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
 
-pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &MapOptions) -> Result<u8, Failure> {
     let Some(sweep) = open_sweep(&options.what)? else {
         return compare_at_location(options);
     };
@@ -107,7 +106,7 @@ fn open_sweep(path: &Path) -> Result<Option<OpenSweep>, Failure> {
 }
 
 fn compare_on_court(
-    options: &CompareOptions,
+    options: &MapOptions,
     sweep: &OpenSweep,
     other: Option<&OpenSweep>,
 ) -> Result<u8, Failure> {
@@ -148,7 +147,7 @@ fn compare_on_court(
     Ok(exit)
 }
 
-fn compare_at_location(options: &CompareOptions) -> Result<u8, Failure> {
+fn compare_at_location(options: &MapOptions) -> Result<u8, Failure> {
     let own_physics = PhysicsArg::default();
     let load = |path: &PathBuf| {
         let loaded = LoadedProfile::read(path, &own_physics)?;
@@ -219,7 +218,7 @@ fn differences_text(first: &BestShots, second: &BestShots) -> String {
             );
             let error = libm::hypot(first.standard_error, second.standard_error);
             Some(format!(
-                "second minus first, {}: {:+.1} points (numerical error \u{b1} {:.1})\n",
+                "{}: {:+.1} per 100 for the second profile (simulation error {:.1})\n",
                 kind.name(),
                 100.0 * (second.probability - first.probability),
                 100.0 * error
@@ -248,7 +247,7 @@ fn conditions_text(profiles: [&Profile; 2]) -> String {
         text += &format!("The places are not the same: {a}; {b}.\n");
     }
     if !is_same_physics {
-        text += "The physics are not the same (`bankshot check PROFILE --verbose` lists them): the difference is not that of the shooters alone.\n";
+        text += "The physics are not the same (`bankshot check PROFILE --details` lists them), so the difference is not due to the shooters alone.\n";
     }
     text
 }
@@ -261,8 +260,9 @@ fn probabilities_text(name: &str, best: &BestShots) -> String {
             let kind = kind.name();
             match shot {
                 Ok(shot) => format!(
-                    "{name}, {kind}: P {:.4} \u{b1} {:.4}\n",
-                    shot.estimate.probability, shot.estimate.standard_error
+                    "{name}, {kind}: {:.1} of 100 go in (simulation error {:.1})\n",
+                    100.0 * shot.estimate.probability,
+                    100.0 * shot.estimate.standard_error
                 ),
                 Err(reason) => format!("{name}, {kind}: {reason}\n"),
             }

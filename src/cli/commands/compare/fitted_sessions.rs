@@ -115,7 +115,7 @@ pub(super) fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Fai
         .max(libm::fabs(a.2 - b.2));
     if moved_m > SAME_PLACE_M {
         print_remark(
-            "warning: the sessions are from different places; speed, pitch and P are those of each place",
+            "warning: the sessions are from different places; speed, angle and makes per 100 are for each place",
         );
     }
     Ok(())
@@ -188,7 +188,7 @@ pub(super) fn fit_by_session(
         return Err(Failure::usage(match &names[..] {
             [] => format!("{place}: has no shots"),
             [one] if one.is_empty() => format!(
-                "{place}: has no session in any row; name its column with --map 'session=COLUMN', or give two files"
+                "{place}: has no column session; name it with --map 'session=COLUMN', or give two files"
             ),
             [one] if !wanted.is_empty() => {
                 format!("--session {one}: name two sessions; {place} has {listed}")

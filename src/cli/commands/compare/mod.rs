@@ -1,4 +1,4 @@
-//! `bankshot compare-sessions`: what changed between two sessions of a shooter.
+//! `bankshot compare`: what changed between two sessions of a shooter.
 
 mod changed_values;
 mod fitted_sessions;
@@ -10,7 +10,9 @@ use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_hint, print_prose, print_remark};
+use crate::cli::terminal::{
+    print_answer, print_hint, print_next, print_prose, print_remark, print_text,
+};
 use crate::plots::session_changes;
 use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::present::fit_files::session_changes_text::session_changes_text;
@@ -24,18 +26,17 @@ use fitted_sessions::{Session, check_conditions, fit_by_session, read, to_one_re
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each session is a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit.
+A session is a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit.
 
 Examples:
-  bankshot compare-sessions september.csv march.csv --distance '13.75 ft' \\
+  bankshot compare september.csv march.csv --distance '13.75 ft' \\
     --release-height '7 ft'
-  bankshot compare-sessions results/september-fit results/march-fit
-  bankshot compare-sessions season.csv --plot season.svg
-  bankshot compare-sessions season.csv --session September --session March
+  bankshot compare results/september-fit results/march-fit
+  bankshot compare season.csv --plot season.svg
+  bankshot compare season.csv --session September --session March
 
-A file with a column session needs no second one; with several shooters, each is compared. Sessions that are numbers or \
-dates are compared in their order, others in that of the file, or as --session names them.")]
-pub(crate) struct CompareSessionsOptions {
+A file with a column session needs no second file; with several players, each is compared. Sessions named by numbers or dates are compared in that order, others in the order of the file or of --session.")]
+pub(crate) struct CompareOptions {
     /// The first session, or a file with a column session that has two values.
     pub(crate) before: PathBuf,
     /// The second session.
@@ -47,14 +48,14 @@ pub(crate) struct CompareSessionsOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
     /// The values that the study was planned for, such as 'speed_sd,pitch_sd' (speed, pitch, polar
-    /// or backspin with _mean or _sd; corr_speed_pitch ...): these alone are compared beside P, so
-    /// that chance has fewer of them to strike at [default: all].
+    /// or backspin with _mean or _sd; corr_speed_pitch ...). With fewer values, chance
+    /// findings are rarer [default: all].
     #[arg(long, value_name = "VALUE,VALUE", value_delimiter = ',')]
     pub(crate) planned: Vec<String>,
-    /// Draw the values of both sessions and what the change of P comes from (.svg or .png).
+    /// Draw the values of both sessions, and what each change adds (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Print one JSON object; of a file with several shooters, an array of them.
+    /// Print one JSON object, or an array for a file with several shooters.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -67,7 +68,7 @@ struct Compared {
     exit_code: u8,
 }
 
-pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
     check_options(options)?;
     let mut compared = read_sessions(options)?;
     if options.plot.is_some() && compared.pairs.len() > 1 {
@@ -106,7 +107,7 @@ pub(crate) fn run(options: &CompareSessionsOptions) -> Result<u8, Failure> {
 }
 
 /// Refuses options that do not go together, before anything is computed.
-fn check_options(options: &CompareSessionsOptions) -> Result<(), Failure> {
+fn check_options(options: &CompareOptions) -> Result<(), Failure> {
     let after_is_file = options.after.as_ref().is_some_and(|after| !after.is_dir());
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;
@@ -123,7 +124,7 @@ fn check_options(options: &CompareSessionsOptions) -> Result<(), Failure> {
 }
 
 /// Two sessions that are named, or those of each shooter of a file.
-fn read_sessions(options: &CompareSessionsOptions) -> Result<Compared, Failure> {
+fn read_sessions(options: &CompareOptions) -> Result<Compared, Failure> {
     if let Some(after) = &options.after {
         let read = |path| read(path, &options.measured, options.place);
         return Ok(Compared {
@@ -168,10 +169,7 @@ fn read_sessions(options: &CompareSessionsOptions) -> Result<Compared, Failure> 
 }
 
 /// Says which place is compared, where a session has several.
-fn print_several_places(
-    options: &CompareSessionsOptions,
-    pairs: &[[Session; 2]],
-) -> Result<(), Failure> {
+fn print_several_places(options: &CompareOptions, pairs: &[[Session; 2]]) -> Result<(), Failure> {
     let mut all = pairs.iter().flatten();
     let Some(session) = all.find(|session| session.places > 1) else {
         return Ok(());
@@ -186,12 +184,12 @@ fn print_several_places(
         1 => {
             let (long, metre) = units.length();
             let height_m = session.profile.shooter().release_height_m;
-            format!(", released {:.2} {long} up", height_m / metre)
+            format!(", released {:.2} {long} high", height_m / metre)
         }
         _ => String::new(),
     };
     print_prose(&format!(
-        "Shots from {} places: the chance, the makes, the speed and the aim are those of place {}, {name}{}{height}; the scatter is that of all.\n\n",
+        "Shots from {} places: makes, speed and direction are for place {}, {name}{}{height}; the scatter is for all places.\n\n",
         session.places,
         session.place + 1,
         session.profile.location().in_words(units),
@@ -201,7 +199,7 @@ fn print_several_places(
 
 /// Compares two sessions: prints the answer, or returns it for programs.
 fn answer(
-    options: &CompareSessionsOptions,
+    options: &CompareOptions,
     sessions: &[Session; 2],
     names_shooter: bool,
 ) -> Result<Option<Value>, Failure> {
@@ -246,7 +244,10 @@ fn answer(
         let answer = SessionsAnswer::new(profile, summaries, &changes, &causes);
         return Ok(Some(document(&answer, units)));
     }
-    let tested = changes.len() - 1;
-    print_prose(&session_changes_text(&summaries, &changes, &causes, tested))?;
+    let profile = &sessions[0].profile;
+    print_text(&session_changes_text(
+        profile, &summaries, &changes, &causes,
+    ))?;
+    print_next(None, "");
     Ok(None)
 }

@@ -24,17 +24,18 @@ pub(super) fn planned(
     }
     let known = |name: &String| {
         all.iter()
-            .any(|change| change.name == *name && *name != "P")
+            .any(|change| change.name == *name && *name != "probability")
     };
     if let Some(unknown) = names.iter().find(|name| !known(name)) {
-        let others = all.iter().filter(|change| change.name != "P");
+        let others = all.iter().filter(|change| change.name != "probability");
         let allowed: Vec<&str> = others.map(|change| change.name.as_str()).collect();
         return Err(Failure::usage(format!(
             "--planned: \"{unknown}\" is no value of these sessions; write some of {}",
             allowed.join(", ")
         )));
     }
-    let is_kept = |change: &SessionChange| change.name == "P" || names.contains(&change.name);
+    let is_kept =
+        |change: &SessionChange| change.name == "probability" || names.contains(&change.name);
     Ok(all.into_iter().filter(is_kept).collect())
 }
 
@@ -44,7 +45,7 @@ pub(super) fn changes(sessions: &[Session; 2], units: UnitSystem) -> Vec<Session
     let posteriors = [&before.posterior, &after.posterior];
     let shots = posteriors.map(|posterior| posterior.shots);
     let mut changes = vec![SessionChange {
-        name: "P".to_owned(),
+        name: "probability".to_owned(),
         unit: "%",
         size: 0.01,
         comparison: compare_probabilities([&before.probabilities, &after.probabilities], shots),
@@ -121,7 +122,7 @@ pub(super) fn values_to_draw(changes: &[SessionChange]) -> Vec<ChangedValue> {
         ChangedValue {
             name: change.in_words().to_owned(),
             unit: match change.name.as_str() {
-                "P" => "points",
+                "probability" => "per 100",
                 _ => change.unit,
             },
             decimals: change.decimals(),
@@ -140,10 +141,10 @@ pub(super) fn causes_to_draw(causes: &ProbabilityChange) -> Vec<ChangeCause> {
     let [speed, pitch, polar] = &causes.by_mean_alone;
     let named = [
         ("the scatter, mean of both:", &causes.by_scatter),
-        ("at the old usual release", old),
-        ("at the new usual release", new),
-        ("the usual release", &causes.by_means),
-        ("of it the speed alone", speed),
+        ("at the release before", old),
+        ("at the release after", new),
+        ("the mean release", &causes.by_means),
+        ("the speed alone", speed),
         ("the release angle alone", pitch),
         ("the direction alone", polar),
     ];

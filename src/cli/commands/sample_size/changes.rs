@@ -16,7 +16,7 @@ pub(super) struct FirstSession {
     /// How far it knows P, and the scatter (relative).
     pub(super) p: SessionError,
     pub(super) scatter: SessionError,
-    /// The same of the speed, the pitch and the polar angle, each of its own.
+    /// Error of the scatter of the speed, the angle and the direction (relative).
     pub(super) scatters: [SessionError; 3],
 }
 
@@ -75,79 +75,69 @@ pub(super) fn known_after(
     }
 }
 
-/// A number of shots for people; `None` is never.
+/// A number of shots for people.
 pub(super) fn in_words(shots: Option<f64>) -> String {
     match shots {
-        None => "never".to_owned(),
-        Some(shots) if !shots.is_finite() => "-".to_owned(),
+        None => "no number of".to_owned(),
+        Some(shots) if !shots.is_finite() => "no difference:".to_owned(),
         Some(shots) if shots < LEAST_SHOTS => format!("fewer than {LEAST_SHOTS}"),
         Some(shots) if shots > MOST_SHOTS as f64 => format!("more than {MOST_SHOTS}"),
         Some(shots) => format!("about {}", two_digits(shots)),
     }
 }
 
-/// How many shots show that P or a scatter has changed, in two equal sessions and against a first
+/// Number of shots as words in a list.
+pub(super) fn in_short(shots: Option<f64>) -> String {
+    match shots {
+        None => "not possible".to_owned(),
+        Some(shots) if !shots.is_finite() => "no difference".to_owned(),
+        shots => in_words(shots).replace("about ", ""),
+    }
+}
+
+/// How many shots show that the makes or a scatter changed, in two equal sessions and after a first
 /// one.
-pub(super) fn shots_for_changes(
+pub(super) fn shots_to_show(
     rows: &[DesignRow],
     first: Option<&FirstSession>,
     changes: &[f64],
-) -> String {
+) -> Vec<String> {
     let falls = [0.1, 0.2, 0.3];
     let most = rows.last().map_or(0, |row| row.shots);
     let scatter = known_after(rows, most, DesignRow::sd_error).of_one_shot;
-    let columns = |words: &[String]| words.join(", ");
-    let of_each: Vec<String> = changes
-        .iter()
-        .map(|points| in_words(Some(shots_in_each(rows, points / 100.0))))
-        .collect();
-    let falls_each =
-        falls.map(|fall| in_words(Some(SessionError::each_session(scatter, fall, 1.0 - fall))));
-    let listed: Vec<String> = changes.iter().map(|points| format!("{points}")).collect();
-    let listed = in_a_row(&listed);
-    let lines = |of_p: &str, of_falls: &str| {
-        format!(
-            "  P changed by {listed} points: {of_p}\n  one scatter lower by 10, 20 or 30 %: {of_falls}\n"
-        )
-    };
-    let mut text = String::new();
-    if let Some(first) = first {
-        let of_p: Vec<String> = changes
+    let listed = |shots: &dyn Fn(f64) -> Option<f64>| {
+        let of_changes = changes
             .iter()
-            .map(|points| in_words(further_shots(rows, first, points / 100.0)))
-            .collect();
-        let of_falls =
-            falls.map(|fall| in_words(first.scatter.second_session(fall, (1.0 - fall) * scatter)));
-        let hidden = |error: &SessionError| 100.0 * POWER * error.error();
-        let never = changes.iter().copied();
-        let never = never.filter(|points| further_shots(rows, first, points / 100.0).is_none());
-        let larger: String = never
-            .map(|points| {
-                let of_one_shot = known_after(rows, most, |row| row.probability_error).of_one_shot;
-                let root = POWER * of_one_shot / (points / 100.0);
-                format!(
-                    " For {points} points the first session would need about {} shots or more.",
-                    two_digits(root * root)
-                )
-            })
-            .collect();
-        text += &format!(
-            "How many further shots show a change since the {} shots of the first session (95 % level, power 80 %; \"P changed by\" in the table is against them too):\n{}The second session is taken to have about the same P and scatter. Never: the first shots alone leave P and the scatter too unsure. No number of further shots shows a change of P below {:.1} points, or of a scatter below {:.0} %.{larger}\n\n",
+            .map(|points| format!("{points} per 100, {}", in_short(shots(points / 100.0))));
+        of_changes.collect::<Vec<_>>().join("; ")
+    };
+    let of_falls =
+        |shots: &dyn Fn(f64) -> Option<f64>| falls.map(|fall| in_short(shots(fall))).join(", ");
+    let mut notes = vec![
+        format!(
+            "Shots in each of two sessions to show: {}.",
+            listed(&|change| Some(shots_in_each(rows, change)))
+        ),
+        format!(
+            "To show 10, 20 or 30 % less scatter in one value: {}.",
+            of_falls(&|fall| Some(SessionError::each_session(scatter, fall, 1.0 - fall)))
+        ),
+    ];
+    if let Some(first) = first {
+        notes.push(format!(
+            "After the {} shots of the first session: {}; less scatter: {}.",
             first.shots,
-            lines(&columns(&of_p), &columns(&of_falls)),
+            listed(&|change| further_shots(rows, first, change)),
+            of_falls(&|fall| first.scatter.second_session(fall, (1.0 - fall) * scatter))
+        ));
+        let hidden = |error: &SessionError| 100.0 * POWER * error.error();
+        notes.push(format!(
+            "Not possible: the first session is too small. It hides a change below {:.1} per 100, or of a scatter below {:.0} %.",
             hidden(&first.p),
             hidden(&first.scatter)
-        );
+        ));
     }
-    text + &format!(
-        "How many shots in each of two equal sessions show a change{}:\n{}A player also differs from day to day: that is not in these numbers.",
-        match first {
-            Some(_) => "",
-            None =>
-                " (95 % level, power 80 %; \"P changed by\" in the table is the least change that they show)",
-        },
-        lines(&columns(&of_each), &columns(&falls_each))
-    )
+    notes
 }
 
 /// The largest test that answers ask for, where it is so much larger than those of the rows that
@@ -166,7 +156,7 @@ pub(super) fn size_to_check(rows: &[DesignRow], changes: &[f64]) -> Option<usize
 }
 
 /// Shots in each of two equal sessions that show a change of P.
-fn shots_in_each(rows: &[DesignRow], change: f64) -> f64 {
+pub(super) fn shots_in_each(rows: &[DesignRow], change: f64) -> f64 {
     shots_for(rows, change / (POWER * std::f64::consts::SQRT_2)) as f64
 }
 
@@ -195,15 +185,6 @@ pub(super) fn shots_for_changes_answer(
         }
     };
     changes.iter().map(of_change).collect()
-}
-
-/// "5, 10 or 20".
-fn in_a_row(words: &[String]) -> String {
-    match words.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
-        None => String::new(),
-    }
 }
 
 /// Shots that make P known to a standard deviation, which falls with the square root of the shots:

@@ -48,12 +48,12 @@ impl TrackerOfTest {
         };
         let (simulator, values) = (profile.simulator(), values_of(nominal));
         let refuse =
-            || Failure::usage("the usual shot does not fall through the height of the hoop");
+            || Failure::usage("the current shot does not fall through the height of the hoop");
         let landing: Landing = landing_of(simulator, &place, &values).ok_or_else(refuse)?;
         match self.sees {
             Source::Releases => Ok(self.noise.release_covariance()),
             Source::Trajectories => tracked_flight_noise(simulator, &place, &values, &self.noise)
-                .map_err(|error| Failure::usage(format!("the usual shot, as tracked: {error}"))),
+                .map_err(|error| Failure::usage(format!("the current shot, as tracked: {error}"))),
             Source::Landings => {
                 let noise = &self.noise.landing;
                 release_of_landing(simulator, &place, &landing, noise, values[3])

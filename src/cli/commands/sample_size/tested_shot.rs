@@ -66,7 +66,7 @@ impl TestedShot {
         let nominal = nominal_of(&fit.posterior.typical().means[place]);
         if fit.profiles.len() > 1 && !is_quiet() {
             print_remark(&format!(
-                "the fit has {} places: tests from place {}, {}",
+                "The fit has {} places; using place {}, {}.",
                 fit.profiles.len(),
                 place + 1,
                 fit.profiles[place].location().in_words(fit.units)
@@ -101,12 +101,12 @@ fn best_nominal(profile: &Profile) -> Result<Nominal, Failure> {
         .flatten()
         .max_by(|a, b| a.estimate.probability.total_cmp(&b.estimate.probability))
         .ok_or_else(|| {
-            Failure::usage("no clean shot from there; name one with --speed and --pitch")
+            Failure::usage("no exact shot goes in from there; give one with --speed and --pitch")
         })?;
     if !is_quiet() {
         let (long, metre) = profile.output().units.length();
         print_remark(&format!(
-            "no shot is named: tests of the best one, {} at {:.2} {long}/s and {:.1} deg, {:.1} rev/s",
+            "No shot given; using the best one ({}, {:.2} {long}/s, {:.1} deg, {:.1} rev/s).",
             ShotKind::of(profile, &best.nominal).name(),
             best.nominal.speed_m_s / metre,
             best.nominal.pitch_rad / DEGREE_RAD,

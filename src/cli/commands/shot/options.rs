@@ -1,4 +1,4 @@
-//! The options of `bankshot probability`.
+//! The options of `bankshot shot`.
 
 use crate::answers::probability::{Effort, Method};
 use crate::cli::nominal_shot_flags::NominalOptions;
@@ -10,31 +10,29 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The shot comes from the flags, then from the profile's [nominal] table. The errors are those of \
-[shooter.errors]: c10 to c42, and rifle_spin, side_spin, distance, court_angle, height as standard \
-deviations; [shooter.correlation] gives their correlations.
+The shot comes from the flags, then from the profile's [nominal] table. The scatter comes from [shooter.errors] and [shooter.correlation].
 
 Examples:
-  bankshot probability configs/free_throw.toml --speed '24.4 ft/s' \\
+  bankshot shot configs/free_throw.toml --speed '24.4 ft/s' \\
     --pitch '53.5 deg' --backspin '3 rev/s'
-  bankshot probability configs/errors_in_all_nine_variables.toml \\
-    --target 0.0003 --json
-  bankshot probability configs/errors_in_all_nine_variables.toml --replay 1:2049
-  bankshot probability results/season-fit --draws results/season-fit \\
+  bankshot shot configs/errors_in_all_nine_variables.toml \\
+    --standard-error 0.0003 --json
+  bankshot shot configs/errors_in_all_nine_variables.toml --replay 1:2049
+  bankshot shot results/season-fit --draws results/season-fit \\
     --vary 'pitch=45 deg to 60 deg by 1 deg' --plot pitch.png")]
-pub(crate) struct ProbabilityOptions {
+pub(crate) struct ShotOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// The method of computing P.
+    /// The method of integration.
     #[arg(long, value_enum, default_value_t = Method::Sobol)]
     pub(crate) method: Method,
     /// Standard error at which to stop [default: the profile's standard_error, else 0.001].
-    #[arg(long, value_name = "P", value_parser = standard_error)]
-    pub(crate) target: Option<f64>,
+    #[arg(long, alias = "target", value_name = "PROBABILITY", value_parser = standard_error)]
+    pub(crate) standard_error: Option<f64>,
     /// Greatest number of shots, 64 or more.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(64..=1_000_000_000_000))]
     pub(crate) budget: Option<u64>,
@@ -47,18 +45,17 @@ pub(crate) struct ProbabilityOptions {
     /// Trace sample number INDEX of a seed instead.
     #[arg(long, value_name = "SEED:INDEX", value_parser = sample)]
     pub(crate) replay: Option<(u64, u64)>,
-    /// The folder of a fit: also say how uncertain P is by what its shots do not tell about the
-    /// scatter.
+    /// Add the uncertainty of a fit (its folder) [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "scatter")]
     pub(crate) draws: Option<PathBuf>,
-    /// Give one variable of the shot several values, the rest as it is: P at each of them. Speed,
-    /// pitch, polar, aim, backspin, side_spin or rifle_spin.
+    /// Give one value of the shot several values in turn: speed, pitch, polar, aim, backspin,
+    /// side_spin or rifle_spin.
     #[arg(long, value_name = "VARIABLE=LIST|RANGE", conflicts_with_all = ["replay", "method", "budget", "grid"])]
     pub(crate) vary: Option<String>,
-    /// With --vary: write P at each value into a file (.csv, .json or .txt); may be repeated.
+    /// With --vary: write the results into a file (.csv, .json or .txt); may be repeated.
     #[arg(long, short, value_name = "FILE", requires = "vary")]
     pub(crate) output: Vec<PathBuf>,
-    /// With --vary: draw P over the variable (.svg or .png).
+    /// With --vary: draw the results (.svg or .png).
     #[arg(long, value_name = "FILE", requires = "vary")]
     pub(crate) plot: Option<PathBuf>,
     /// Print one JSON object instead of text.
@@ -66,11 +63,11 @@ pub(crate) struct ProbabilityOptions {
     pub(crate) json: bool,
 }
 
-impl ProbabilityOptions {
+impl ShotOptions {
     pub(super) fn effort(&self) -> Effort {
         Effort {
             method: self.method,
-            target: self.target,
+            target: self.standard_error,
             budget: self.budget,
             seed: self.seed,
             grid: self.grid,

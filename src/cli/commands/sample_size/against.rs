@@ -1,6 +1,6 @@
 //! How many shots show the difference of two known shooters, or of one shooter on two days.
 
-use super::changes::{FirstSession, in_words, known_after};
+use super::changes::{FirstSession, in_short, known_after};
 use super::tested_shot::TestedShot;
 use crate::answers::sample_size::{AgainstAnswer, ShotsForDifference};
 use crate::fitting::{Covariance, DesignRow, POWER, SessionError, values_of};
@@ -33,8 +33,13 @@ struct SessionDifference {
 /// The values that are compared: their index in a release, and the names of their mean and scatter.
 const VALUES: [(ReleaseVariable, &str, &str, &str); 3] = [
     (ReleaseVariable::Speed, "speed", "speed_mean", "speed_sd"),
-    (ReleaseVariable::Pitch, "pitch", "pitch_mean", "pitch_sd"),
-    (ReleaseVariable::Polar, "polar", "polar_mean", "polar_sd"),
+    (ReleaseVariable::Pitch, "angle", "pitch_mean", "pitch_sd"),
+    (
+        ReleaseVariable::Polar,
+        "direction",
+        "polar_mean",
+        "polar_sd",
+    ),
 ];
 
 /// How far a session of so many shots knows something, as [`SessionError::of_one_shot`].
@@ -57,7 +62,7 @@ impl Against {
         let mut differences = vec![SessionDifference::new(
             "probability",
             format!(
-                "P, {:.1} to {:.1} of 100 ({:+.1} points)",
+                "makes per 100, {:.1} to {:.1} ({:+.1})",
                 100.0 * first.probability,
                 100.0 * second.probability,
                 100.0 * change
@@ -100,7 +105,7 @@ impl Against {
             let grown = sd[1] / sd[0];
             differences.push(SessionDifference::new(
                 sd_key,
-                format!("{name} scatter, {:+.0} %", 100.0 * (grown - 1.0) + 0.0),
+                format!("scatter of {name}, {:+.0} %", 100.0 * (grown - 1.0) + 0.0),
                 (grown - 1.0, libm::log(grown)),
                 [&|shots| known(rows, &sd_error, shots), &|shots| {
                     known(second_rows, &sd_error, shots)
@@ -111,28 +116,27 @@ impl Against {
         Self { name, differences }
     }
 
-    /// For people.
-    pub(super) fn text(&self, session: Option<&FirstSession>) -> String {
-        let mut text = format!(
-            "Shots in each of two equal sessions that show how {} differs (95 % level, power 80 %){}:\n",
-            self.name,
-            session.map_or_else(String::new, |session| format!(
-                "; in brackets, in a second session after the {} shots of the first one",
-                session.shots
-            ))
-        );
-        for difference in &self.differences {
-            text += &format!(
-                "  {}: {}{}\n",
+    /// For people: a sentence for each difference.
+    pub(super) fn notes(&self, session: Option<&FirstSession>) -> Vec<String> {
+        let mut notes = vec![format!(
+            "Shots in each of two sessions to show how {} differs (brackets: in a second session after the first one):",
+            self.name
+        )];
+        notes.extend(self.differences.iter().map(|difference| {
+            let after = session.map_or_else(String::new, |_| {
+                format!(" ({})", in_short(difference.in_second))
+            });
+            format!(
+                "  {}: {}{after}",
                 difference.words,
-                in_words(Some(difference.in_each)),
-                session.map_or_else(String::new, |_| format!(
-                    " ({})",
-                    in_words(difference.in_second)
-                ))
-            );
-        }
-        text + "The differences are taken as they are here; where they were measured, chance makes the great ones look greater than they are, so plan for more shots. Each number is for one value alone: several at once need more (`bankshot compare-sessions --planned`). never: the first shots alone leave it too unsure.\n"
+                in_short(Some(difference.in_each))
+            )
+        }));
+        notes.push(
+            "Measured differences are often exaggerated by chance, so plan for more shots; several values at once need more too."
+                .to_owned(),
+        );
+        notes
     }
 
     /// For programs.

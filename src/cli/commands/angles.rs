@@ -1,10 +1,10 @@
-//! `bankshot pitch-curve`: the best shot at each of several pitch angles, from one place or from
+//! `bankshot angles`: the best shot at each of several pitch angles, from one place or from
 //! several distances.
 
 use super::table::KindArg;
 use crate::answers::csv::csv;
 use crate::answers::json::document;
-use crate::answers::shots::PitchCurveAnswer;
+use crate::answers::table_rows::PitchCurveAnswer;
 use crate::best_shot::{MOST_NODES, ShotAtPitch, TableKind, best_by_pitch};
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder::{self, OverDraws};
@@ -14,13 +14,13 @@ use crate::cli::plot_files::{self, PlotType};
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::wrapped;
 use crate::cli::value_lists::ascending_values;
 use crate::fitting::{AngleOverDraws, nominal_of};
 use crate::plots;
 use crate::plots::best_by_pitch::UsualShot;
 use crate::plots::svg::Plot;
-use crate::present::shot_table_files::by_pitch::by_pitch_text;
+use crate::present::layout::TextAnswer;
+use crate::present::shot_table_files::by_pitch::AngleCurve;
 use crate::present::shot_table_files::notes::physics_note;
 use crate::present::shot_table_files::pitch_over_distances::{
     DistanceShots, pitch_over_distances_text,
@@ -28,53 +28,50 @@ use crate::present::shot_table_files::pitch_over_distances::{
 use crate::probability::{Progress, Silent};
 use crate::shooter::{Location, NominalVariable, Profile, SearchSettings};
 use crate::store::fit::{FIT_FILE, Fit};
-use crate::units::{DEGREE_RAD, Dimension, REV_RAD, UnitSystem};
+use crate::units::{DEGREE_RAD, Dimension, UnitSystem};
 use clap::Args;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The first and the last pitch angle and the step, if none are given, deg.
 const DEFAULT_PITCHES_DEG: (f64, f64, f64) = (40.0, 65.0, 2.5);
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each angle, from each distance, is a search of its own: one or two seconds on two cores. Near the best angle P is flat: the best of these and the angle of `bankshot best` can differ by a degree or two, and P hardly. The speed and the aim follow the angle; for one shot whose speed stays, see `bankshot probability PROFILE --vary 'pitch=..'`.
+Each angle takes one or two seconds on two cores. Near the best angle the makes hardly change, so `bankshot best` can differ by a degree or two. Speed and direction are optimised at each angle; for a fixed speed see `bankshot shot PROFILE --vary 'pitch=..'`.
 
 Examples:
-  bankshot pitch-curve configs/free_throw.toml
-  bankshot pitch-curve player.toml --pitches '45 deg to 60 deg by 1 deg' \\
+  bankshot angles configs/free_throw.toml
+  bankshot angles player.toml --pitches '45 deg to 60 deg by 1 deg' \\
     --plot pitch.svg -o pitch.csv
-  bankshot pitch-curve player.toml --kind bank --backspin '2 rev/s'
-  bankshot pitch-curve robot.toml --distances '8 ft to 18 ft by 2 ft'
-  bankshot pitch-curve results/season-fit --draws results/season-fit")]
-pub(crate) struct PitchCurveOptions {
+  bankshot angles player.toml --kind bank --backspin '2 rev/s'
+  bankshot angles robot.toml --distances '8 ft to 18 ft by 2 ft'
+  bankshot angles results/season-fit --draws results/season-fit")]
+pub(crate) struct AnglesOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// The pitch angles, ascending, within the profile's pitch_min and pitch_max [default: from
+    /// Release angles, ascending, within the profile's pitch_min and pitch_max [default: from
     /// pitch_min (40 deg) to pitch_max (65 deg) in steps of 2.5 deg].
     #[arg(long, value_name = "LIST|RANGE")]
     pub(crate) pitches: Option<String>,
-    /// Several distances from the hoop's centre, ascending: P at each of them, and which one pitch
-    /// angle suits them all.
+    /// Several distances from the hoop's centre, ascending: find the one angle that suits them all.
     #[arg(long, value_name = "LIST|RANGE", conflicts_with_all = ["distance", "draws", "plot"])]
     pub(crate) distances: Option<String>,
-    /// The kind of the shots; best: at each angle the one with the higher P, but a clean shot
-    /// before one that misses without errors (twice the time).
+    /// The kind of the shots; best: at each angle the better one (takes twice as long).
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// The folder of a fit: also say how uncertain P at each angle is, and its difference from the
-    /// best angle, by what the shots do not tell about the scatter.
+    /// Add the uncertainty of a fit (its folder) [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["distances", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Vec<PathBuf>,
-    /// Draw P and the speed over the pitch angle (.svg or .png).
+    /// Draw the makes and the speed over the release angle (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Print JSON instead of the table: an object, with --distances an array.
@@ -82,7 +79,7 @@ pub(crate) struct PitchCurveOptions {
     pub(crate) json: bool,
 }
 
-pub(crate) fn run(options: &PitchCurveOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &AnglesOptions) -> Result<u8, Failure> {
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
@@ -92,18 +89,26 @@ pub(crate) fn run(options: &PitchCurveOptions) -> Result<u8, Failure> {
     let mut given = fixed.variables();
     given.push(NominalVariable::Pitch);
     let loaded = options.profile.load(&given)?;
-    let profile = fixed.changed(options.scatter.changed(loaded)?)?.profile;
+    let loaded = fixed.changed(options.scatter.changed(loaded)?)?;
+    let is_scatter_changed = !options.scatter.scatter.is_empty();
+    // A folder that is no fit is refused before the search.
+    let draws = options.draws.as_deref();
+    let fit = match options.distances {
+        Some(_) => None,
+        None => fit_folder::draws_for(draws, &loaded, is_scatter_changed)?,
+    };
+    let profile = loaded.profile;
     let choice = profile.search().choice;
     if choice.iter().all(|variable| given.contains(&variable)) {
         return Err(Failure::usage(
-            "search.choose of the profile names nothing that is left to search at a given pitch angle; add the speed or polar, or ask `bankshot probability PROFILE --pitch ANGLE` about one shot",
+            "search.choose of the profile names nothing that is left to search at a given pitch angle; add the speed or polar, or ask `bankshot shot PROFILE --pitch ANGLE` about one shot",
         ));
     }
     let pitches_rad = pitches_rad(options.pitches.as_deref(), &profile)?;
     if let Some(distances) = &options.distances {
         return run_from_distances(options, (&profile, distances), &pitches_rad);
     }
-    let curve = Curve::find(options, &profile, &pitches_rad)?;
+    let curve = Curve::find(options, &profile, fit, &pitches_rad)?;
     if let Some(path) = &options.plot
         && let Some(plot) = curve.plot()
     {
@@ -127,39 +132,40 @@ struct Curve<'a> {
     profile: &'a Profile,
     kind: TableKind,
     rows: Vec<ShotAtPitch>,
-    /// The folder and the fit whose draws are asked, and P over them.
-    draws: Option<(&'a Path, Fit, OverDraws)>,
+    /// P over the draws of a fit.
+    over_draws: Option<OverDraws>,
     /// The shot of a fit, as it was measured.
-    usual: Option<UsualShot>,
+    current: Option<UsualShot>,
+    scatter: &'a [String],
 }
 
 impl<'a> Curve<'a> {
     fn find(
-        options: &'a PitchCurveOptions,
+        options: &'a AnglesOptions,
         profile: &'a Profile,
+        fit: Option<Fit>,
         pitches_rad: &[f64],
     ) -> Result<Self, Failure> {
-        // A folder that is no fit is refused before the search.
-        let draws = fit_folder::read_draws_of(options.draws.as_deref(), profile)?;
         let path = &options.profile.path;
-        let is_fit = !options.profile.place.is_given() && path.join(FIT_FILE).is_file();
-        let fit = is_fit.then(|| fit_folder::read(path)).transpose()?;
+        let is_of_fit = !options.profile.place.is_given() && path.join(FIT_FILE).is_file();
         let kind = options.kind.into();
         let rows = best_by_pitch(profile, kind, pitches_rad, &ProgressBars::new())?;
-        let over_draws = |(folder, fit): (&'a Path, Fit)| {
-            let over = fit_folder::angles_over_draws(&fit, profile, &rows)?;
-            Ok::<_, Failure>((folder, fit, over))
-        };
+        let over_draws = fit
+            .as_ref()
+            .map(|fit| fit_folder::angles_over_draws(fit, profile, &rows))
+            .transpose()?;
+        // The angles have their best speed and aim, which those of the shooter need not be.
+        let current = fit.as_ref().filter(|_| is_of_fit).map(|fit| UsualShot {
+            nominal: nominal_of(&fit.posterior.typical().means[0]),
+            probability: fit.usual_probabilities(0).interval(),
+        });
         Ok(Self {
-            draws: draws.map(over_draws).transpose()?,
-            // The angles have their best speed and aim, which those of the shooter need not be.
-            usual: fit.as_ref().map(|fit| UsualShot {
-                nominal: nominal_of(&fit.posterior.typical().means[0]),
-                probability: fit.usual_probabilities(0).interval(),
-            }),
             profile,
             kind,
             rows,
+            over_draws,
+            current,
+            scatter: &options.scatter.scatter,
         })
     }
 
@@ -169,7 +175,7 @@ impl<'a> Curve<'a> {
 
     /// P over the draws at each angle; none without draws.
     fn angles(&self) -> &[Option<AngleOverDraws>] {
-        self.draws.as_ref().map_or(&[], |(.., over)| &over.angles)
+        self.over_draws.as_ref().map_or(&[], |over| &over.angles)
     }
 
     fn answer(&self) -> PitchCurveAnswer {
@@ -179,44 +185,23 @@ impl<'a> Curve<'a> {
 
     fn plot(&self) -> Option<Plot> {
         let rows = (&self.rows[..], self.angles());
-        plots::best_by_pitch::draw(self.profile, self.kind, rows, (self.usual, self.units()))
-    }
-
-    /// What the shooter makes as it was measured; empty without a fit.
-    fn usual_in_words(&self) -> String {
-        let Some(usual) = &self.usual else {
-            return String::new();
-        };
-        let p = usual.probability;
-        let spin = usual.nominal.backspin_rad_s / REV_RAD;
-        let choice = self.profile.search().choice;
-        let of_spin = match choice.includes(NominalVariable::Backspin) {
-            true => {
-                format!(" The spin was {spin:.2} rev/s; --backspin '{spin:.2} rev/s' keeps it.")
-            }
-            false => String::new(),
-        };
-        wrapped(&format!(
-            "As it was measured, the usual shot (at {:.1} deg) makes {:.1} of 100 (95 %: {:.1} to {:.1}); its speed and aim need not be the best ones.{of_spin}",
-            usual.nominal.pitch_rad / DEGREE_RAD,
-            100.0 * p.mean,
-            100.0 * p.low,
-            100.0 * p.high
-        ))
+        plots::best_by_pitch::draw(self.profile, self.kind, rows, (self.current, self.units()))
     }
 }
 
 impl Rendered for Curve<'_> {
-    fn text(&self) -> String {
-        let text = by_pitch_text(&self.rows, self.kind, self.profile, self.units());
-        let text = text + &self.usual_in_words();
-        match &self.draws {
-            Some((folder, fit, over)) => {
-                let words = fit_folder::angles_in_words((folder, fit), &self.rows, over);
-                format!("{text}\n{}", wrapped(&words))
-            }
-            None => text,
-        }
+    fn text(&self) -> TextAnswer {
+        let curve = AngleCurve {
+            profile: self.profile,
+            kind: self.kind,
+            rows: &self.rows,
+            over_draws: self.angles(),
+            best_of_draws: self.over_draws.as_ref().and_then(|over| over.best),
+            current: self
+                .current
+                .map(|current| (current.nominal.pitch_rad, current.probability.mean)),
+        };
+        curve.text(self.scatter)
     }
 
     fn json(&self) -> Value {
@@ -228,14 +213,15 @@ impl Rendered for Curve<'_> {
     }
 }
 
-/// The same from several distances.
-struct Curves {
+/// Curves from several distances.
+struct Curves<'a> {
     from: Vec<DistanceShots>,
     kind: TableKind,
     units: UnitSystem,
+    scatter: &'a [String],
 }
 
-impl Curves {
+impl Curves<'_> {
     fn answers(&self) -> Vec<PitchCurveAnswer> {
         let answer = |from: &DistanceShots| {
             let profile = &from.profile;
@@ -247,9 +233,9 @@ impl Curves {
     }
 }
 
-impl Rendered for Curves {
-    fn text(&self) -> String {
-        pitch_over_distances_text(&self.from, self.kind, self.units)
+impl Rendered for Curves<'_> {
+    fn text(&self) -> TextAnswer {
+        pitch_over_distances_text(&self.from, self.kind, self.units, self.scatter)
     }
 
     fn json(&self) -> Value {
@@ -266,7 +252,7 @@ impl Rendered for Curves {
 
 /// The shots from several distances.
 fn run_from_distances(
-    options: &PitchCurveOptions,
+    options: &AnglesOptions,
     (profile, distances): (&Profile, &str),
     pitches_rad: &[f64],
 ) -> Result<u8, Failure> {
@@ -304,7 +290,13 @@ fn run_from_distances(
         from.push(DistanceShots { profile, shots });
     }
     bars.end();
-    let curves = Curves { from, kind, units };
+    let scatter = &options.scatter.scatter;
+    let curves = Curves {
+        from,
+        kind,
+        units,
+        scatter,
+    };
     output_files::deliver(&curves, &options.output, options.json)?;
     output_files::print_written(options.output.iter().chain(&options.plot));
     Ok(exit_code(curves.from.iter().flat_map(|shots| &shots.shots)))
@@ -351,7 +343,7 @@ fn pitches_rad(given: Option<&str>, profile: &Profile) -> Result<Vec<f64>, Failu
         let allowed: Vec<f64> = pitches_rad.into_iter().filter(is_allowed).collect();
         if allowed.is_empty() {
             return Err(Failure::usage(
-                "--pitches: pitch_min and pitch_max of the profile allow none of the usual angles; give the angles",
+                "--pitches: pitch_min and pitch_max of the profile allow no angle of the default list; list angles",
             ));
         }
         return Ok(allowed);

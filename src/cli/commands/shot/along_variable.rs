@@ -1,6 +1,7 @@
-//! `bankshot probability --vary`: P of one nominal shot along one of its variables.
+//! `bankshot shot --vary`: P of one nominal shot along one of its variables.
 
-use super::options::ProbabilityOptions;
+use super::current_place;
+use super::options::ShotOptions;
 use crate::analysis::miss_breakdown::classify_misses;
 use crate::answers::along_variable::{AlongAnswer, PointAlong, Varied};
 use crate::answers::csv::csv;
@@ -15,7 +16,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::value_lists::ascending_values;
 use crate::fitting::{AngleOverDraws, best_angles_of_draws};
 use crate::plots;
-use crate::present::best_shot_text::PROFILE_IS_EXACT;
+use crate::present::layout::TextAnswer;
 use crate::present::probability_along_variable::ProbabilityAlong;
 use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{Nominal, NominalVariable, Profile};
@@ -61,7 +62,7 @@ impl VariedValues {
 }
 
 pub(super) fn run(
-    options: &ProbabilityOptions,
+    options: &ShotOptions,
     (profile, draws): (&Profile, Option<&Fit>),
     vary: &str,
 ) -> Result<u8, Failure> {
@@ -71,16 +72,19 @@ pub(super) fn run(
         return Err(Failure::usage("--plot: --vary needs two values or more"));
     }
     print_notes(notes(options, profile, varied.of.variable, &nominals));
-    let target = options.target.unwrap_or(profile.search().standard_error);
+    let target = options
+        .standard_error
+        .unwrap_or(profile.search().standard_error);
     let along = probability_along(options, (profile, draws), &varied, nominals, target)?;
     if let Some(path) = &options.plot
         && let Some(plot) = plots::probability_along_variable::draw(&along)
     {
         plot_files::write_one(path, &plot)?;
     }
+    let along = Along(along, &options.scatter.scatter);
     output_files::deliver(&along, &options.output, options.json)?;
     output_files::print_written(options.output.iter().chain(&options.plot));
-    let mut points = along.points.iter();
+    let mut points = along.0.points.iter();
     Ok(
         match points.all(|point| point.estimate.standard_error <= target) {
             true => code::DONE,
@@ -94,29 +98,26 @@ fn answer(along: &ProbabilityAlong<'_>) -> AlongAnswer {
     AlongAnswer::new(along.profile, along.varied, &along.points, best)
 }
 
-impl Rendered for ProbabilityAlong<'_> {
-    fn text(&self) -> String {
-        let is_exact = self.points.iter().all(|point| point.over_draws.is_none());
-        let of_profile = if is_exact { PROFILE_IS_EXACT } else { "" };
-        self.in_text() + of_profile
+/// The answer in its forms, with the changes of the scatter.
+struct Along<'a>(ProbabilityAlong<'a>, &'a [String]);
+
+impl Rendered for Along<'_> {
+    fn text(&self) -> TextAnswer {
+        self.0.in_text(self.1)
     }
 
     fn json(&self) -> Value {
-        document(&answer(self), self.profile.output().units)
+        document(&answer(&self.0), self.0.profile.output().units)
     }
 
     fn csv(&self) -> String {
-        csv(&answer(self).points, self.profile.output().units)
+        csv(&answer(&self.0).points, self.0.profile.output().units)
     }
 }
 
 impl VariedValues {
     /// The shot with each of the values. Every one is checked before one is computed.
-    fn shots(
-        &self,
-        options: &ProbabilityOptions,
-        profile: &Profile,
-    ) -> Result<Vec<Nominal>, Failure> {
+    fn shots(&self, options: &ShotOptions, profile: &Profile) -> Result<Vec<Nominal>, Failure> {
         let start = match self.of.is_aim {
             true => profile.location().angle_rad,
             false => 0.0,
@@ -131,7 +132,7 @@ impl VariedValues {
 
 /// What is doubtful about the shots.
 fn notes(
-    options: &ProbabilityOptions,
+    options: &ShotOptions,
     profile: &Profile,
     variable: NominalVariable,
     nominals: &[Nominal],
@@ -148,7 +149,7 @@ fn notes(
 
 /// P of each of the shots.
 fn probability_along<'a>(
-    options: &ProbabilityOptions,
+    options: &ShotOptions,
     (profile, draws): (&'a Profile, Option<&Fit>),
     varied: &VariedValues,
     nominals: Vec<Nominal>,
@@ -160,14 +161,7 @@ fn probability_along<'a>(
     let mut points = Vec::new();
     let mut of_draws = Vec::new();
     // The usual shot of a fit is uncertain in its other values too.
-    let usual_at = draws.filter(|_| !options.nominal.request().is_given());
-    let usual_at = usual_at.and_then(|fit| {
-        let mut places = fit.profiles.iter();
-        places.position(|of| {
-            of.location() == profile.location()
-                && of.nominal_overrides() == profile.nominal_overrides()
-        })
-    });
+    let usual_at = draws.and_then(|fit| current_place(options, fit, profile));
     for nominal in nominals {
         let estimate = Sampler::new(profile).estimate(&nominal, target, seed, &Silent);
         if let Some(fit) = draws {

@@ -62,14 +62,14 @@ fn contract_the_change_of_p_is_that_of_the_mean_that_changed() {
         .exits(0)
         .json();
     let mean = |name: &str| {
-        json[format!("change_of_P_by_{name}")]["mean"]
+        json[format!("change_of_probability_by_{name}")]["mean"]
             .as_f64()
             .unwrap()
     };
     let all = json["changes"][0]["change"]["mean"].as_f64().unwrap();
     assert!(all < -10.0, "{all}");
-    // But for the numerical errors of the samples, 0.2 points each.
-    assert!((mean("usual_release") - all).abs() < 1.0);
+    // But for the numerical errors of the samples, 0.2 per 100 each.
+    assert!((mean("mean_release") - all).abs() < 1.0);
     assert!(
         (mean("speed_alone") - all).abs() < 1.0,
         "{}",
@@ -108,20 +108,23 @@ fn contract_sessions_are_the_same_from_files_and_from_their_fits() {
     assert_eq!(of_files["changes"], of_folders["changes"]);
     let p = &of_files["changes"][0];
     let grew = p["probability_of_growth"].as_f64().unwrap();
-    assert!(p["name"] == "P" && (0.0..=1.0).contains(&grew), "{p}");
+    assert!(
+        p["name"] == "probability" && (0.0..=1.0).contains(&grew),
+        "{p}"
+    );
     // Scatter and aim make the change together, but for the numerical error of three samples.
     let mean = |value: &serde_json::Value| value["mean"].as_f64().unwrap();
-    let parts =
-        mean(&of_files["change_of_P_by_scatter"]) + mean(&of_files["change_of_P_by_usual_release"]);
+    let parts = mean(&of_files["change_of_probability_by_scatter"])
+        + mean(&of_files["change_of_probability_by_mean_release"]);
     assert!((parts - mean(&p["change"])).abs() < 0.5, "{parts} {p}");
     // Each cause has the mean of both orders of change, and the orders differ.
-    let [first, last] =
-        ["first", "last"].map(|order| mean(&of_files[format!("change_of_P_by_scatter_{order}")]));
-    let of_scatter = mean(&of_files["change_of_P_by_scatter"]);
+    let [first, last] = ["first", "last"]
+        .map(|order| mean(&of_files[format!("change_of_probability_by_scatter_{order}")]));
+    let of_scatter = mean(&of_files["change_of_probability_by_scatter"]);
     assert!((0.5 * (first + last) - of_scatter).abs() < 1e-9 && first != last);
     // The other way round the same causes have the other sign, but for numerical errors.
     let reversed = compare(&folders[1], &folders[0], &[]).exits(0).json();
-    let reversed = mean(&reversed["change_of_P_by_scatter"]);
+    let reversed = mean(&reversed["change_of_probability_by_scatter"]);
     assert!(
         (of_scatter + reversed).abs() < 0.5,
         "{of_scatter} {reversed}"
@@ -197,20 +200,19 @@ fn contract_two_sessions_are_drawn() {
     let of_table = |name: &str| {
         let mut lines = table.stdout().lines();
         let line = lines.find(|line| line.starts_with(name)).unwrap();
-        let mut cells = line.split_whitespace().skip(1);
+        let mut cells = line[name.len()..].split_whitespace();
         [cells.next().unwrap(), cells.next().unwrap()].map(str::to_owned)
     };
     for (label, name) in [
-        ("the chance of a shot", "P "),
-        ("the speed", "speed_mean"),
-        ("the scatter in the release angle", "pitch_sd"),
+        ("makes per 100", "makes per 100"),
+        ("the speed", "speed (ft/s)"),
     ] {
         assert!(svg.contains(&format!(">{label}<")), "{label}");
         for value in of_table(name) {
             assert!(svg.contains(&format!(">{value}<")), "{label}: {value}");
         }
     }
-    assert!(svg.contains(">the usual release<"));
+    assert!(svg.contains(">the mean release<"));
     draw(&season, "season.gif").exits(2).says("season.gif");
     let team = write("team.csv", "shooter,session", &|i| {
         format!("{},{}", ["Ann", "Bob"][i % 2], ["May", "June"][i / 30])

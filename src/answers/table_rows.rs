@@ -42,7 +42,7 @@ pub struct ShotValues {
     pub makes_off_board_first: Option<f64>,
     /// Where the ball's centre meets the board: to the right, facing it.
     pub board_aim_across_short_m: Option<f64>,
-    /// The same above the hoop.
+    /// Height above the hoop of the ball's centre at the board.
     pub board_aim_above_hoop_short_m: Option<f64>,
 }
 
@@ -95,10 +95,8 @@ pub struct PlaceRow {
     pub kind: Option<ShotKind>,
     /// Whether there is one.
     pub has_shot: bool,
-    /// Whether it goes in without errors.
-    pub is_clean_shot: bool,
-    /// How it does.
-    pub outcome: Option<&'static str>,
+    /// How it goes in without scatter.
+    pub error_free_kind: Option<&'static str>,
     /// Whether the place was added for the interpolation.
     pub is_added: bool,
     /// The shot.
@@ -119,8 +117,7 @@ pub fn place_rows(table: &ShotTable) -> Vec<PlaceRow> {
             court_angle_rad,
             kind: shot.map(|shot| shot.kind),
             has_shot: shot.is_some(),
-            is_clean_shot: shot.is_some_and(|shot| table.is_clean(shot)),
-            outcome: shot.map(|shot| shot.outcome.name()),
+            error_free_kind: shot.map(|shot| shot.outcome.name()),
             is_added: table.added_distances_m.contains(&distance_m)
                 || table.added_angles_rad.contains(&court_angle_rad),
             shot: shot.map(ShotValues::from).unwrap_or_default(),
@@ -222,8 +219,8 @@ pub struct PitchRow {
     pub kind: Option<ShotKind>,
     /// Whether a clean one goes in.
     pub has_shot: bool,
-    /// How it goes in; `not-clean` for a most probable shot that misses without errors.
-    pub outcome: Option<&'static str>,
+    /// How it goes in; `misses` for a most probable shot that misses without errors.
+    pub error_free_kind: Option<&'static str>,
     /// The shot.
     #[serde(flatten)]
     pub shot: ShotValues,
@@ -247,9 +244,9 @@ impl PitchRow {
                 .map(|shot| shot.kind)
                 .or(not_clean.map(|shot| shot.kind)),
             has_shot: clean.is_some(),
-            outcome: clean
+            error_free_kind: clean
                 .map(|shot| shot.outcome.name())
-                .or(not_clean.map(|_| "not-clean")),
+                .or(not_clean.map(|_| "misses")),
             shot: ShotValues {
                 pitch_rad: Some(row.pitch_rad),
                 ..values

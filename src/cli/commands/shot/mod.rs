@@ -1,4 +1,4 @@
-//! `bankshot probability`: P of one nominal shot under up to nine errors.
+//! `bankshot shot`: P of one nominal shot under up to nine errors.
 
 mod along_variable;
 mod options;
@@ -13,26 +13,27 @@ use crate::cli::nominal_shot_flags::{of_flags, print_notes};
 use crate::cli::output_files;
 use crate::cli::plot_files::PlotType;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_hint, print_prose};
+use crate::cli::terminal::{print_answer, print_hint, print_next, print_text};
 use crate::dynamics::Release;
-use crate::present::best_shot_text::PROFILE_IS_EXACT;
-use crate::present::probability_text::answer_text;
+use crate::present::probability_text::probability_text;
 use crate::probability::{MAX_SHOTS, Sampler, monte_carlo};
 use crate::shooter::{Nominal, Profile};
+use crate::store::fit::Fit;
 
-pub(crate) use options::ProbabilityOptions;
+pub(crate) use options::ShotOptions;
 
-pub(crate) fn run(options: &ProbabilityOptions) -> Result<u8, Failure> {
-    let loaded = options.profile.load(&[])?;
-    let profile = options.scatter.changed(loaded)?.profile;
+pub(crate) fn run(options: &ShotOptions) -> Result<u8, Failure> {
+    let loaded = options.scatter.changed(options.profile.load(&[])?)?;
+    let scatter = &options.scatter.scatter;
+    let draws = options.draws.as_deref();
+    let fit = fit_folder::draws_for(draws, &loaded, !scatter.is_empty())?;
+    let profile = loaded.profile;
     output_files::check(&options.output)?;
     if let Some(path) = &options.plot {
         PlotType::of(path)?;
     }
-    let draws = fit_folder::read_draws_of(options.draws.as_deref(), &profile)?;
     if let Some(vary) = &options.vary {
-        let fit = draws.as_ref().map(|(_, fit)| fit);
-        return along_variable::run(options, (&profile, fit), vary);
+        return along_variable::run(options, (&profile, fit.as_ref()), vary);
     }
     let nominal = options.nominal.resolve(&profile)?;
     if let Some((seed, index)) = options.replay {
@@ -44,9 +45,13 @@ pub(crate) fn run(options: &ProbabilityOptions) -> Result<u8, Failure> {
     print_notes(notes);
     let effort = options.effort();
     effort.check(&profile).map_err(|error| of_flags(&[error]))?;
-    let of_draws = draws
+    let of_draws = fit
         .as_ref()
-        .map(|(_, fit)| fit_folder::shot_over_draws(fit, &profile, &nominal))
+        .filter(|_| !options.method.is_grid())
+        .map(|fit| match current_place(options, fit, &profile) {
+            Some(place) => Ok(fit.usual_probabilities(place)),
+            None => fit_folder::shot_over_draws(fit, &profile, &nominal),
+        })
         .transpose()?;
     let over_draws = of_draws.as_ref();
     let bars = ProgressBars::new();
@@ -55,22 +60,28 @@ pub(crate) fn run(options: &ProbabilityOptions) -> Result<u8, Failure> {
     if options.json {
         print_answer(&json::text(&json::document(&answer, units)))?;
     } else {
-        let mut text = answer_text(&answer, units);
-        if options.draws.is_none() {
-            text += PROFILE_IS_EXACT;
-        }
-        if let (Some((folder, fit)), Some(p)) = (&draws, &of_draws) {
-            text += &fit_folder::text_over_draws((folder, fit), p);
-        }
-        print_prose(&text)?;
+        print_text(&probability_text(&profile, &answer, scatter))?;
+        print_next(None, "");
     }
     if estimate.standard_error <= effort.target(&profile) {
         return Ok(code::DONE);
     }
-    print_hint(
-        "the wanted standard error was not reached; raise --budget, or choose a larger --target",
-    );
+    print_hint("the simulation error is larger than wanted; raise --budget or --standard-error");
     Ok(code::IMPRECISE)
+}
+
+/// The place of a fit whose current shot is asked about: the profile as the fit wrote it, and no
+/// other shot.
+fn current_place(options: &ShotOptions, fit: &Fit, profile: &Profile) -> Option<usize> {
+    if options.nominal.request().is_given() {
+        return None;
+    }
+    let mut places = fit.profiles.iter();
+    places.position(|own| {
+        own.location() == profile.location()
+            && own.nominal_overrides() == profile.nominal_overrides()
+            && own.physics() == profile.physics()
+    })
 }
 
 /// The release of one sample.

@@ -1,4 +1,4 @@
-//! `bankshot design`: what a test of some size will tell, before anyone shoots.
+//! `bankshot sample-size`: what a test of some size will tell, before anyone shoots.
 
 mod against;
 mod changes;
@@ -10,16 +10,18 @@ mod tracker;
 
 use self::designed_tests::DesignedTests;
 use crate::answers::json::{self, document};
-use crate::cli::failure::Failure;
-use crate::cli::terminal::{print_answer, print_prose};
+use crate::cli::failure::{Failure, code};
+use crate::cli::terminal::{print_answer, print_next, print_text};
 
-pub(crate) use options::DesignOptions;
+pub(crate) use options::SampleSizeOptions;
 
-pub(crate) fn run(options: &DesignOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &SampleSizeOptions) -> Result<u8, Failure> {
     let tests = DesignedTests::simulate(options)?;
     if options.json {
         let answer = document(&tests.answer(&options.change), tests.units);
         return print_answer(&json::text(&answer));
     }
-    print_prose(&tests.text(options))
+    print_text(&tests.text(options))?;
+    print_next(None, "");
+    Ok(code::DONE)
 }

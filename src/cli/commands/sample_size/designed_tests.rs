@@ -2,7 +2,7 @@
 
 use super::against::Against;
 use super::changes::{FirstSession, MOST_SHOTS, shots_for, size_to_check};
-use super::options::DesignOptions;
+use super::options::SampleSizeOptions;
 use super::tested_shot::TestedShot;
 use super::tracker::TrackerOfTest;
 use crate::cli::failure::{Failure, code};
@@ -20,8 +20,6 @@ pub(super) struct Target {
     pub(super) points: f64,
     /// The shots that do it.
     pub(super) shots: usize,
-    /// Whether a row was added to check it.
-    pub(super) is_added: bool,
 }
 
 /// What tests of each size tell.
@@ -45,7 +43,7 @@ fn simulate_of(
     shot: &TestedShot,
     noise: &Covariance,
     sizes: &[usize],
-    options: &DesignOptions,
+    options: &SampleSizeOptions,
 ) -> Result<Vec<DesignRow>, Failure> {
     // A large test scatters less from one simulation to the next, and takes longer.
     let asked = options.shots.iter().chain(&options.first);
@@ -67,7 +65,7 @@ fn simulate_of(
 
 impl DesignedTests {
     /// Simulates what the options ask for.
-    pub(super) fn simulate(options: &DesignOptions) -> Result<Self, Failure> {
+    pub(super) fn simulate(options: &SampleSizeOptions) -> Result<Self, Failure> {
         let (physics, place) = (&options.physics, options.place);
         let shot = TestedShot::read(&options.profile, physics, place, &options.nominal)?;
         let second = options
@@ -116,7 +114,7 @@ impl DesignedTests {
         &mut self,
         points: f64,
         sizes: &[usize],
-        options: &DesignOptions,
+        options: &SampleSizeOptions,
     ) -> Result<Target, Failure> {
         let shots = shots_for(&self.rows, points / 100.0);
         let is_added = (10..=MOST_SHOTS).contains(&shots) && !sizes.contains(&shots);
@@ -125,11 +123,7 @@ impl DesignedTests {
             self.rows.extend(row);
             self.rows.sort_by_key(|row| row.shots);
         }
-        Ok(Target {
-            points,
-            shots,
-            is_added,
-        })
+        Ok(Target { points, shots })
     }
 
     /// How many shots show how a second shooter differs.
@@ -137,7 +131,7 @@ impl DesignedTests {
         &self,
         second: &TestedShot,
         sizes: &[usize],
-        options: &DesignOptions,
+        options: &SampleSizeOptions,
     ) -> Result<Against, Failure> {
         let noise = self.tracker.noise_at(second)?;
         let rows = simulate_of(second, &noise, sizes, options)?;
