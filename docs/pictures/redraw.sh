@@ -12,6 +12,7 @@ draw() { # NAME SPEED PITCH BACKSPIN
 if [ $# -eq 0 ]; then
   cargo build --release --bin bankshot
   cargo run --release --example draw_half_court
+  cargo run --release --example draw_terminal
   figures=$(mktemp -d)
   "$bankshot" figures -o "$figures" --quiet >/dev/null
   cp "$figures"/*.svg docs/pictures

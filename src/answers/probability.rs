@@ -97,7 +97,7 @@ pub enum Method {
     Sobol,
     /// Plain random samples.
     MonteCarlo,
-    /// Eq. 25 on four grids shifted from line to line (four errors only).
+    /// A grid as in Eq. 25 of the paper, shifted from line to line (four errors only).
     Grid,
     /// Eq. 25 as printed in the paper, on one common grid (four errors only).
     PaperGrid,

@@ -28,7 +28,7 @@ use std::path::PathBuf;
 const EXIT_CODES: &str = "\
 Exit codes:
   0   everything is done
-  1   done, but the wanted standard error was not reached
+  1   done, but less precise than wanted
   2   usage or configuration refused; nothing was written
   3   incomplete: some rows or jobs are missing or failed, the others are done;
       or no shot goes in
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     /// Print no progress and no remarks.
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
-    /// Print all details, not only what can change the decision.
+    /// Print everything, not only what matters most.
     #[arg(long, alias = "verbose", global = true)]
     pub(crate) details: bool,
 }

@@ -140,7 +140,7 @@ fn read_profile_text(path: &Path) -> Result<String, Failure> {
     let is_table = |end: &std::ffi::OsStr| end == "csv" || end == "parquet";
     if path.extension().is_some_and(is_table) {
         return Err(Failure::usage(format!(
-            "{shown}: this is a table, not a profile: `bankshot fit {shown}` makes a profile of measured shots"
+            "{shown}: this is a table, not a profile: `bankshot fit {shown}` makes a profile from measured shots"
         )));
     }
     let text = read_text(path)?;

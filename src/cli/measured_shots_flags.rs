@@ -39,7 +39,7 @@ pub(crate) struct MeasuredShotsOptions {
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
     /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
-    /// 'made=Result'. A minus before COLUMN turns its sign round and a number after UNIT is added:
+    /// 'made=Result'. A minus before COLUMN reverses the sign, a number after UNIT is added:
     /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such
     /// maps, one a line.
     #[arg(long, value_name = "MAP")]
@@ -54,7 +54,7 @@ pub(crate) struct MeasuredShotsOptions {
     /// Order of day and month in dates such as 03/04/2025.
     #[arg(long, value_name = "ORDER")]
     pub(crate) dates: Option<DatesArg>,
-    /// The value of a make in the results column, such as 1; all other rows, also blank ones, are
+    /// The text of a make in the results column, such as 1; all other rows, also blank ones, are
     /// misses.
     #[arg(long, value_name = "VALUE")]
     pub(crate) made: Option<String>,

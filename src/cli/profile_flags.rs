@@ -38,7 +38,7 @@ pub(crate) struct PlaceOptions {
     /// Distance from the hoop's centre, such as '12 ft' [default: the profile's].
     #[arg(long, allow_hyphen_values = true)]
     distance: Option<String>,
-    /// Court angle, such as '30 deg' [default: the profile's].
+    /// Court angle: 0 deg is straight in front, '30 deg' to the right [default: the profile's].
     #[arg(long, allow_hyphen_values = true)]
     angle: Option<String>,
 }

@@ -163,7 +163,7 @@ const SEARCH: &[Key] = &[
     (
         "standard_error",
         Number,
-        "Wanted standard error of each P; 0.001 by default.",
+        "Wanted standard error of each probability; 0.001 by default.",
     ),
     (
         "climb_samples",

@@ -91,7 +91,7 @@ const SHELL: &str = "assumed: a thin shell";
 const FRICTION: &str =
     "assumed: leather on painted steel or glass; new composite balls have up to 0.8";
 const STIFFNESS: &str = "assumed: the paper's";
-pub(super) const SHAPE: &str = "assumed: usual equipment";
+pub(super) const SHAPE: &str = "assumed: typical equipment";
 const ROOM: &str = "assumed: a gym near sea level; give altitude and temperature";
 const STANDARD: &str = "standard gravity";
 const NONE: &str = "";

@@ -246,7 +246,8 @@ fn what_limits(profile: &Profile, found: &[(ShotKind, &BestShot)]) -> Vec<String
             found[0].0.name(),
             of_100(p),
             match shot.at_limits.contains(&Limit::MaxBackspin) {
-                true => format!(" More than max_backspin ({spin:.1} rev/s) was not tried."),
+                true =>
+                    format!(" Backspin above your max_backspin, {spin:.1} rev/s, was not tried."),
                 false => String::new(),
             }
         ));

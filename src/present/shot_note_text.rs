@@ -9,7 +9,7 @@ use crate::units::{DEGREE_RAD, REV_RAD};
 pub fn shot_note_text(note: &ShotNote) -> String {
     match note {
         ShotNote::BackspinNotGiven { backspin_rad_s } => format!(
-            "the backspin is not given: {:.3} rev/s, the profile's max_backspin, is used; give another with --backspin",
+            "no backspin is given; the profile's max_backspin, {:.1} rev/s, is used (change it with --backspin)",
             backspin_rad_s / REV_RAD
         ),
         ShotNote::MayPassThrough { most_m_s } => format!(
@@ -45,7 +45,7 @@ pub fn note_text(note: &Note) -> String {
         Note::Profile(words) => words.clone(),
         Note::Shot(note) => shot_note_text(note),
         Note::Imprecise => {
-            "the wanted standard error was not reached; raise the budget, or choose a larger target"
+            "the simulation error is larger than wanted; raise the budget or the standard error"
                 .to_owned()
         }
     }

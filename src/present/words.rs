@@ -149,8 +149,8 @@ pub fn scatter_note(scatter: &[String]) -> Option<String> {
 #[must_use]
 pub fn taken_as_exact(has_draws: bool) -> &'static str {
     match has_draws {
-        true => "The ring is taken as exact.",
-        false => "Your scatter and the ring are taken as exact.",
+        true => "This assumes a standard ring.",
+        false => "This assumes that your scatter is right and the ring is standard.",
     }
 }
 

@@ -139,9 +139,12 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
     parse_toml(&texts.sweep, origin, |mut root, diagnostics| {
         let mut table = root.table("sweep", diagnostics);
         if !root.has("sweep") {
-            let message = "is missing: this is no sweep; for a profile use `bankshot best`";
+            let message = "is missing, so this is no sweep; for a profile use `bankshot best`";
             diagnostics.push(table.table_diagnostic(message));
-            return None;
+            // A profile is not a sweep with errors.
+            if root.has("location") {
+                return None;
+            }
         }
         let name = read_name(&mut table, diagnostics);
         // Read with the file that it names.

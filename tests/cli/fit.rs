@@ -267,7 +267,7 @@ fn contract_bad_shots_are_refused_or_named() {
     fs::write(of_best.join("curves.csv"), "kept").unwrap();
     fit("docs/data/lab.csv", &of_best, &[])
         .exits(2)
-        .says("holds the results of `bankshot best`; name another folder");
+        .says("has the results of `bankshot best`; name another folder");
     assert_eq!(fs::read_dir(&of_best).unwrap().count(), 1);
     for (flags, message) in [
         (vec!["--tracker", "nobody"], "is neither a tracker"),

@@ -330,7 +330,7 @@ fn contract_every_dependency_is_in_the_notices() {
 /// Where a text is looked into by words that this program does not write itself: input of a user,
 /// names of files and columns, messages of libraries, a template, the layout of a terminal.
 const READS_OF_OTHERS: [(&str, &str); 23] = [
-    ("cli/commands/design/tracker.rs", "optical_"),
+    ("cli/commands/sample_size/tracker.rs", "optical_"),
     ("cli/commands/new.rs", "  #"),
     ("cli/commands/simulate.rs", "Parquet error: "),
     ("cli/commands/team/one_place.rs", "profile.toml"),

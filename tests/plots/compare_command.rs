@@ -8,7 +8,7 @@ use std::process::Command;
 /// `bankshot compare` of a sweep, perhaps with another, into a folder.
 fn compare(sweep: &SweepRun, other: Option<&Path>, plots: &Path) -> Command {
     let mut command = bankshot();
-    command.arg("compare").arg(sweep.results());
+    command.arg("map").arg(sweep.results());
     command.arg("--out").arg(plots);
     if let Some(other) = other {
         command.arg("--against").arg(other);
@@ -43,7 +43,7 @@ fn contract_compare_draws_the_maps_of_a_sweep_with_the_same_bytes_every_time() {
 #[test]
 fn contract_compare_writes_to_the_folder_of_the_sweep_by_default() {
     let sweep = SweepRun::new(SMALL_SWEEP);
-    succeed(bankshot().arg("compare").arg(sweep.results()));
+    succeed(bankshot().arg("map").arg(sweep.results()));
     assert!(sweep.results().join("plots/bank_and_direct.svg").exists());
 }
 
@@ -55,10 +55,7 @@ fn contract_compare_draws_the_difference_of_two_sweeps() {
     let steadier = SweepRun::new(&SMALL_SWEEP.replace("0.25 ft/s", "0.15 ft/s"));
     let output = succeed(&mut compare(&sweep, Some(&steadier.results()), &plots));
     let text = printed(&output);
-    assert!(
-        text.contains("more of 100 shots than shooter (small)"),
-        "{text}"
-    );
+    assert!(text.contains("than for shooter (small)"), "{text}");
     assert!(plots.join("against.png").exists());
     assert!(write_report(&plots).exists());
 }
@@ -86,7 +83,7 @@ fn contract_the_report_of_a_comparison_has_both() {
     let page = fs::read_to_string(write_report(&plots)).unwrap();
     for words in [
         "small: shooter against small: steadier",
-        "more of 100 shots than shooter (small)",
+        "than for shooter (small)",
     ] {
         assert!(page.contains(words), "{words}");
     }
@@ -102,11 +99,7 @@ fn contract_the_report_of_a_comparison_has_both() {
     let (first, second) = (profile("Ann"), profile("Bartholomew"));
     let out = sweep.path("pair");
     let mut command = bankshot();
-    command
-        .arg("compare")
-        .arg(&first)
-        .arg("--against")
-        .arg(&second);
+    command.arg("map").arg(&first).arg("--against").arg(&second);
     succeed(command.arg("--out").arg(&out));
     let page = fs::read_to_string(write_report(&out)).unwrap();
     for words in [
@@ -119,7 +112,7 @@ fn contract_the_report_of_a_comparison_has_both() {
     }
     // A comparison without another shooter forgets the one before.
     let mut command = bankshot();
-    succeed(command.arg("compare").arg(&first).arg("--out").arg(&out));
+    succeed(command.arg("map").arg(&first).arg("--out").arg(&out));
     let page = fs::read_to_string(write_report(&out)).unwrap();
     // (A short name could be in the encoded pictures by chance.)
     assert!(!page.contains("Bartholomew"));

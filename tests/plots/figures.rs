@@ -43,6 +43,11 @@ fn contract_the_half_court_map_of_the_docs_is_up_to_date() {
 }
 
 #[test]
+fn contract_the_terminal_of_the_readme_is_up_to_date() {
+    assert_up_to_date("terminal", &super::terminal::draw().unwrap());
+}
+
+#[test]
 fn contract_the_half_court_results_of_the_docs_are_up_to_date() {
     let HalfCourt { config, rows } = HalfCourt::load();
     let columns = result_columns();

@@ -12,3 +12,4 @@ mod release_maps;
 mod report_pages;
 mod shot_plots;
 mod support;
+mod terminal;

@@ -72,10 +72,10 @@ fn contract_the_page_of_a_sweep_works_in_a_browser() {
         assert_eq!(seen["places"], 9, "{seen:#}");
         assert_eq!(seen["chosen"], 2, "{seen:#}");
         let from = "From 8 ft from the hoop, straight in front.";
-        assert_starts_with(&seen["shown"], &format!("{from} Direct: P "));
-        assert_starts_with(&seen["bank"], &format!("{from} Bank: P "));
+        assert_starts_with(&seen["shown"], &format!("{from} Direct: "));
+        assert_starts_with(&seen["bank"], &format!("{from} Bank: "));
         assert_eq!(seen["playing"], "Stop");
-        assert!(seen["label"].as_str().unwrap().contains("Bank: P "));
+        assert!(seen["label"].as_str().unwrap().contains("Bank: "));
         // Only tables and plots scroll sideways.
         assert_eq!(seen["wide"], 0, "{seen:#}");
     }
@@ -96,7 +96,7 @@ fn contract_the_page_of_one_location_shows_the_sensitivity_and_works_in_a_browse
     );
     let page = write_report(&runs);
     let html = fs::read_to_string(&page).unwrap();
-    assert!(html.contains("Sensitivity") && html.contains("no error in speed"));
+    assert!(html.contains("What matters most") && html.contains("no scatter in speed"));
     assert!(html.contains("Where to aim") && !html.contains("rests on the physics"));
     succeed(
         bankshot()
@@ -105,7 +105,7 @@ fn contract_the_page_of_one_location_shows_the_sensitivity_and_works_in_a_browse
     );
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("How much rests on the physics"));
-    assert!(html.contains("hoop_restitution 0.41"));
+    assert!(html.contains("ring restitution 0.41"));
     let Some(chromium) = chromium() else { return };
     for width in [1280, 390] {
         let seen = visit(chromium, &page, width);

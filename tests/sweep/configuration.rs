@@ -142,7 +142,7 @@ fn contract_invalid_sweeps_are_refused_with_each_error_at_its_line() {
             "is an unknown key",
         ),
         ("speed = 12", "speed = 65536000", "from 2 to 100000"),
-        ("[sweep]", "[sweeps]", "there is no [sweep]"),
+        ("[sweep]", "[sweeps]", "so this is no sweep"),
         ("[sweep]", "[sweep]\nname = \"twice\"", "duplicate key"),
     ] {
         let text = SWEEP.replace(from, to);

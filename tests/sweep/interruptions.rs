@@ -97,7 +97,7 @@ fn contract_only_the_job_that_panics_fails() {
     let out = test.out("panic");
     let output = test.run(&out, &["--quiet", "--fault", "panic:2"]);
     assert_code(&output, 3);
-    assert_printed(&output, "10 found");
+    assert_printed(&output, "10 with a best shot");
     assert_printed(&output, "panicked: fault injected at spot 2");
     // It stays failed, and is listed, until the user asks for it again.
     let output = test.run(&out, &["--quiet"]);
@@ -120,7 +120,7 @@ fn contract_a_spot_that_aborts_the_program_twice_is_given_up_and_listed() {
     }
     let output = test.run(&out, &faulty);
     assert_code(&output, 3);
-    assert_printed(&output, "10 found");
+    assert_printed(&output, "10 with a best shot");
     assert_printed(&output, "the program aborted twice");
     let output = test.run(&out, &["--quiet", "--retry-failed"]);
     assert_code(&output, 0);

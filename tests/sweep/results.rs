@@ -96,11 +96,11 @@ fn contract_sweep_report_and_compare_count_with_one_rule() {
     let sweep = test.run(&out, &["--quiet"]);
     let sentence = printed(&sweep)
         .lines()
-        .find(|line| line.starts_with("The bank shot is better at"))
+        .find(|line| line.starts_with("Bank is better at"))
         .unwrap()
         .to_owned();
-    assert!(sentence.ends_with("by at least 1 in 100."), "{sentence}");
-    for command in ["compare", "report"] {
+    assert!(sentence.ends_with("by at least 1 per 100."), "{sentence}");
+    for command in ["map", "report"] {
         let output = bankshot().arg(command).arg(&out).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         // A paragraph may break the sentence over two lines.

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-SHOTS is a file, which is fitted first (with the options of `bankshot fit`), or the folder of a fit, also one with several players.
+SHOTS is a file, which is fitted first with the options of `bankshot fit`, or the folder of a fit. Both may have several players.
 
 Examples:
   bankshot advise docs/data/gym_sensor.csv

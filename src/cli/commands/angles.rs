@@ -65,7 +65,7 @@ pub(crate) struct AnglesOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// Add the uncertainty of a fit (its folder) [default: the fit that wrote the profile].
+    /// Folder of a fit whose uncertainty is added [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["distances", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.

@@ -27,7 +27,7 @@ Examples:
   bankshot best configs/free_throw.toml --pitch '50 deg'
   bankshot best configs/free_throw.toml --scatter 'speed=-20%'
 
-Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (one value of the best shots changed at a time), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
+Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (makes as one value at a time changes), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
 pub(crate) struct BestOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
@@ -41,7 +41,7 @@ pub(crate) struct BestOptions {
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long = "output", short = 'o', alias = "out", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Add the uncertainty of a fit (its folder) [default: the fit that wrote the profile].
+    /// Folder of a fit whose uncertainty is added [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of the table.

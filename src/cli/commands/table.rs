@@ -57,15 +57,15 @@ pub(crate) struct TableOptions {
     /// Court angles [default: the profile's].
     #[arg(long, value_name = "LIST|RANGE", allow_hyphen_values = true)]
     pub(crate) angles: Option<String>,
-    /// The kind of the shots; best: at each distance the better one, with one court angle.
+    /// The kind of the shots; best: the better kind at each distance (needs one court angle).
     #[arg(long, value_enum, default_value_t = KindArg::Direct)]
     pub(crate) kind: KindArg,
     #[command(flatten)]
     pub(crate) fixed: FixedOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// The most that interpolation may cost, and the most that an interpolated probability may be
-    /// off; 1 adds no rows (with `--kind best` only those where the better kind changes).
+    /// Add rows until interpolation costs no more than this (0.01: 1 make per 100) and an
+    /// interpolated probability is off by no more; 1: none (except where the better kind changes).
     #[arg(long, value_name = "PROBABILITY", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
     /// Add no rows, and check nothing, where fewer shots than this go in: at the end of a

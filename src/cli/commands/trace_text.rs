@@ -10,10 +10,10 @@ pub(crate) fn outcome_text(outcome: &Outcome) -> &'static str {
         return "misses: still in play at the time limit";
     }
     match outcome.kind {
-        OutcomeKind::Swish => "goes in: swish",
-        OutcomeKind::RimIn => "goes in: rim, then in",
-        OutcomeKind::BankIn => "goes in: board, then in",
-        OutcomeKind::BankRimIn => "goes in: board, rim, in",
+        OutcomeKind::Swish => "goes in, a swish",
+        OutcomeKind::RimIn => "goes in off the ring",
+        OutcomeKind::BankIn => "goes in off the board",
+        OutcomeKind::BankRimIn => "goes in off board and ring",
         OutcomeKind::InAndOut => "misses: in and out",
         OutcomeKind::Short => "misses: short",
         OutcomeKind::Long => "misses: long",
@@ -52,7 +52,7 @@ pub(crate) fn trace_text(trace: &Trace, units: UnitSystem) -> String {
     }
     let _ = writeln!(
         text,
-        "\nx, y, z from the hoop's centre: onto the court, to the shooter's right, and up\n   time s  event                      x, y, z {long}               speed {long}/s"
+        "\nFrom the hoop's centre: x onto the court, y to the shooter's right, z up.\n   time s  event                      x, y, z {long}               speed {long}/s"
     );
     for event in &trace.events {
         let [x, y, z] = event.state.position_m.into();

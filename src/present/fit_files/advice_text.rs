@@ -109,7 +109,9 @@ impl PlayerAdvice<'_> {
         let mut notes: Vec<String> = self.kind_in_words().into_iter().collect();
         notes.extend(self.not_suggested());
         notes.extend(self.spin_in_words());
-        notes.push("Not included: another ring, ball or air (`bankshot physics`).".to_owned());
+        notes.push(
+            "The intervals do not cover another ring, ball or air (`bankshot physics`).".to_owned(),
+        );
         TextAnswer {
             answer: self.answer(),
             subject: subject(self.profile, self.units),
@@ -305,7 +307,7 @@ impl PlayerAdvice<'_> {
         let mut notes = Vec::new();
         if !limit.is_empty() {
             notes.push(format!(
-                "At the limit of what these shots support: {}.",
+                "Not certain yet, in makes per 100: {}.",
                 limit.join("; ")
             ));
         }

@@ -187,8 +187,7 @@ pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> Option<String> {
         true => "steeper",
         false => "flatter",
     };
-    let angle =
-        (now != then).then(|| format!("{steeper} (entry angle {then} deg instead of {now})"));
+    let angle = (now != then).then(|| format!("{steeper}, at {then} deg instead of {now}"));
     let parts: Vec<String> = moves.into_iter().flatten().chain(angle).collect();
     (!parts.is_empty()).then(|| {
         format!(

@@ -232,7 +232,7 @@ impl FitText<'_> {
         let passed = match fit.notes.iter().any(is_of_checks) {
             true => String::new(),
             false => format!(
-                " All {checks} checks of the data passed (normal distribution; drift and dependence between shots)."
+                " The data passed all {checks} checks: normal distribution, no drift, no shot influenced by the one before."
             ),
         };
         notes.push(format!(
@@ -241,7 +241,7 @@ impl FitText<'_> {
         ));
         notes.extend(warnings);
         notes.push(
-            "Not included: another ring, ball or air (`bankshot physics`), and a sensor that reads too high or too low."
+            "The intervals do not cover another ring, ball or air (`bankshot physics`), or a sensor that reads too high or too low."
                 .to_owned(),
         );
         notes

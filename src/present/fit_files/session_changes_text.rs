@@ -159,7 +159,7 @@ impl Changes<'_> {
         }
         if certain.is_empty() && possible.is_empty() {
             sentences.push(format!(
-                "None of the {} values shows a change.",
+                "None of the {} values compared shows a change.",
                 self.tested
             ));
         }
@@ -223,7 +223,7 @@ impl Changes<'_> {
             notes.push(format!("Shots a session to decide: {}.", needed.join(", ")));
         }
         notes.push(
-            "Not included: a player's form of the day, another ring, ball or air, and a constant offset of the sensor."
+            "The intervals do not cover how a player varies from day to day, another ring, ball or air, or a constant offset of the sensor."
                 .to_owned(),
         );
         notes

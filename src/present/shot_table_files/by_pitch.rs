@@ -121,7 +121,7 @@ impl AngleCurve<'_> {
         let angle = |row: usize| degrees(self.rows[row].pitch_rad);
         let cost = |row: usize| {
             let loss = highest - self.p(row)?;
-            (loss >= LEVEL / 10.0).then(|| format!("{} deg costs {}", angle(row), per_100(loss)))
+            (loss >= LEVEL / 10.0).then(|| format!("{} fewer at {} deg", per_100(loss), angle(row)))
         };
         let neighbours = [best.checked_sub(1), Some(best + 1), best.checked_sub(2)];
         let in_list = neighbours
@@ -131,7 +131,7 @@ impl AngleCurve<'_> {
         let costs: Vec<String> = in_list.filter_map(cost).collect();
         let costs = match costs.is_empty() {
             true => String::new(),
-            false => format!(" Per 100 shots, {}.", costs.join(", ")),
+            false => format!(" Per 100, {}.", costs.join(", ")),
         };
         let mut answer = vec![format!(
             "Release at about {} deg: {} of 100 go in.{costs}",
@@ -242,7 +242,7 @@ impl AngleCurve<'_> {
         let is_at_end = |best: usize| best == 0 || best + 1 == self.rows.len();
         if self.rows.len() > 1 && self.best().is_some_and(is_at_end) {
             notes.push(
-                "The best angle is at the end of the list; angles beyond it may be better (--pitches)."
+                "The best angle is the last of the list; angles between or beyond may be better (--pitches)."
                     .to_owned(),
             );
         }
@@ -303,8 +303,8 @@ impl AngleCurve<'_> {
         let errors = self.found().map(|(_, shot)| shot.standard_error);
         let choice = self.profile.search().choice;
         let best = match choice.includes(NominalVariable::Backspin) {
-            true => "Speed, direction and spin are the best ones at each angle.",
-            false => "Speed and direction are the best ones at each angle.",
+            true => "Each row has the best speed, direction and spin for its angle.",
+            false => "Each row has the best speed and direction for its angle.",
         };
         format!(
             "{best} {} Simulation error: {} per 100.",
@@ -340,7 +340,7 @@ impl AngleCurve<'_> {
             .min_by(|a, b| a.1.nominal.speed_m_s.total_cmp(&b.1.nominal.speed_m_s));
         if let Some((pitch_rad, shot)) = slowest {
             text += &format!(
-                "The angle that needs the least speed is {} deg ({:.2} {long}/s).\n",
+                "Of these angles, {} deg needs the least speed ({:.2} {long}/s).\n",
                 degrees(pitch_rad),
                 shot.nominal.speed_m_s / metre
             );

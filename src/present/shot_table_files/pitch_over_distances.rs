@@ -236,7 +236,7 @@ impl OverDistances<'_> {
         }
         if self.rows().len() > 1 && (best == 0 || best + 1 == self.rows().end) {
             notes.push(format!(
-                "{} deg is at the end of the list; angles beyond it may be better (--pitches).",
+                "{} deg is the last angle of the list; angles between or beyond may be better (--pitches).",
                 self.angle(best)
             ));
         } else {

@@ -43,7 +43,7 @@ pub(crate) struct CompareOptions {
     pub(crate) after: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) measured: MeasuredShotsOptions,
-    /// Of sessions from several places, the number of the place to compare [default: 1, the first
+    /// The number of the place to compare, for sessions from several places [default: 1, the first
     /// that both have].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
@@ -108,6 +108,13 @@ pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
 
 /// Refuses options that do not go together, before anything is computed.
 fn check_options(options: &CompareOptions) -> Result<(), Failure> {
+    // `compare` drew the maps until version 0.1.
+    if options.before.join("configuration.json").exists() {
+        return Err(Failure::usage(format!(
+            "{}: is a sweep; `bankshot map` draws its maps, `compare` needs two sessions of measured shots",
+            options.before.display()
+        )));
+    }
     let after_is_file = options.after.as_ref().is_some_and(|after| !after.is_dir());
     if options.before.is_dir() && !after_is_file {
         fit_folder::refuse_options_of_files(&options.before, &options.measured)?;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The file has releases (speed, pitch, polar or aim), landings (entry_angle, depth, left_right) or trajectories (shot, time, x, y, z). Each column has its unit in its name, as in speed_ft_s, depth_in, time_s. It can have made, shooter, session, place (a name), and where that is (distance, court_angle, release_height). Units: ft_s m_s mph km_h, deg rad, rev_s rpm rad_s, ft in m cm mm, s ms.
+The file has releases (speed, pitch, polar or aim), landings (entry_angle, depth, left_right) or trajectories (shot, time, x, y, z). Each column has its unit in its name, as in speed_ft_s, depth_in, time_s. Optional columns: made, shooter, session, place (a name), and its position (distance, court_angle, release_height). Units: ft_s m_s mph km_h, deg rad, rev_s rpm rad_s, ft in m cm mm, s ms.
 
 Signs: release directions are positive to the left, landings (left_right) positive to the right. aim is measured from the line to the hoop, polar from the court's long axis.
 
@@ -30,7 +30,7 @@ pub(crate) struct FitOptions {
     pub(crate) out: Option<PathBuf>,
     /// Also estimate a value the sensor does not measure: backspin or hoop_restitution (from makes
     /// and misses), drag_coefficient (from trajectories). Repeatable. With several players, ring
-    /// and air are estimated jointly.
+    /// and air are estimated once for all.
     #[arg(long, value_name = "PARAMETER")]
     pub(crate) free: Vec<String>,
     /// Print fit.json instead of the text.

@@ -108,18 +108,18 @@ pub(super) fn shots_to_show(
     let listed = |shots: &dyn Fn(f64) -> Option<f64>| {
         let of_changes = changes
             .iter()
-            .map(|points| format!("{points} per 100, {}", in_short(shots(points / 100.0))));
-        of_changes.collect::<Vec<_>>().join("; ")
+            .map(|points| format!("{} for {points} per 100", in_short(shots(points / 100.0))));
+        of_changes.collect::<Vec<_>>().join(", ")
     };
     let of_falls =
         |shots: &dyn Fn(f64) -> Option<f64>| falls.map(|fall| in_short(shots(fall))).join(", ");
     let mut notes = vec![
         format!(
-            "Shots in each of two sessions to show: {}.",
+            "Shots in each of two sessions that show a change: {}.",
             listed(&|change| Some(shots_in_each(rows, change)))
         ),
         format!(
-            "To show 10, 20 or 30 % less scatter in one value: {}.",
+            "Shots in each that show 10, 20 or 30 % less scatter in one value: {}.",
             of_falls(&|fall| Some(SessionError::each_session(scatter, fall, 1.0 - fall)))
         ),
     ];

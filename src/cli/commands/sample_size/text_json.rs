@@ -40,7 +40,7 @@ impl DesignedTests {
         );
         if let Some(shots) = self.checked {
             notes.push(format!(
-                "The row of {shots} shots was added because --change needs about that many."
+                "The row of {shots} shots was added, as the smallest --change needs about that many."
             ));
         }
         notes.extend(
@@ -68,7 +68,7 @@ impl DesignedTests {
             return Vec::new();
         };
         let mut answer = vec![format!(
-            "{} shots measure makes per 100 to within {}; counting makes alone, to within {}.",
+            "With {} measured shots makes per 100 are known to within {}; with counting alone, to within {}.",
             row.shots,
             width_text(half_width(row.probability_error)),
             width_text(half_width(row.counting_error))

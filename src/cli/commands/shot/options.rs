@@ -42,13 +42,13 @@ pub(crate) struct ShotOptions {
     /// Seed of the samples [default: the profile's].
     #[arg(long)]
     pub(crate) seed: Option<u64>,
-    /// Trace sample number INDEX of a seed instead.
+    /// Trace one simulated shot, by its seed and number, instead of counting makes.
     #[arg(long, value_name = "SEED:INDEX", value_parser = sample)]
     pub(crate) replay: Option<(u64, u64)>,
-    /// Add the uncertainty of a fit (its folder) [default: the fit that wrote the profile].
+    /// Folder of a fit whose uncertainty is added [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "scatter")]
     pub(crate) draws: Option<PathBuf>,
-    /// Give one value of the shot several values in turn: speed, pitch, polar, aim, backspin,
+    /// Try several settings of one quantity: speed, pitch, polar, aim, backspin,
     /// side_spin or rifle_spin.
     #[arg(long, value_name = "VARIABLE=LIST|RANGE", conflicts_with_all = ["replay", "method", "budget", "grid"])]
     pub(crate) vary: Option<String>,

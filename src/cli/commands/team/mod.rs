@@ -37,7 +37,7 @@ pub(crate) struct TeamOptions {
     /// shooters.
     #[arg(required = true, num_args = 1..)]
     pub(crate) players: Vec<PathBuf>,
-    /// A sweep: its places and its search. Each player takes the place of its shooter.
+    /// A sweep, for its places and its search. Each player in turn is its shooter.
     #[arg(long, value_name = "SWEEP.toml")]
     pub(crate) sweep: Option<PathBuf>,
     /// Folder of the results of --sweep.
@@ -49,7 +49,7 @@ pub(crate) struct TeamOptions {
         default_value = "results/team"
     )]
     pub(crate) out: PathBuf,
-    /// Of fits with several places: the number of the place that each player shoots from, 1 for the
+    /// The number of the place that each player shoots from, for fits with several places; 1 for the
     /// first.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "sweep")]
     pub(crate) place: Option<u32>,

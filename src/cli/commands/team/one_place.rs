@@ -312,7 +312,7 @@ fn notes(players: &[PlayerShots]) -> Vec<String> {
             "best of all: the probability that no other player's best shot makes more.",
         ),
         (!has_fits, "Each profile is taken as exact."),
-        (has_fits, "The ring is taken as exact."),
+        (has_fits, "This assumes a standard ring."),
     ];
     let there = notes.into_iter().filter(|(is_there, _)| *is_there);
     there.map(|(_, note)| note.to_owned()).collect()
