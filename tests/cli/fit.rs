@@ -272,10 +272,7 @@ fn contract_bad_shots_are_refused_or_named() {
     for (flags, message) in [
         (vec!["--tracker", "nobody"], "is neither a tracker"),
         (vec!["--free", "luck"], "--free luck: must be"),
-        (
-            vec!["--free", "drag_coefficient"],
-            "only trajectories tell it",
-        ),
+        (vec!["--free", "drag_coefficient"], "needs trajectories"),
         (
             vec!["--map", "pitch_deg=nothing"],
             "there is no column nothing",

@@ -83,7 +83,7 @@ fn contract_a_backspin_that_nobody_gives_is_said() {
     };
     let (without, with) = (p(&[]), p(&["--backspin", "3 rev/s"]));
     assert_eq!(without.json()["probability"], with.json()["probability"]);
-    without.says("the backspin is not given: 3.000 rev/s");
+    without.says("no backspin is given; the profile's max_backspin, 3.0 rev/s, is used");
     assert!(!with.stderr.contains("backspin"), "{with:?}");
     let releases = "distance_ft,court_angle_deg,release_height_ft,speed_ft_s,pitch_deg,polar_deg\n13.75,0,7,24.3,52,0\n";
     let releases = write_file(&folder, "r.csv", releases);

@@ -28,7 +28,7 @@ fn contract_trace_says_what_happened() {
     ];
     Answer::of(trace(&shot).arg("--output").arg(&csv))
         .exits(0)
-        .prints("goes in: board, then in")
+        .prints("goes in off the board")
         .prints("touches the board");
     let text = fs::read_to_string(csv).unwrap();
     assert!(text.starts_with("time_s,x_ft,y_ft,z_above_ring_ft,"));

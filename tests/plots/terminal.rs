@@ -5,13 +5,11 @@ use bankshot::probability::Silent;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// The commands of the picture.
-const COMMANDS: [&str; 2] = [
-    "best configs/free_throw.toml",
-    "advise docs/data/gym_sensor.csv",
+/// The commands of the picture, and how many lines of each answer a reader takes in at a glance.
+const COMMANDS: [(&str, usize); 2] = [
+    ("best configs/free_throw.toml", 9),
+    ("advise docs/data/gym_sensor.csv", 8),
 ];
-/// Lines of each answer: what a reader takes in at a glance.
-const MOST_LINES: usize = 12;
 /// Columns of the terminal.
 const COLUMNS: usize = 80;
 const LETTER: (f64, f64) = (8.43, 19.0);
@@ -22,7 +20,7 @@ pub(crate) fn draw() -> std::io::Result<String> {
     let runs = tempfile::tempdir()?;
     // Whether a line is a command, and the line.
     let mut lines: Vec<(bool, String)> = Vec::new();
-    for command in COMMANDS {
+    for (command, count) in COMMANDS {
         let mut arguments: Vec<String> = vec!["bankshot".into(), "--quiet".into()];
         arguments.extend(command.split(' ').map(str::to_owned));
         if command.starts_with("best") {
@@ -32,7 +30,7 @@ pub(crate) fn draw() -> std::io::Result<String> {
         let answer = answer_of(&arguments, Arc::new(Silent)).answer;
         let text = String::from_utf8(answer).map_err(std::io::Error::other)?;
         lines.push((true, format!("$ bankshot {command}")));
-        let shown = text.lines().take(MOST_LINES);
+        let shown = text.lines().take(count);
         lines.extend(shown.map(|line| (false, line.to_owned())));
         lines.push((false, String::new()));
     }

@@ -49,8 +49,8 @@ pub(crate) struct TeamOptions {
         default_value = "results/team"
     )]
     pub(crate) out: PathBuf,
-    /// The number of the place that each player shoots from, for fits with several places; 1 for the
-    /// first.
+    /// The number of the place that each player shoots from, for fits with several places; 1 for
+    /// the first.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "sweep")]
     pub(crate) place: Option<u32>,
     #[command(flatten)]
