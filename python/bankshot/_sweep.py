@@ -108,7 +108,7 @@ def compare(
     """Draws maps of bank and direct shots: of a sweep, of two, or about the best shots of a profile's file."""
     path = what.folder if isinstance(what, Sweep) else Path(what)
     folder = Path(out) if out is not None else (path if path.is_dir() else path.parent) / "plots"
-    command = ["compare", str(path), "--out", str(folder)]
+    command = ["map", str(path), "--output", str(folder)]
     if against is not None:
         other = against.folder if isinstance(against, Sweep) else Path(against)
         command += ["--against", str(other)]

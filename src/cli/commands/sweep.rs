@@ -35,7 +35,8 @@ missing.
 Examples:
   bankshot sweep configs/half_court.toml --plan
   bankshot sweep configs/half_court.toml --output half_court
-  bankshot sweep configs/half_court.toml --output /shared/half_court --shard 3/64")]
+  bankshot sweep configs/half_court.toml --output /shared/half_court \\
+    --shard 3/64")]
 pub(crate) struct SweepOptions {
     /// The sweep: a [sweep] table and a shooter.
     pub(crate) sweep: PathBuf,

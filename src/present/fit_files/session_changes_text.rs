@@ -147,7 +147,7 @@ impl Changes<'_> {
         let (certain, possible): (Vec<_>, Vec<_>) =
             decided.partition(|change| change.is_certain_among(self.tested));
         let words = |changes: &[&SessionChange]| {
-            let words = changes.iter().map(|change| change.from_to());
+            let words = changes.iter().map(|change| change.before_and_after());
             words.collect::<Vec<_>>().join("; ")
         };
         let mut sentences = Vec::new();
@@ -188,7 +188,7 @@ impl Changes<'_> {
             !change.name.starts_with("corr_") || change.is_decided()
         };
         for change in self.changes.iter().filter(is_shown) {
-            let mut cells = change.cells();
+            let mut cells = self.cells(change);
             cells.push(self.verdict(change).to_owned());
             table.add(cells);
         }
@@ -229,6 +229,18 @@ impl Changes<'_> {
         notes
     }
 
+    /// The cells of a change. A scatter without the row of its average names its value.
+    fn cells(&self, change: &SessionChange) -> Vec<String> {
+        let mut cells = change.cells();
+        if let Some(value) = change.name.strip_suffix("_sd") {
+            let mean = format!("{value}_mean");
+            if !self.changes.iter().any(|other| other.name == mean) {
+                cells[0] = format!("{} scatter", short_name(&mean));
+            }
+        }
+        cells
+    }
+
     fn details(&self, causes: &ProbabilityChange) -> String {
         let change = |interval: &Interval| {
             format!(
@@ -244,7 +256,7 @@ impl Changes<'_> {
             change(&causes.by_scatter),
             change(&causes.by_means)
         );
-        text += "They do not add up, because the effects depend on each other.\n\n";
+        text += "The values alone do not add up, because their effects depend on each other.\n\n";
         let mut table = TextTable::new(&[
             ("all values", "", Side::Left),
             ("before", "", Side::Right),
@@ -256,7 +268,7 @@ impl Changes<'_> {
         ]);
         for change in self.changes {
             let (direction, probability) = change.direction();
-            let mut cells = change.cells();
+            let mut cells = self.cells(change);
             cells.push(format!("{direction} {}", likely(probability)));
             cells.push(match change.decision(self.tested) {
                 Decision::Made => "decided".to_owned(),
@@ -316,7 +328,7 @@ impl SessionChange {
     }
 
     /// `scatter of the angle, 1.1 to 1.5 deg`.
-    fn from_to(&self) -> String {
+    fn before_and_after(&self) -> String {
         let decimals = self.decimals();
         let [before, after] = [&self.comparison.before, &self.comparison.after]
             .map(|interval| format!("{:.decimals$}", interval.mean / self.size + 0.0));

@@ -542,7 +542,7 @@ fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String
     };
     (!places.is_empty()).then(|| {
         format!(
-            "Bank and direct merge at {}: up to {:.0} % of the makes {touch}. The settings are right; only the label is arbitrary.",
+            "Bank and direct merge at {}: up to {:.0} % of the makes {touch}, so the label is arbitrary there.",
             places.text(table, units),
             100.0 * most
         )
