@@ -43,16 +43,16 @@ pub struct Makes {
     pub made: usize,
 }
 
-/// A step from the usual release towards the best one.
+/// A step from the current release towards the best one.
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Step {
     /// What changes.
     pub cause: &'static str,
-    /// What it adds to P, after the steps before it.
+    /// Makes it adds, as a probability, after the steps before it.
     #[serde(flatten)]
     pub gain: Interval,
-    /// How sure that is.
+    /// Whether the measured shots support it.
     pub support: Support,
     /// The release after it.
     pub release: Release,

@@ -85,7 +85,7 @@ pub struct Prediction {
     /// The second of it.
     pub log_loss_of_share: f64,
     /// Spiegelhalter's z: about 0 with a standard deviation of 1 if the chances of single shots are
-    /// right, above 3 where they are too sure, below -3 where they are not sure enough; null where
+    /// right, above 3 where they are overconfident, below -3 where underconfident; null where
     /// too few of the shots were doubtful to tell.
     pub calibration_z: Option<f64>,
     /// The probability that a made shot had the greater chance than a missed one.
@@ -128,7 +128,7 @@ pub struct PlaceAnswer {
     pub release_height_m: f64,
     /// How far the releases lie apart.
     pub place_scatter: Scatter,
-    /// P of the usual shot.
+    /// P of the current shot.
     pub probability: OverDraws,
 }
 
@@ -194,7 +194,7 @@ pub struct ConstantErrorAnswer {
     pub name: &'static str,
     /// By how much it reads too high.
     pub reads_too_high_by: Measure,
-    /// P of the usual shot at the first place.
+    /// P of the current shot at the first place.
     pub probability: f64,
     /// See [`Prediction::made_z`].
     pub made_z: Option<f64>,
@@ -375,7 +375,7 @@ pub struct FitAnswer {
     pub shooter: String,
     /// Means, standard deviations, correlations.
     pub parameters: Vec<Parameter>,
-    /// P of the usual shot at the first place.
+    /// P of the current shot at the first place.
     pub probability: OverDraws,
     /// What went in.
     pub observed: Observed,

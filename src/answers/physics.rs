@@ -94,7 +94,7 @@ pub fn compare(
     })
 }
 
-/// The profile without the usual shot of its `[nominal]` table, which is that of its own place.
+/// The profile without the current shot of its `[nominal]` table, which is that of its own place.
 /// What its search keeps fixed stays.
 ///
 /// # Errors

@@ -42,13 +42,13 @@ pub struct KindComparison {
 pub struct Advice {
     /// The number of measured shots.
     pub shots: usize,
-    /// The kind of the usual shot; the best shot is of the same kind.
+    /// The kind of the current shot; the best shot is of the same kind.
     pub kind: ShotKind,
-    /// The usual release: means over the draws.
+    /// The current release: means over the draws.
     pub usual: Values,
     /// Where the backspin comes from. One that was not measured is kept.
     pub spin: SpinSource,
-    /// P of the usual shot.
+    /// P of the current shot.
     pub usual_probability: Interval,
     /// Its numerical standard error.
     pub numerical_standard_error: f64,
@@ -73,10 +73,10 @@ pub struct Advice {
     pub kinds: Option<KindComparison>,
 }
 
-/// Shots of the sample that P of the usual shot is told with, in a fit and in advice.
+/// Shots of the sample for P of the current shot, in a fit and in advice.
 pub(super) const USUAL_SHOTS: usize = 65_536;
 
-/// P of the usual shot at a place for each draw.
+/// P of the current shot at a place for each draw.
 #[must_use]
 pub fn usual_probabilities(
     profile: &Profile,
@@ -210,7 +210,7 @@ pub fn advise(
     })
 }
 
-/// The kind of the usual shot where both kinds can be made: that whose best shot is nearer in
+/// The kind of the current shot where both kinds can be made: that whose best shot is nearer in
 /// speed, pitch and aim, in standard deviations. The path alone does not tell it: a direct shot
 /// that is thrown too hard meets the board first as well.
 fn nearest_kind(usual: &Values, sds: &Values, bests: &[Option<Values>; 2]) -> Option<ShotKind> {

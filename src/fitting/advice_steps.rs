@@ -67,7 +67,7 @@ impl Cause {
     }
 }
 
-/// One step from the usual release to the best one.
+/// One step from the current release to the best one.
 #[derive(Clone, Debug)]
 pub struct AdviceStep {
     /// What is changed.
@@ -338,7 +338,7 @@ impl<'a> Shooting<'a> {
         (own_speed, second)
     }
 
-    /// The steps from the usual release to the best one of the same kind, and what they change.
+    /// The steps from the current release to the best one of the same kind, and what they change.
     pub(super) fn steps(
         &mut self,
         usual: &Values,

@@ -15,7 +15,7 @@ pub struct ConstantError {
     pub value: usize,
     /// By how much it reads it too high, SI units; negative for too low.
     pub by: f64,
-    /// P of the usual shot at the first place.
+    /// P of the current shot at the first place.
     pub probability: f64,
     /// By how many of its standard deviations the number of makes is greater than expected.
     pub made_z: Option<f64>,

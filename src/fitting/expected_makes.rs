@@ -116,7 +116,7 @@ pub struct ExpectedMakes {
     pub losses_of_share: [f64; 2],
     /// By how many of its standard deviations the squared error is greater than chances that are
     /// right would give (Spiegelhalter, Stat. Med. 5 (1986) 421). About standard normal if they
-    /// are; positive for chances that are too sure. `None` where too few shots are doubtful.
+    /// are; positive for overconfident chances. `None` where too few shots are doubtful.
     pub calibration_z: Option<f64>,
     /// The probability that a made shot had the greater chance than a missed one; where there are
     /// both.

@@ -99,7 +99,7 @@ pub enum FitNote {
         /// The standard deviation of their number.
         expected_sd: f64,
     },
-    /// The chances are too sure.
+    /// The chances are overconfident.
     TooSure {
         /// See [`ExpectedMakes::calibration_z`](super::ExpectedMakes).
         calibration_z: f64,

@@ -107,10 +107,10 @@ pub fn compare_probabilities(
 pub struct ProbabilityChange {
     /// By the scatter: standard deviations and correlations.
     pub by_scatter: Interval,
-    /// By the usual release: the means.
+    /// By the mean release.
     pub by_means: Interval,
-    /// By the scatter where it changes first, at the old usual release, and where it changes last,
-    /// at the new one.
+    /// By the scatter where it changes first, at the mean release before, and where it changes
+    /// last, at the one after.
     pub by_scatter_first_and_last: [Interval; 2],
     /// By the mean of the speed, of the pitch and of the polar angle, each alone and all else as
     /// before.

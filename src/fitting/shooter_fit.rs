@@ -32,7 +32,7 @@ pub struct ShooterFit {
     pub typical: Draw,
     /// The profile at each place.
     pub profiles: Vec<Profile>,
-    /// P of the usual shot at each place.
+    /// P of the current shot at each place.
     pub probabilities: Vec<DrawProbabilities>,
     /// Predicted against observed.
     pub makes: ExpectedMakes,

@@ -15,7 +15,7 @@ use nalgebra::SMatrix;
 /// Shots of a fit under one physics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShotsUnderPhysics {
-    /// P of the usual shot, a fraction of 1.
+    /// P of the current shot, a fraction of 1.
     pub usual: Interval,
     /// The numerical standard error of its mean.
     pub standard_error: f64,

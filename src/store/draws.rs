@@ -49,7 +49,7 @@ fn of_place(place: usize) -> String {
     }
 }
 
-/// The columns that are written for readers alone: P of the usual shot of each draw.
+/// The columns that are written only for readers: P of the current shot of each draw.
 fn probability_names(places: usize) -> Vec<String> {
     (1..=places)
         .map(|place| format!("{}probability", of_place(place)))

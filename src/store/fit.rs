@@ -73,7 +73,7 @@ pub struct Fit {
     pub shooter: Option<String>,
     /// The units that it was written in.
     pub units: UnitSystem,
-    /// P of the usual shot at each place; empty where it was not computed yet.
+    /// P of the current shot at each place; empty where it was not computed yet.
     probabilities: Vec<DrawProbabilities>,
 }
 
@@ -232,7 +232,7 @@ impl Fit {
         })
     }
 
-    /// P of the usual shot at a place.
+    /// P of the current shot at a place.
     #[must_use]
     pub fn usual_probabilities(&self, place: usize) -> DrawProbabilities {
         let known = self.probabilities.get(place).cloned();
@@ -344,7 +344,7 @@ fn with_search_of(fitted: &Profile, written: &Profile) -> Result<Profile, Profil
     })
 }
 
-/// The usual shot of a fit cannot have more backspin than the shooter can give.
+/// The current shot of a fit cannot have more backspin than the shooter can give.
 fn check_most_backspin(
     folder: &Path,
     written: &Profile,

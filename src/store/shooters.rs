@@ -23,13 +23,13 @@ pub struct ShooterPlace {
     pub made: Option<usize>,
     /// The name of the place; empty where the file does not say.
     pub place: String,
-    /// Where it is, and P of the usual shot from there; `None` without a fit.
+    /// Where it is, and P of the current shot from there; `None` without a fit.
     pub fitted: Option<FittedPlace>,
     /// Why there is no fit; empty where there is one.
     pub error: String,
 }
 
-/// Where a fitted shooter shot from, and P of the usual shot.
+/// Where a fitted shooter shot from, and P of the current shot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FittedPlace {
     /// Distance from the hoop's centre, m.
@@ -38,7 +38,7 @@ pub struct FittedPlace {
     pub court_angle_rad: f64,
     /// Height of the release above the floor, m.
     pub release_height_m: f64,
-    /// P of the usual shot: the mean over the draws.
+    /// P of the current shot: the mean over the draws.
     pub probability: f64,
     /// 2.5 % of the draws are below.
     pub low: f64,
