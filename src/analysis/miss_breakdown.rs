@@ -6,15 +6,16 @@
 
 use crate::dynamics::{BatchWorkspace, OutcomeKind};
 use crate::math::sobol::ScrambleKey;
+use crate::model::BallState;
 use crate::probability::{Estimate, Sampler};
 use crate::shooter::{Nominal, Profile, ReleaseDistribution};
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// Classified shots.
-const CLASSIFIED: u32 = 16384;
+pub(super) const CLASSIFIED: u32 = 16384;
 /// Shots that are simulated together.
-const BATCH: usize = 2048;
+pub(super) const BATCH: usize = 2048;
 
 /// Shares of all shots by the way they were missed. With the shares of the made shots they sum to
 /// 1.
@@ -40,6 +41,16 @@ pub struct MissBreakdown {
     pub unresolved: f64,
 }
 
+/// The first states of the Sobol points about a nominal shot.
+pub(super) fn first_states(profile: &Profile, nominal: &Nominal, seed: u64) -> Vec<BallState> {
+    let sampler = Sampler::new(profile);
+    let scramble = sampler.scramble(ScrambleKey { seed, replicate: 0 });
+    let distribution = ReleaseDistribution::new(profile, nominal);
+    let mut starts = Vec::with_capacity(CLASSIFIED as usize);
+    distribution.for_each_state(&scramble, (0, CLASSIFIED), |state| starts.push(state));
+    starts
+}
+
 /// Classifies the misses about a nominal shot whose P is `estimate`.
 #[must_use]
 pub fn classify_misses(
@@ -48,11 +59,7 @@ pub fn classify_misses(
     estimate: &Estimate,
     seed: u64,
 ) -> MissBreakdown {
-    let sampler = Sampler::new(profile);
-    let scramble = sampler.scramble(ScrambleKey { seed, replicate: 0 });
-    let distribution = ReleaseDistribution::new(profile, nominal);
-    let mut starts = Vec::with_capacity(CLASSIFIED as usize);
-    distribution.for_each_state(&scramble, (0, CLASSIFIED), |state| starts.push(state));
+    let starts = first_states(profile, nominal, seed);
     let simulator = profile.simulator();
     // In lanes first: only misses need their path.
     let kinds: Vec<(OutcomeKind, f64)> = starts

@@ -5,5 +5,6 @@ pub mod aim_past_hoop;
 pub mod bank_aim;
 pub mod miss_breakdown;
 pub mod probability_curves;
+pub mod rebounds;
 pub mod release_map;
 pub mod sensitivity;

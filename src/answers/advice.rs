@@ -167,6 +167,8 @@ pub struct AdviceAnswer {
     pub numerical_standard_error: f64,
     /// How many of the measured shots went in.
     pub observed: Makes,
+    /// Whether the makes contradict the measured shots: then nothing here is to be followed.
+    pub makes_contradict: bool,
     /// The best release for this scatter.
     pub best: Option<Release>,
     /// P of the best shot.
@@ -213,6 +215,9 @@ impl AdviceAnswer {
             current_probability: advice.usual_probability,
             numerical_standard_error: advice.numerical_standard_error,
             observed: Makes { shots, made },
+            makes_contradict: fit
+                .contradiction(place, &advice.usual_probability)
+                .is_some(),
             best: advice
                 .best
                 .as_ref()

@@ -20,6 +20,8 @@ pub struct FitSource<'a> {
     pub kind: Source,
     /// The file.
     pub file: String,
+    /// What was found in it, in words.
+    pub found: &'a [String],
     /// BLAKE3 of its bytes.
     pub file_blake3: String,
     /// The tracker, and whether its noise was measured or is assumed.

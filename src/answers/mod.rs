@@ -13,6 +13,7 @@ pub mod json;
 pub mod nominal_shot;
 pub mod physics;
 pub mod probability;
+pub mod rebounds;
 pub mod requests;
 pub mod sample_size;
 #[cfg(test)]

@@ -166,7 +166,7 @@ impl NominalRequest {
             error(
                 field,
                 format!(
-                    "missing; give it, or {field} in the profile's [nominal] table (`bankshot best` finds a shot)"
+                    "is missing: give it, or set {field} in the profile's [nominal] table; `bankshot best` finds a good shot"
                 ),
             )
         })

@@ -22,7 +22,9 @@
 
 use super::json::{Answer, Named, Provenance, si_name};
 use super::nominal_shot::FieldError;
+use super::rebounds::ReboundsAnswer;
 use crate::analysis::miss_breakdown::{MissBreakdown, classify_misses};
+use crate::analysis::rebounds::{REACH_M, find_rebounds};
 use crate::fitting::{DrawProbabilities, Interval};
 use crate::probability::{
     Estimate, MAX_SHOTS, MIN_SHOTS, Progress, Sampler, grid_integration, monte_carlo,
@@ -85,6 +87,8 @@ pub struct ProbabilityAnswer {
     /// P over the draws of a fit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over_draws: Option<OverDraws>,
+    /// Where the misses come down; null under the grid methods.
+    pub rebounds: Option<ReboundsAnswer>,
 }
 
 /// The methods of computing P.
@@ -97,7 +101,7 @@ pub enum Method {
     Sobol,
     /// Plain random samples.
     MonteCarlo,
-    /// A grid as in Eq. 25 of the paper, shifted from line to line (four errors only).
+    /// The grid of Eq. 25 (Silverberg et al. 2003), shifted from line to line; for four errors only.
     Grid,
     /// Eq. 25 as printed in the paper, on one common grid (four errors only).
     PaperGrid,
@@ -136,6 +140,8 @@ pub struct Effort {
     pub seed: Option<u64>,
     /// Values along each axis of a grid.
     pub grid: Option<usize>,
+    /// The height at which rebounds are within reach, m; else 8 ft.
+    pub reach_m: Option<f64>,
 }
 
 /// Default values along each axis of the paper's grid.
@@ -196,6 +202,10 @@ impl Effort {
         let misses = (!self.method.is_grid())
             .then(|| classify_misses(profile, nominal, &estimate, self.seed(profile)));
         let mut answer = self.answer(profile, nominal, &estimate, misses);
+        let reach_m = self.reach_m.unwrap_or(REACH_M);
+        let rebounds = find_rebounds(profile, nominal, self.seed(profile), reach_m);
+        answer.rebounds =
+            (!self.method.is_grid()).then(|| ReboundsAnswer::new(profile, &rebounds, reach_m));
         answer.over_draws = draws.map(OverDraws::from);
         Ok((answer, estimate))
     }
@@ -269,6 +279,7 @@ impl Effort {
                 ..Provenance::of(profile)
             },
             over_draws: None,
+            rebounds: None,
         }
     }
 }

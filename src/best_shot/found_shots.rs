@@ -139,7 +139,7 @@ pub enum NoShot {
     #[error("no {} shot within the limits can go in from this place", .0.name())]
     Impossible(ShotKind),
     /// No shot near the most probable one goes in without errors.
-    #[error("no exact {} shot goes in from this place; the most probable release ({:.1} of 100, {}) misses without scatter", .0.kind.name(), 100.0 * .0.probability, .0.in_words())]
+    #[error("no exact {} shot goes in from this place; the best such release makes {:.1} of 100, but misses when it is exact ({})", .0.kind.name(), 100.0 * .0.probability, .0.in_words())]
     NotClean(NotCleanShot),
 }
 

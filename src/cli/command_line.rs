@@ -5,6 +5,7 @@ use super::commands::advise::AdviseOptions;
 use super::commands::angles::AnglesOptions;
 use super::commands::best::BestOptions;
 use super::commands::check::CheckOptions;
+use super::commands::coach::CoachOptions;
 use super::commands::compare::CompareOptions;
 use super::commands::fit::FitOptions;
 use super::commands::map::MapOptions;
@@ -70,7 +71,7 @@ pub(crate) const GROUPS: [(&str, &[&str]); 7] = [
     ("Shots", &["best", "angles", "shot", "trace", "physics"]),
     (
         "Measured players",
-        &["fit", "advise", "compare", "sample-size"],
+        &["coach", "fit", "advise", "compare", "sample-size"],
     ),
     ("Court", &["sweep", "team", "map"]),
     ("Launchers", &["table"]),
@@ -104,6 +105,8 @@ pub(crate) enum Command {
     Team(TeamOptions),
     /// Make a table of best shots over distances and angles, for a machine.
     Table(TableOptions),
+    /// From an export of measured shots to what a coach takes to the gym.
+    Coach(CoachOptions),
     /// Fit a player's profile to measured shots: releases, landings or tracked flights.
     Fit(FitOptions),
     /// Suggest what to change and what to train, with 95 % intervals.

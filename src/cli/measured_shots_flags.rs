@@ -2,6 +2,8 @@
 
 use super::config_files::{load_physics, read_text};
 use super::failure::{Failure, refuse_missing};
+use super::profile_flags::{court, location_named};
+use super::terminal::{confirm, is_quiet, print_remark};
 use super::value_parsers::UnitsArg;
 use crate::answers::fit::FitSource;
 use crate::dynamics::Simulator;
@@ -9,7 +11,7 @@ use crate::fitting::{
     DragEstimate, FitNote, FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest,
     Tails, TrackedPoint, Tracker, TrackerNoise, fit_drag_coefficient, fit_shooter, tails_of,
 };
-use crate::measured_shots::column_map_proposal::{map_proposal, names_sessions};
+use crate::measured_shots::column_map_proposal::{Proposal, map_proposal, names_sessions};
 use crate::measured_shots::columns::{Columns, Label};
 use crate::measured_shots::court_frame::{CourtFrame, OntoCourt};
 use crate::measured_shots::decisions::{Decisions, can_be_sessions, decide, session_name};
@@ -18,6 +20,7 @@ use crate::measured_shots::session_days::DateOrder;
 use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
+use crate::model::league_courts::League;
 use crate::model::{DEFAULT_PRESET, Physics};
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
@@ -32,18 +35,23 @@ pub(crate) struct MeasuredShotsOptions {
     /// TOML file with a [physics] table [default: ncaa, the men's college ball and hoop].
     #[arg(long, value_name = "PRESET|FILE")]
     pub(crate) physics: Option<String>,
-    /// The tracker whose noise the measurements have: lab, noah, optical_25hz, optical_60hz, or a
-    /// TOML file with its noise, one standard deviation each: speed = "0.05 ft/s", pitch, polar,
-    /// backspin; or depth = "0.5 in", left_right, entry_angle; or position [default: lab for
+    /// The tracker that measured the shots: lab, noah, optical_25hz, optical_60hz, or a TOML file
+    /// with its noise as standard deviations. Of releases: speed = "0.05 ft/s", pitch, polar,
+    /// backspin; of landings: depth = "0.5 in", left_right, entry_angle; of trajectories: position
+    /// [default: lab for
     /// releases, noah for landings; for trajectories the frame rate and noise that they show].
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
-    /// A column of another name: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
+    /// Which column holds a quantity, where its name differs: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
     /// 'made=Result'. A minus before COLUMN reverses the sign, a number after UNIT is added:
     /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such
     /// maps, one a line.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
+    /// Take the columns as bankshot proposes them: a file whose columns have other names is refused
+    /// with a proposal first.
+    #[arg(long)]
+    pub(crate) accept: bool,
     /// Fit only this player, for a file with several.
     #[arg(long, value_name = "NAME")]
     pub(crate) shooter: Option<String>,
@@ -67,6 +75,14 @@ pub(crate) struct MeasuredShotsOptions {
     /// The coordinates must be right-handed: facing +x, +y is to the left.
     #[arg(long, value_name = "X,Y,DIRECTION", allow_hyphen_values = true)]
     pub(crate) hoop: Option<String>,
+    /// The place of all shots by its name, such as 'free throw' or 'left elbow', where the file does
+    /// not say it.
+    #[arg(long, value_name = "PLACE", conflicts_with_all = ["distance", "angle"])]
+    pub(crate) at: Option<String>,
+    /// The court of places by name, in --at or in the file: ncaa, nba, fiba or high_school [default:
+    /// that of the physics, else ncaa].
+    #[arg(long, value_name = "COURT", value_parser = court)]
+    pub(crate) court: Option<League>,
     /// Distance of the place from the hoop's centre, where the file has no column for it.
     #[arg(long, value_name = "LENGTH")]
     pub(crate) distance: Option<String>,
@@ -87,7 +103,7 @@ pub(crate) struct MeasuredShotsOptions {
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Units of the results [default: those of the fit for its folder, else imperial].
+    /// Units of the results [default: for a fit's folder its own, else imperial].
     #[arg(long)]
     pub(crate) units: Option<UnitsArg>,
 }
@@ -131,6 +147,12 @@ pub(crate) struct MeasuredFile {
     pub(crate) blake3: String,
     pub(crate) row_name: &'static str,
     pub(crate) unused: Vec<String>,
+    /// What some of them may hold, as `--map` takes it.
+    pub(crate) proposed: Vec<String>,
+    /// Columns that may name players, with some of their texts.
+    pub(crate) possible_players: Vec<(String, Vec<String>)>,
+    /// What was found in the file, in words.
+    pub(crate) found: Vec<String>,
     /// In which order the sessions are, where they are days.
     pub(crate) session_order: Option<String>,
     /// A column that nothing was taken from and that can tell sessions apart.
@@ -260,7 +282,10 @@ impl MeasuredShotsOptions {
             for line in read_text(Path::new(file))?.lines() {
                 let line = line.trim().trim_end_matches('\\').trim_end();
                 let line = line.strip_prefix("--map").map_or(line, str::trim_start);
-                let quoted = line.strip_prefix('\'').and_then(|l| l.strip_suffix('\''));
+                // Behind the closing quote a proposal shows some cells.
+                let quoted = line
+                    .strip_prefix('\'')
+                    .and_then(|line| Some(line.rsplit_once('\'')?.0));
                 if !line.is_empty() && !line.starts_with('#') {
                     maps.push(quoted.unwrap_or(line).to_owned());
                 }
@@ -284,11 +309,14 @@ impl MeasuredShotsOptions {
             ("--physics", self.physics.is_some()),
             ("--tracker", self.tracker.is_some()),
             ("--map", !self.map.is_empty()),
+            ("--accept", self.accept),
             ("--shooter", self.shooter.is_some()),
             ("--session", !self.session.is_empty()),
             ("--dates", self.dates.is_some()),
             ("--made", self.made.is_some()),
             ("--hoop", self.hoop.is_some()),
+            ("--at", self.at.is_some()),
+            ("--court", self.court.is_some()),
             ("--distance", self.distance.is_some()),
             ("--angle", self.angle.is_some()),
             ("--release-height", !self.release_height.is_empty()),
@@ -319,8 +347,7 @@ impl MeasuredShotsOptions {
             ));
         }
         let mut table = Table::read(path).map_err(refuse)?;
-        let columns = Columns::new(&table.header, &self.maps()?)
-            .map_err(|errors| refuse(errors.join("\n")))?;
+        let columns = self.columns(path, &table)?;
         let release_heights_m = self.release_heights_m()?;
         let named = release_heights_m.iter().filter_map(|(name, _)| {
             let name = name.as_deref()?;
@@ -339,7 +366,7 @@ impl MeasuredShotsOptions {
         let decisions = Decisions {
             dates: self.dates.map(DateOrder::from),
             made: self.made.clone(),
-            has_one_distance: self.distance.is_some(),
+            has_one_distance: self.distance.is_some() || self.at.is_some(),
         };
         let session_order = decide(&mut table, &columns, source, &decisions).map_err(refuse)?;
         let wanted = sessions
@@ -361,10 +388,17 @@ impl MeasuredShotsOptions {
         let simulator = Simulator::new(&physics).map_err(Failure::usage)?;
         let (mut noise, mut tracker) = self.noise(source)?;
         let backspin_rad_s = quantity("backspin", self.backspin.as_ref(), Dimension::Spin)?;
+        let named = match &self.at {
+            Some(name) => Some(location_named(name, self.court, &physics)?),
+            None => None,
+        };
+        let distance_m = quantity("distance", self.distance.as_ref(), Dimension::Length)?;
+        let court_angle_rad = quantity("angle", self.angle.as_ref(), Dimension::Angle)?;
         let mut options = ReadOptions {
             frame: self.frame()?,
-            distance_m: quantity("distance", self.distance.as_ref(), Dimension::Length)?,
-            court_angle_rad: quantity("angle", self.angle.as_ref(), Dimension::Angle)?,
+            court: self.court.unwrap_or_else(|| League::of_physics(&physics)),
+            distance_m: named.map(|place| place.distance_m).or(distance_m),
+            court_angle_rad: named.map(|place| place.angle_rad).or(court_angle_rad),
             release_heights_m,
             backspin_rad_s,
             noise,
@@ -392,12 +426,44 @@ impl MeasuredShotsOptions {
             row_name: table.row_name,
             session_order,
             sessions_column,
+            possible_players: Proposal::of(&columns).possible_players(),
+            proposed: Proposal::of(&columns).accepted().unwrap_or_default(),
+            found: table.found.clone(),
             unused: columns.unused().into_iter().map(str::to_owned).collect(),
             seed: self.seed,
             tails: self.tails,
             sessions: sessions.to_vec(),
             backspin_rad_s,
         })
+    }
+
+    /// The columns of a table, with what is proposed for those of other names where that is
+    /// accepted: by the flag, or on a terminal by an answer.
+    fn columns(&self, path: &Path, table: &Table) -> Result<Columns, Failure> {
+        let refuse = |message: String| Failure::usage(format!("{}: {message}", path.display()));
+        let mut maps = self.maps()?;
+        let read = |maps: &[String]| {
+            Columns::of_table(table, maps).map_err(|errors| refuse(errors.join("\n")))
+        };
+        let columns = read(&maps)?;
+        let proposal = Proposal::of(&columns);
+        let is_accepted = self.accept
+            || !proposal.maps.is_empty()
+                && Source::of(&columns).is_err()
+                && confirm(&format!(
+                    "{}:{}\nIs this right?",
+                    path.display(),
+                    proposal.text()
+                ));
+        if !is_accepted {
+            return Ok(columns);
+        }
+        let accepted = proposal.accepted().map_err(refuse)?;
+        if !accepted.is_empty() && !is_quiet() {
+            print_remark(&format!("columns taken: {}", accepted.join(", ")));
+        }
+        maps.extend(accepted);
+        read(&maps)
     }
 
     /// The heights of the release: of each shooter who is named, and of all others.
@@ -571,6 +637,7 @@ impl MeasuredFile {
         FitSource {
             kind: shots.source,
             file: self.file.display().to_string(),
+            found: &self.found,
             file_blake3: self.blake3.clone(),
             tracker: self.tracker.clone(),
             noise: self.noise,

@@ -27,7 +27,7 @@ use crate::probability::Progress;
 use clap::{CommandFactory, FromArgMatches};
 use command_line::{Arguments, Command};
 use commands::{
-    advise, angles, best, check, compare, figures, fit, map, new, physics, plan, report,
+    advise, angles, best, check, coach, compare, figures, fit, map, new, physics, plan, report,
     sample_size, shot, simulate, sweep, sweep_status, table, team, trace,
 };
 use failure::{Failure, code};
@@ -142,6 +142,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Compare(options) => compare::run(options),
         Command::SampleSize(options) => sample_size::run(options),
         Command::New(options) => new::run(options),
+        Command::Coach(options) => coach::run(options),
         Command::Team(options) => team::run(options),
         Command::Table(options) => table::run(options),
         Command::Check(options) => check::run(options),

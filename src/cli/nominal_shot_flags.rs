@@ -16,8 +16,7 @@ pub(crate) struct NominalOptions {
     /// Pitch angle of the release, such as '52 deg'.
     #[arg(long, allow_hyphen_values = true)]
     pitch: Option<String>,
-    /// Direction of the release, measured from the court's long axis as the court angle is
-    /// [default: the profile's, else towards the hoop's centre].
+    /// Direction of the release, from the court's long axis, positive to the left [default: the profile's, else towards the hoop's centre].
     #[arg(long, allow_hyphen_values = true)]
     polar: Option<String>,
     /// Instead of --polar: the angle of the release from the line to the hoop's centre, such as

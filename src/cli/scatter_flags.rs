@@ -80,7 +80,7 @@ fn scaled(item: &Item, factor: f64) -> Option<Value> {
 fn error_and_factor(text: &str) -> Result<(usize, f64), Failure> {
     let refuse = |what: &str| {
         Failure::usage(format!(
-            "--scatter: '{text}' {what}; write one of speed, pitch, polar and backspin, as in 'speed=-20%' (20 % less; from -100 % to {MOST_PERCENT} %)"
+            "--scatter: '{text}' {what}; write one of speed, pitch, polar and backspin with a change from -100 % to {MOST_PERCENT} %, such as 'speed=-20%' for 20 % less"
         ))
     };
     let (name, percent) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
@@ -88,7 +88,7 @@ fn error_and_factor(text: &str) -> Result<(usize, f64), Failure> {
     let number = number.ok_or_else(|| refuse("is none of the four"))?;
     let percent = percent.trim();
     if !units::PERCENT.iter().any(|unit| percent.ends_with(unit)) {
-        return Err(refuse("has no %"));
+        return Err(refuse("has no % sign"));
     }
     let share = units::parse(percent.trim_start_matches('+'), Dimension::Number)
         .map_err(|_| refuse("has no number of percent"))?;

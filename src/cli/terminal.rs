@@ -269,6 +269,21 @@ pub(crate) fn print_error(text: &str) {
     print_remark(&format!("{prefix}{text}"));
 }
 
+/// Asks a question on a terminal; no where nobody can answer.
+pub(crate) fn confirm(question: &str) -> bool {
+    if is_quiet()
+        || embedded_session::progress().is_some()
+        || !io::stdin().is_terminal()
+        || !io::stderr().is_terminal()
+    {
+        return false;
+    }
+    print_remark(&format!("{question} [y/n]"));
+    let mut answer = String::new();
+    io::stdin().read_line(&mut answer).is_ok()
+        && matches!(answer.trim().to_lowercase().as_str(), "y" | "yes")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,10 @@
-//! The table `[location]`: distance and angle, or x and y.
+//! The table `[location]`: distance and angle, x and y, or the name of a place.
 
 use super::diagnostics::Diagnostic;
 use super::toml_reader::TableReader;
 use crate::model::Physics;
+use crate::model::league_courts::League;
+use crate::model::named_places::{place_named, place_names_in_words};
 use crate::shooter::Location;
 use crate::units::Dimension;
 use std::f64::consts::PI;
@@ -12,6 +14,12 @@ pub(super) fn read_location(
     physics: &Physics,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Location> {
+    if table.has("place") || table.has("court") {
+        return read_named(table, physics, diagnostics);
+    }
+    // Known keys, although they are not there.
+    let _ = table.text("place", diagnostics);
+    let _ = table.text("court", diagnostics);
     let is_cartesian = table.has("x") || table.has("y");
     if is_cartesian && (table.has("distance") || table.has("angle")) {
         diagnostics.push(table.diagnostic("x", "give either distance and angle, or x and y"));
@@ -37,6 +45,47 @@ pub(super) fn read_location(
         return None;
     }
     location
+}
+
+/// `place = "left elbow"`, on the court of the physics or of `court`.
+fn read_named(
+    mut table: TableReader<'_, '_>,
+    physics: &Physics,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Location> {
+    let others = ["distance", "angle", "x", "y"];
+    if let Some(other) = others.into_iter().find(|key| table.has(key)) {
+        diagnostics.push(table.diagnostic(other, "give either this or place"));
+        return None;
+    }
+    for key in ["distance", "x", "y"] {
+        let _ = table.quantity(key, Dimension::Length, diagnostics);
+    }
+    let _ = table.quantity("angle", Dimension::Angle, diagnostics);
+    let name = table.text("place", diagnostics);
+    let court = table.text("court", diagnostics);
+    let league = match court.as_deref().map(League::from_name) {
+        None => Some(League::of_physics(physics)),
+        Some(Some(league)) => Some(league),
+        Some(None) => {
+            let message = "must be \"ncaa\", \"nba\", \"fiba\" or \"high_school\"";
+            diagnostics.push(table.diagnostic("court", message));
+            None
+        }
+    };
+    if name.is_none() {
+        diagnostics.push(table.diagnostic("court", "needs place = \"...\" beside it"));
+    }
+    let place = name
+        .as_ref()
+        .zip(league)
+        .and_then(|(name, league)| place_named(name, league));
+    if name.is_some() && league.is_some() && place.is_none() {
+        let message = format!("must be {}", place_names_in_words());
+        diagnostics.push(table.diagnostic("place", message));
+    }
+    table.report_unknown_keys(diagnostics);
+    place.map(|place| Location::from_xy(place.x_m, place.y_m))
 }
 
 fn read_polar(

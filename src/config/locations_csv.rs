@@ -1,7 +1,10 @@
 //! A CSV file of locations on the court.
 
+use crate::files::csv_records::Row;
+use crate::files::table_rows::{TableRows, cell_as_text};
 use crate::shooter::is_control_or_direction;
 use crate::units::{DEGREE_RAD, FOOT_M};
+use csv::ByteRecord;
 
 /// A column with its name and the size of its unit in SI units.
 type Column = (&'static str, f64);
@@ -29,10 +32,12 @@ const LONGEST_NAME: usize = 100;
 /// # Errors
 /// The columns are missing, or a row is wrong; its number is in the message.
 pub fn parse_locations(text: &str) -> Result<NamedLocations, String> {
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| error.to_string())?.clone();
+    let mut table = TableRows::of_bytes(text.as_bytes().to_vec())?;
+    let cell =
+        |record: &ByteRecord, index: usize| cell_as_text(record.get(index).unwrap_or_default());
+    let header: Vec<String> = (0..table.header().len())
+        .map(|index| cell(table.header(), index))
+        .collect();
     let find = |columns: [Column; 2]| {
         columns.into_iter().find_map(|(name, unit)| {
             let index = header.iter().position(|column| column == name)?;
@@ -52,10 +57,18 @@ pub fn parse_locations(text: &str) -> Result<NamedLocations, String> {
     };
     let name = header.iter().position(|column| column == "name");
     let mut locations = NamedLocations::default();
-    for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(|error| error.to_string())?;
+    let mut rows = Vec::new();
+    loop {
+        let more = table.next_rows(1 << 14, 1 << 22)?;
+        if more.is_empty() {
+            break;
+        }
+        rows.extend(more);
+    }
+    for (row, Row { cells, .. }) in rows.into_iter().enumerate() {
+        let record = cells?;
         let number = |(index, name, unit): (usize, &str, f64)| {
-            let text = record.get(index).unwrap_or_default();
+            let text = cell(&record, index);
             match text.parse::<f64>() {
                 Ok(value) if value.is_finite() => Ok(value * unit),
                 _ => Err(format!(
@@ -72,7 +85,7 @@ pub fn parse_locations(text: &str) -> Result<NamedLocations, String> {
             (first, second)
         });
         if let Some(index) = name {
-            let name = record.get(index).unwrap_or_default();
+            let name = cell(&record, index);
             let is_long = name.chars().count() > LONGEST_NAME;
             if is_long || name.chars().any(is_control_or_direction) {
                 return Err(format!(
@@ -80,7 +93,7 @@ pub fn parse_locations(text: &str) -> Result<NamedLocations, String> {
                     row + 1
                 ));
             }
-            locations.names.push(name.to_owned());
+            locations.names.push(name);
         }
     }
     Ok(locations)

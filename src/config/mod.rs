@@ -2,6 +2,7 @@
 
 mod diagnostics;
 mod location_table;
+#[cfg(feature = "app")]
 mod locations_csv;
 mod physics_table;
 mod profile_file;
@@ -11,6 +12,7 @@ mod shooter_tables;
 pub(crate) mod toml_reader;
 
 pub use diagnostics::{ConfigError, Diagnostic};
+#[cfg(feature = "app")]
 pub use locations_csv::{NamedLocations, parse_locations};
 #[cfg(feature = "app")]
 pub use physics_table::is_physics_alone;

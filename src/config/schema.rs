@@ -20,13 +20,15 @@ enum Written {
     Word(&'static [&'static str]),
     /// A list of these words.
     Words(&'static [&'static str]),
+    /// A list of texts.
+    Texts,
     /// A list of quantities.
     Quantities(&'static str),
     /// The name of a preset.
     Preset,
 }
 
-use Written::{Number, Preset, Quantities, Quantity, Text, Whole, Word, Words};
+use Written::{Number, Preset, Quantities, Quantity, Text, Texts, Whole, Word, Words};
 
 type Key = (&'static str, Written, &'static str);
 
@@ -115,6 +117,16 @@ const LOCATION: &[Key] = &[
         "y",
         Quantity("3 ft"),
         "Instead of distance and angle: to the right, facing the board.",
+    ),
+    (
+        "place",
+        Text,
+        "Instead of distance and angle: the name of a place, such as left elbow.",
+    ),
+    (
+        "court",
+        Word(&["ncaa", "nba", "fiba", "high_school"]),
+        "With place: the court [default: that of the physics].",
     ),
 ];
 
@@ -289,7 +301,7 @@ const SWEEP: &[Key] = &[
     ),
     (
         "court",
-        Word(&["ncaa", "nba", "fiba"]),
+        Word(&["ncaa", "nba", "fiba", "high_school"]),
         "The floor lines; ncaa by default.",
     ),
     (
@@ -343,6 +355,11 @@ const SWEEP: &[Key] = &[
         "places",
         Text,
         "A CSV file with columns such as x_ft and y_ft, or distance_ft and court_angle_deg.",
+    ),
+    (
+        "names",
+        Texts,
+        "Names of places, such as left elbow; all: every place of the court that has a name.",
     ),
 ];
 
@@ -413,6 +430,10 @@ impl Written {
             Number => json!({ "type": ["number", "string"] }),
             Whole(least) => json!({ "type": "integer", "minimum": least }),
             Word(words) => json!({ "enum": words }),
+            Texts => json!({
+                "type": "array",
+                "items": { "type": "string" },
+            }),
             Words(words) => json!({
                 "type": "array", "items": { "enum": words }, "uniqueItems": true, "minItems": 1,
             }),

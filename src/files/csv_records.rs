@@ -77,36 +77,37 @@ impl<R: Read> CsvRecords<R> {
         Ok(records)
     }
 
-    /// Records of a text whose cells may be separated by semicolons or tabs: where its first line
-    /// that is not empty has two or more of them outside quotes, and more than commas (a name may
-    /// hold one).
+    /// Records of a text whose cells may be separated by semicolons or tabs: where more of its
+    /// first lines have two or more of them outside quotes than not. (A comma between digits may be
+    /// a decimal comma, and a title above the table has none.)
     ///
     /// # Errors
     /// The text cannot be read.
     pub fn with_any_separator(input: R) -> io::Result<Self> {
+        /// Lines that are looked at.
+        const LINES: usize = 40;
         let mut records = Self::new(input)?;
         let text = &records.buffer[records.start..];
         let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
-        let mut lines = text.split(is_end);
-        let line = lines.find(|line| !line.trim_ascii().is_empty());
+        let lines = text
+            .split(is_end)
+            .filter(|line| !line.trim_ascii().is_empty());
+        let lines: Vec<&[u8]> = lines.take(LINES).collect();
         // A spreadsheet may say it above the names.
         if let Some([separator @ (b',' | b';' | b'\t')]) =
-            line.and_then(|line| line.strip_prefix(b"sep="))
+            lines.first().and_then(|line| line.strip_prefix(b"sep="))
         {
             records.separator = *separator;
             return Ok(records);
         }
-        // Every other part between quotes is inside them.
-        let parts = line.unwrap_or_default().split(|byte| *byte == b'"');
-        let outside: Vec<&[u8]> = parts.step_by(2).collect();
-        let count = |separator| -> usize {
-            let counts = outside
+        let votes = |separator| {
+            let of_separator = lines
                 .iter()
-                .map(|part| memchr::memchr_iter(separator, part).count());
-            counts.sum()
+                .filter(|line| separator_of(line) == Some(separator));
+            of_separator.count()
         };
         for separator in [b';', b'\t'] {
-            if count(separator) > count(b',').max(1) {
+            if votes(separator) > votes(records.separator) {
                 records.separator = separator;
             }
         }
@@ -281,6 +282,34 @@ impl<R: Read> CsvRecords<R> {
         }
         Ok(rows)
     }
+}
+
+/// What separates the cells of a line, if anything does.
+fn separator_of(line: &[u8]) -> Option<u8> {
+    // Every other part between quotes is inside them.
+    let parts: Vec<&[u8]> = line.split(|byte| *byte == b'"').step_by(2).collect();
+    let count = |separator| -> usize {
+        let counts = parts
+            .iter()
+            .map(|part| memchr::memchr_iter(separator, part).count());
+        counts.sum()
+    };
+    let is_decimal = |part: &&[u8]| {
+        let is_digit = |at: Option<usize>| {
+            at.and_then(|at| part.get(at))
+                .is_some_and(u8::is_ascii_digit)
+        };
+        memchr::memchr_iter(b',', part)
+            .all(|at| is_digit(at.checked_sub(1)) && is_digit(Some(at + 1)))
+    };
+    let commas = match parts.iter().all(is_decimal) {
+        true => 0,
+        false => count(b','),
+    };
+    let other = [b';', b'\t']
+        .into_iter()
+        .find(|separator| count(*separator) > commas.max(1));
+    other.or_else(|| (count(b',') > 0).then_some(b','))
 }
 
 /// The number of ends of lines: a line feed, a carriage return, or both.

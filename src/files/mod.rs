@@ -1,6 +1,12 @@
-//! Files: complete or absent, and rows of text cells from and to CSV and Parquet. Knows nothing of
-//! basketball.
+//! Files: complete or absent, and rows of text cells from and to CSV, Parquet, JSON and workbooks.
+//! Knows nothing of basketball.
 
 pub mod atomic_file;
 pub mod csv_records;
+pub mod file_kind;
+mod header_row;
+mod json_rows;
 pub mod parquet_rows;
+pub mod table_rows;
+mod text_encoding;
+mod workbook_rows;

@@ -187,10 +187,13 @@ fn check_chunks(file: &SerializedFileReader<File>, bytes: u64) -> Result<()> {
         for chunk in group.columns() {
             if !matches!(
                 chunk.compression(),
-                Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::GZIP(_)
+                Compression::UNCOMPRESSED
+                    | Compression::SNAPPY
+                    | Compression::GZIP(_)
+                    | Compression::ZSTD(_)
             ) {
                 return Err(ParquetError::General(format!(
-                    "compressed with {}; write it uncompressed, or with Snappy or gzip",
+                    "compressed with {}; write it uncompressed, or with Snappy, gzip or zstd",
                     chunk.compression()
                 )));
             }

@@ -124,7 +124,8 @@ pub fn advise(
     let draws = thinned(posterior, DRAWS);
     let mut shooting = Shooting::new(profile, &draws, &typical, place);
     let usual_p = shooting.with(Change::default()).probabilities.clone();
-    let keeps_backspin = posterior.spin != SpinSource::Measured;
+    let measured = posterior.spin.measured_values();
+    let keeps_backspin = measured < 4;
     let usual = typical.means[place];
     let searched = if keeps_backspin {
         &with_backspin_kept(profile, usual[3]).unwrap_or_else(|_| profile.clone())
@@ -140,7 +141,7 @@ pub fn advise(
         .into_iter()
         .map(|kind| {
             let values = values_of(&best_of(kind)?.nominal);
-            let change = Change::to(&values, |i| keeps_backspin && i == Cause::BACKSPIN.0);
+            let change = Change::to(&values, |i| i >= measured);
             Some(shooting.with(change).probabilities.clone())
         })
         .collect();
@@ -158,7 +159,7 @@ pub fn advise(
     let best = best_of(kind);
     let gain = by_kind[kind as usize].as_ref().map(|p| p.minus(&usual_p));
     let (steps, change) = best
-        .map(|best| shooting.steps(&usual, &values_of(&best.nominal), !keeps_backspin))
+        .map(|best| shooting.steps(&usual, &values_of(&best.nominal), measured))
         .unzip();
     let change = change.unwrap_or_default();
     let advised = |draw: &Draw| change.of_draw(draw, place);
@@ -166,7 +167,7 @@ pub fn advise(
     let advised_probability = shots.probabilities.interval();
     let mut training = training_gains(shots, &draws, place, advised);
     // Nothing is known of a scatter that was not measured.
-    training.retain(|gain| !(keeps_backspin && gain.cause == Cause::BACKSPIN));
+    training.retain(|gain| gain.cause.0 < measured);
     let fall = |values: &Values| {
         let from = Place {
             location: profile.location(),

@@ -343,7 +343,7 @@ impl<'a> Shooting<'a> {
         &mut self,
         usual: &Values,
         best: &Values,
-        changes_spin: bool,
+        measured_values: usize,
     ) -> (AdviceSteps, Change) {
         let none = Change::default();
         let (own_speed, (speed, angle)) = self.speed_and_angle(usual, best);
@@ -356,11 +356,11 @@ impl<'a> Shooting<'a> {
             change = change.with(0, speed).with(1, angle);
             order.push((Cause::PITCH, change));
         }
-        if (best[2] - usual[2]).abs() >= SAME_AIM_RAD {
+        if measured_values > 2 && (best[2] - usual[2]).abs() >= SAME_AIM_RAD {
             change = change.with(2, best[2]);
             order.push((Cause::AIM, change));
         }
-        if changes_spin {
+        if measured_values > 3 {
             order.push((Cause::BACKSPIN, change.with(3, best[3])));
         }
         let mut advised = none;

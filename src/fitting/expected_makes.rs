@@ -161,23 +161,23 @@ impl ExpectedMakes {
 pub(super) fn release_given(
     shot: &MeasuredRelease,
     draw: &Draw,
-    is_spin_measured: bool,
+    measured_values: usize,
 ) -> Option<(Values, Covariance)> {
     let factor = draw.factors[shot.place];
     let mut prior = factor * factor.transpose();
     let mean = nalgebra::Vector4::from(draw.means[shot.place]);
     let mut noise = shot.noise;
     let mut values = nalgebra::Vector4::from(shot.values);
-    if !is_spin_measured {
+    for i in measured_values..4 {
         // A measurement that says nothing.
-        noise[(3, 3)] = 1e9;
-        values[3] = mean[3];
+        noise[(i, i)] = 1e9;
+        values[i] = mean[i];
     }
     if draw.tail_weight > 0.0 {
         // The farther a shot, the wider the normal part of the mixture that it comes from: with d
         // values and n degrees of freedom the expected inverse scale is (n + d)/(n + squared
         // distance).
-        let dimension = if is_spin_measured { 4.0 } else { 3.0 };
+        let dimension = measured_values as f64;
         let freedom = 1.0 / draw.tail_weight;
         prior *= 1.0 - 2.0 * draw.tail_weight;
         let deviation = values - mean;
@@ -273,13 +273,13 @@ pub fn expected_makes(
     profiles: &[Profile],
     shots: &[MeasuredRelease],
     typical: &Draw,
-    is_spin_measured: bool,
+    measured_values: usize,
 ) -> ExpectedMakes {
     let normals = common_normals(RELEASES, 1);
     let shots: Vec<ShotChance> = shots
         .par_iter()
         .filter_map(|shot| {
-            let (mean, covariance) = release_given(shot, typical, is_spin_measured)?;
+            let (mean, covariance) = release_given(shot, typical, measured_values)?;
             let factor = factor_of(&covariance);
             let profile = &profiles[shot.place];
             let (mut made, mut swishes) = (0, 0);

@@ -109,7 +109,7 @@ pub fn check_releases(
     spin: SpinSource,
     speed_unit: (&'static str, f64),
 ) -> Result<(), TestError> {
-    let values = if spin == SpinSource::Measured { 4 } else { 3 };
+    let values = spin.measured_values();
     let unknowns = values * places.len() + values + values * (values - 1) / 2;
     let needed = unknowns.max(LEAST_SHOTS);
     if shots.is_empty() {

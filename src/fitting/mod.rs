@@ -52,7 +52,7 @@ pub use fit_checks::{
     FlightResiduals, ReleaseDifference, ShapeTest, TestError, WARNING_LEVEL, check_releases,
     check_speed_unit, far_shots, notes, shape_test, tails_of,
 };
-pub use fit_note::{FitNote, SurprisingShot};
+pub use fit_note::{Contradiction, FitNote, SurprisingShot};
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{
     DragEstimate, FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight,

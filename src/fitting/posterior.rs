@@ -39,6 +39,8 @@ pub enum SpinSource {
     Given,
     /// Mean and scatter are those of the population.
     Assumed,
+    /// So are those of the direction: a camera from the side sees neither.
+    AssumedWithDirection,
 }
 
 impl SpinSource {
@@ -48,7 +50,17 @@ impl SpinSource {
         match self {
             Self::Measured => "measured",
             Self::Given => "given",
-            Self::Assumed => "assumed",
+            Self::Assumed | Self::AssumedWithDirection => "assumed",
+        }
+    }
+
+    /// How many of the values were measured: speed, pitch, polar angle, backspin, in this order.
+    #[must_use]
+    pub fn measured_values(self) -> usize {
+        match self {
+            Self::Measured => 4,
+            Self::Given | Self::Assumed => 3,
+            Self::AssumedWithDirection => 2,
         }
     }
 
@@ -351,6 +363,7 @@ pub fn fit(
     match options.spin {
         SpinSource::Measured => fit_values::<4>(shots, places, options),
         SpinSource::Given | SpinSource::Assumed => fit_values::<3>(shots, places, options),
+        SpinSource::AssumedWithDirection => fit_values::<2>(shots, places, options),
     }
 }
 
@@ -440,7 +453,7 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
             return Err(FitError::NoScatter);
         }
         if r_hat <= LARGEST_R_HAT && effective >= LEAST_EFFECTIVE_SIZE {
-            let draws = draws_of(model, &points, options)?;
+            let draws = draws_of(model, &points, shots, options)?;
             let weights = prior_weights::<D>(&points, &priors);
             return Ok(Posterior {
                 draws,
@@ -521,8 +534,14 @@ fn prior_weights<const D: usize>(points: &[&Vec<f64>], priors: &[Spread]) -> Val
 fn draws_of<const D: usize>(
     model: &impl ReleaseModel<D>,
     points: &[&Vec<f64>],
+    shots: &[MeasuredRelease],
     options: &FitOptions,
 ) -> Result<Vec<Draw>, FitError> {
+    // Of a direction that was not measured: towards the hoop's centre.
+    let direction = |place: usize| {
+        let of_place = shots.iter().find(|shot| shot.place == place);
+        of_place.map_or(0.0, |shot| shot.values[2])
+    };
     let mut random = ChaCha12Rng::seed_from_u64(options.seed);
     random.set_stream(u64::MAX);
     (0..options.draws)
@@ -533,7 +552,11 @@ fn draws_of<const D: usize>(
                 .means(point, &mut || normal(&mut random))
                 .ok_or(FitError::NoScatter)?;
             let unseen = [normal(&mut random), normal(&mut random)];
-            let draw = draw_of(model.normal(), &dispersion, &means, unseen, options);
+            let mut draw = draw_of(model.normal(), &dispersion, &means, unseen, options);
+            if options.spin == SpinSource::AssumedWithDirection {
+                let unseen = [normal(&mut random), normal(&mut random)];
+                draw = with_direction(&draw, unseen, &direction, &options.prior);
+            }
             Ok(draw.with_tail_weight(model.tail_weight(point)).rounded())
         })
         .collect()
@@ -551,9 +574,7 @@ fn draw_of<const D: usize>(
     let prior = &options.prior;
     let unseen_mean = match options.spin {
         SpinSource::Given => prior.backspin.mean,
-        SpinSource::Assumed | SpinSource::Measured => {
-            (prior.backspin.mean + prior.backspin.sd * unseen[0]).max(0.0)
-        }
+        _ => (prior.backspin.mean + prior.backspin.sd * unseen[0]).max(0.0),
     };
     let unseen_sd = prior.median_sd[3] * libm::exp(prior.log_sd[3] * unseen[1]);
     let sds: Values = std::array::from_fn(|i| if i < D { dispersion.sds[i] } else { unseen_sd });
@@ -581,6 +602,23 @@ fn draw_of<const D: usize>(
             sd * h / (v0 * v0),
         ],
     )
+}
+
+/// A draw with a direction of the population; `unseen` are standard normals for its mean and its
+/// scatter, `towards_hoop` is the direction of the hoop's centre from a place.
+fn with_direction(
+    draw: &Draw,
+    unseen: [f64; 2],
+    towards_hoop: &dyn Fn(usize) -> f64,
+    prior: &PopulationPrior,
+) -> Draw {
+    let mut means = draw.means.clone();
+    for (place, mean) in means.iter_mut().enumerate() {
+        mean[2] = towards_hoop(place) + prior.aim.mean + prior.aim.sd * unseen[0];
+    }
+    let mut sds = draw.sds;
+    sds[2] = prior.median_sd[2] * libm::exp(prior.log_sd[2] * unseen[1]);
+    Draw::new(means, sds, draw.correlation, draw.speed_coefficients)
 }
 
 /// The names of two values that are correlated, as in `speed_pitch`.

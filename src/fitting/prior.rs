@@ -41,6 +41,9 @@ pub struct PopulationPrior {
     pub growth: Spread,
     /// Mean backspin of a shooter whose spin is not measured, rad/s.
     pub backspin: Spread,
+    /// Mean direction from the hoop's centre of a shooter whose direction is not measured, rad
+    /// (assumed).
+    pub aim: Spread,
 }
 
 impl PopulationPrior {
@@ -62,6 +65,10 @@ impl PopulationPrior {
         backspin: Spread {
             mean: 2.5 * REV_RAD,
             sd: 0.25 * REV_RAD,
+        },
+        aim: Spread {
+            mean: 0.0,
+            sd: 0.4 * DEGREE_RAD,
         },
     };
 }

@@ -116,9 +116,8 @@ pub fn fit_shooter(
     let probabilities = (0..test.places.len())
         .map(|place| usual_probabilities(&profiles[place], &posterior, place, USUAL_SHOTS))
         .collect();
-    let is_measured = options.spin == SpinSource::Measured;
-    let makes = expected_makes(&profiles, test.shots, &typical, is_measured);
-    let values = if is_measured { 4 } else { 3 };
+    let values = options.spin.measured_values();
+    let makes = expected_makes(&profiles, test.shots, &typical, values);
     let shape = shape_test(test.shots, test.places.len());
     let sds: Vec<Values> = (0..typical.means.len())
         .map(|place| typical.sds_at(place))

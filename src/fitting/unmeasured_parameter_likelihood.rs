@@ -89,8 +89,8 @@ pub struct FittedShooter<'a> {
     pub shots: &'a [MeasuredRelease],
     /// The typical draw.
     pub typical: &'a Draw,
-    /// Whether the backspin of each shot was measured.
-    pub is_spin_measured: bool,
+    /// How many of the values of each shot were measured.
+    pub measured_values: usize,
 }
 
 /// The likelihood curve of a parameter that the shooters have in common.
@@ -122,11 +122,14 @@ pub fn likelihood_curve(
                 }
             }
         }
-        let is_spin_seen = shooter.is_spin_measured && parameter != UnseenParameter::Backspin;
+        let measured_values = match parameter {
+            UnseenParameter::Backspin => shooter.measured_values.min(3),
+            UnseenParameter::HoopRestitution => shooter.measured_values,
+        };
         let logarithms: Vec<f64> = labelled
             .par_iter()
             .map_init(BatchWorkspace::default, |workspace, shot| {
-                let Some((mean, covariance)) = release_given(shot, &draw, is_spin_seen) else {
+                let Some((mean, covariance)) = release_given(shot, &draw, measured_values) else {
                     return 0.0;
                 };
                 let factor = factor_of(&covariance);

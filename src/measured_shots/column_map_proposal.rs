@@ -2,6 +2,7 @@
 
 use super::columns::{Columns, Label, OTHER_UNITS, Quantity, in_unit};
 use crate::fitting::CENTRE_DEPTH_M;
+use crate::units::{DEGREE_RAD, INCH_M, REV_RAD};
 
 /// Parts of the names that others give to a quantity or a label, in small letters without spaces.
 /// What is named first is found first.
@@ -20,14 +21,38 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "releaseft",
             "heightatrelease",
             "hrelease",
+            "abwurfhöhe",
         ],
     ),
-    ("entry_angle", &["entry", "incoming"]),
-    ("depth", &["depth", "longshort", "shortlong"]),
+    (
+        "entry_angle",
+        &["entry", "incoming", "eintritt", "einfall", "entrada"],
+    ),
+    (
+        "depth",
+        &[
+            "depth",
+            "longshort",
+            "deep",
+            "shortlong",
+            "tiefe",
+            "profond",
+            "profund",
+        ],
+    ),
     (
         "speed",
         &[
-            "speed", "velocity", "velo", "v0", "vrelease", "releasev", "mph", "kmh",
+            "speed",
+            "velocity",
+            "velo",
+            "v0",
+            "vrelease",
+            "releasev",
+            "mph",
+            "kmh",
+            "geschwind",
+            "vitesse",
         ],
     ),
     (
@@ -39,6 +64,7 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "elevation",
             "arc",
             "theta",
+            "abwurfwinkel",
         ],
     ),
     ("polar", &["polar", "azimuth"]),
@@ -54,16 +80,36 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
         ],
     ),
     ("backspin", &["backspin", "spinrate", "spin", "rpm"]),
-    ("left_right", &["leftright", "leftorright", "offline"]),
+    (
+        "left_right",
+        &[
+            "leftright",
+            "leftorright",
+            "offline",
+            "lateraloffset",
+            "sideways",
+            "linksrechts",
+            "gauchedroite",
+            "izquierda",
+        ],
+    ),
     ("court_angle", &["courtangle", "floorangle"]),
     (
         "distance",
-        &["distance", "dist", "fromhoop", "frombasket", "fromrim"],
+        &[
+            "distance",
+            "dist",
+            "fromhoop",
+            "frombasket",
+            "fromrim",
+            "entfernung",
+        ],
     ),
     (
         "made",
         &[
             "made", "make", "result", "outcome", "goal", "basket", "hit", "scored", "success",
+            "treffer", "acierto", "réussi", "score",
         ],
     ),
     (
@@ -83,6 +129,10 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "firstname",
             "lastname",
             "fullname",
+            "pupil",
+            "student",
+            "schüler",
+            "elev",
         ],
     ),
     (
@@ -95,15 +145,25 @@ const OTHER_NAMES: [(&str, &[&str]); 17] = [
             "visit",
             "phase",
             "condition",
+            "datum",
+            "fecha",
         ],
     ),
-    ("place", &["spot", "zone"]),
-    ("shot", &["shotid", "shotnumber", "shotno", "trial"]),
+    (
+        "place",
+        &["spot", "zone", "location", "position", "area", "platz"],
+    ),
+    (
+        "shot",
+        &["shotid", "shotnumber", "shotno", "trial", "schuss", "wurf"],
+    ),
     ("time", &["time"]),
 ];
 
 /// Names that are too short to be looked for within others.
-const SHORT_NAMES: [(&str, &str); 12] = [
+const SHORT_NAMES: [(&str, &str); 14] = [
+    ("place", "where"),
+    ("session", "when"),
     ("shooter", "name"),
     ("shooter", "who"),
     ("release_height", "height"),
@@ -118,143 +178,417 @@ const SHORT_NAMES: [(&str, &str); 12] = [
     ("shot", "id"),
 ];
 
-/// The columns of a file, and maps for those whose names say what they may hold. `UNIT` stands
-/// where the name does not say the unit.
-#[must_use]
-pub fn map_proposal(columns: &Columns) -> String {
-    let unused = columns.unused();
-    let mut taken: Vec<&str> = Vec::new();
-    let mut maps = Vec::new();
-    let mut has_no_unit = Vec::new();
-    let mut is_short_height = false;
-    let is_landing = columns.quantity(Quantity::Depth).is_some()
-        || unused.iter().any(|name| letters_of(name).contains("depth"));
-    let is_tracked = is_tracked(columns, &unused);
-    for name in &unused {
-        let of_tracker = if is_tracked {
-            tracked_target(name)
-        } else {
-            None
+/// A column with what it may hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProposedMap {
+    /// The quantity or label.
+    pub target: &'static str,
+    /// What `--map` takes; `UNIT` stands where nothing says the unit.
+    pub map: String,
+    /// Whether the unit is known.
+    pub is_complete: bool,
+    /// Some of its cells.
+    pub examples: Vec<String>,
+}
+
+/// What the columns of a file may hold, by their names and their cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proposal<'a> {
+    columns: &'a Columns,
+    /// A map for each column that was understood.
+    pub maps: Vec<ProposedMap>,
+    is_tracked: bool,
+    /// A column of heights that may be those of the player.
+    is_short_height: bool,
+    /// Quantities that are needed and that no column seems to hold.
+    missing: Vec<Quantity>,
+}
+
+/// The range of the median of a column of shots, SI units, whoever shoots; `None` where any is
+/// plausible.
+fn usual_median(quantity: Quantity) -> Option<(f64, f64)> {
+    let (low, high, size) = match quantity {
+        Quantity::Speed => (4.0, 14.0, 1.0),
+        Quantity::Pitch => (20.0, 80.0, DEGREE_RAD),
+        Quantity::EntryAngle => (22.0, 70.0, DEGREE_RAD),
+        Quantity::Aim => (-20.0, 20.0, DEGREE_RAD),
+        Quantity::Polar | Quantity::CourtAngle => (-120.0, 120.0, DEGREE_RAD),
+        Quantity::Depth => (-10.0, 26.0, INCH_M),
+        Quantity::LeftRight => (-12.0, 12.0, INCH_M),
+        Quantity::Backspin => (-1.0, 10.0, REV_RAD),
+        Quantity::Distance => (1.5, 9.5, 1.0),
+        Quantity::ReleaseHeight => (1.2, 3.2, 1.0),
+        Quantity::Time | Quantity::X | Quantity::Y | Quantity::Z => return None,
+    };
+    Some((low * size, high * size))
+}
+
+/// The median depth of the shots of those who aim at the middle of the hoop, m.
+const USUAL_DEPTH_M: (f64, f64) = (5.5 * INCH_M, 15.0 * INCH_M);
+/// The standard deviation of the depths of a shooter's shots, m.
+const USUAL_DEPTH_SPREAD_M: (f64, f64) = (1.8 * INCH_M, 11.0 * INCH_M);
+
+/// The unit of a column: that of its name or its cells, or the only one that makes its numbers
+/// plausible.
+///
+/// # Errors
+/// The numbers are implausible in each unit: the column holds something else.
+fn unit_of_column(
+    columns: &Columns,
+    index: usize,
+    quantity: Quantity,
+) -> Result<Option<&'static str>, ()> {
+    let name = columns.name(index);
+    let known = quantity.unit_names();
+    let by_cells = columns.unit_by_cells(index);
+    if by_cells.is_some_and(|unit| !known.contains(&unit)) {
+        return Err(());
+    }
+    let stated = by_cells.or_else(|| unit_of(name, quantity));
+    let Some(summary) = columns.summary(index) else {
+        return Ok(stated);
+    };
+    let Some(median) = summary.median else {
+        // A length may be written as `6 ft 11 in`.
+        let is_text = summary.filled > 0 && quantity.dimension_of_texts().is_none();
+        return if is_text { Err(()) } else { Ok(stated) };
+    };
+    let Some((low, high)) = usual_median(quantity) else {
+        return Ok(stated);
+    };
+    let (sign, offset) = zero_of(name, quantity, stated);
+    let offset_in_its_unit: f64 = offset.parse().unwrap_or(0.0);
+    let is_plausible = |unit: &&'static str| {
+        let size = quantity.units().iter().find(|(name, _)| name == unit);
+        let offset: f64 = offset.parse().unwrap_or(0.0);
+        let turned = if sign.is_empty() { median } else { -median };
+        size.is_some_and(|(_, size)| (low..=high).contains(&(size * (turned + offset))))
+    };
+    if let Some(stated) = stated
+        && is_plausible(&stated)
+    {
+        return Ok(Some(stated));
+    }
+    // A depth without a unit: where shots end and how far they scatter tells inches from
+    // centimetres.
+    let is_usual_depth = |unit: &&'static str| {
+        let size = quantity.units().iter().find(|(name, _)| name == unit);
+        let is_within = |(least, most): (f64, f64), value: f64| {
+            size.is_some_and(|(_, size)| (least..=most).contains(&(size * value)))
         };
-        let target = of_tracker.filter(|target| !taken.contains(target));
-        // A second time of a point is none of the session.
-        if target.is_none() && of_tracker == Some("time") {
-            continue;
-        }
-        let Some(target) = target.or_else(|| target_of(name, is_landing, &taken)) else {
-            continue;
-        };
-        let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
-        if quantity.is_some_and(|quantity| columns.quantity(quantity).is_some()) {
-            continue;
-        }
-        taken.push(target);
-        is_short_height |= target == "release_height"
-            && first_word(&name.to_lowercase()) == "height"
-            && !letters_of(name).contains("release");
-        maps.push(match quantity {
-            None => format!("--map '{target}={name}'"),
-            Some(quantity) => {
-                let unit = unit_of(name, quantity);
-                if unit.is_none() {
-                    has_no_unit.push(quantity);
-                }
-                let (sign, offset) = zero_of(name, quantity, unit);
-                format!(
-                    "--map '{target}={sign}{name}:{}{offset}'",
-                    unit.unwrap_or("UNIT")
-                )
+        quantity != Quantity::Depth
+            || is_within(USUAL_DEPTH_SPREAD_M, summary.spread)
+                && is_within(USUAL_DEPTH_M, median + offset_in_its_unit)
+    };
+    let plausible: Vec<&'static str> = known
+        .iter()
+        .copied()
+        .filter(is_plausible)
+        .filter(is_usual_depth)
+        .collect();
+    match (stated, &plausible[..]) {
+        (_, []) => Err(()),
+        (None, [one]) => Ok(Some(one)),
+        (None, _) => Ok(None),
+        // A unit of the name that the numbers contradict; degrees are only assumed.
+        (Some("deg"), [one]) => Ok(Some(one)),
+        (Some(_), _) => Err(()),
+    }
+}
+
+/// Whether the cells of a column can be a label.
+fn can_be_label(columns: &Columns, index: usize, target: &str) -> bool {
+    let Some(summary) = columns.summary(index) else {
+        return true;
+    };
+    match target {
+        // Several rows for each.
+        "shooter" | "place" => 2 * summary.distinct <= summary.filled,
+        "session" => summary.can_tell_sessions,
+        "made" => (1..=4).contains(&summary.distinct),
+        _ => true,
+    }
+}
+
+impl<'a> Proposal<'a> {
+    /// What the columns may hold.
+    #[must_use]
+    pub fn of(columns: &'a Columns) -> Self {
+        let unused = columns.unused();
+        let is_landing = columns.quantity(Quantity::Depth).is_some()
+            || unused
+                .iter()
+                .any(|name| target_of(name, false, &[]) == Some("depth"));
+        let is_tracked = is_tracked(columns, &unused);
+        let mut taken: Vec<&str> = Vec::new();
+        let mut maps = Vec::new();
+        let mut is_short_height = false;
+        let mut unit_of_depth = columns
+            .quantity(Quantity::Depth)
+            .map(|column| column.unit.0);
+        for index in columns.unused_indices() {
+            let name = columns.name(index);
+            let of_tracker = if is_tracked {
+                tracked_target(name)
+            } else {
+                None
+            };
+            let target = of_tracker.filter(|target| !taken.contains(target));
+            // A second time of a point is none of the session.
+            if target.is_none() && of_tracker == Some("time") {
+                continue;
             }
-        });
-    }
-    let is_release = taken.contains(&"speed") && !is_landing;
-    let needed: &[Quantity] = match () {
-        () if maps.is_empty() => &[],
-        () if is_tracked => &[Quantity::Time],
-        () if is_landing => &[Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight],
-        () if is_release && (taken.contains(&"polar") || taken.contains(&"aim")) => {
-            &[Quantity::Pitch]
+            let by_cells = columns
+                .summary(index)
+                .and_then(|summary| summary.label_by_cells)
+                .filter(|target| !taken.contains(target));
+            let by_name = || target_of(name, is_landing, &taken);
+            let Some(target) = target.or(by_cells).or_else(by_name) else {
+                continue;
+            };
+            let is_label_taken = || columns.has_label(target);
+            let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
+            let is_known = match quantity {
+                Some(quantity) => columns.quantity(quantity).is_some(),
+                None => is_label_taken(),
+            };
+            if is_known {
+                continue;
+            }
+            let (map, is_complete) = match quantity {
+                None if can_be_label(columns, index, target) => (format!("{target}={name}"), true),
+                None => continue,
+                Some(quantity) => {
+                    let Ok(unit) = unit_of_column(columns, index, quantity) else {
+                        continue;
+                    };
+                    // One sensor has one unit for both.
+                    let unit = match quantity {
+                        Quantity::LeftRight => unit.or(unit_of_depth),
+                        _ => unit,
+                    };
+                    if quantity == Quantity::Depth {
+                        unit_of_depth = unit;
+                    }
+                    let (sign, offset) = zero_of(name, quantity, unit);
+                    let map = format!("{target}={sign}{name}:{}{offset}", unit.unwrap_or("UNIT"));
+                    (map, unit.is_some())
+                }
+            };
+            taken.push(target);
+            is_short_height |= target == "release_height"
+                && first_word(&name.to_lowercase()) == "height"
+                && !letters_of(name).contains("release");
+            let summary = columns.summary(index);
+            maps.push(ProposedMap {
+                target,
+                map,
+                is_complete,
+                examples: summary.map_or_else(Vec::new, |summary| summary.examples.clone()),
+            });
         }
-        () if is_release => &[Quantity::Pitch, Quantity::Aim],
-        () => &[],
-    };
-    for quantity in needed.iter().copied() {
-        let name = quantity.name();
-        if !taken.contains(&name) && columns.quantity(quantity).is_none() {
-            maps.push(format!("--map '{name}=COLUMN:UNIT'"));
+        let is_release = taken.contains(&"speed") && !is_landing;
+        let has_side = taken.contains(&"polar") || taken.contains(&"aim");
+        let needed: &[Quantity] = match () {
+            () if maps.is_empty() => &[],
+            () if is_tracked => &[Quantity::Time],
+            () if is_landing => &[Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight],
+            () if is_release && has_side => &[Quantity::Pitch],
+            () if is_release => &[Quantity::Pitch, Quantity::Aim],
+            () => &[],
+        };
+        let is_missing = |quantity: &Quantity| {
+            !taken.contains(&quantity.name()) && columns.quantity(*quantity).is_none()
+        };
+        Self {
+            columns,
+            is_tracked,
+            is_short_height,
+            missing: needed.iter().copied().filter(is_missing).collect(),
+            maps,
         }
     }
-    let mut text = format!("\nits columns are {}", columns.names().join(", "));
-    let known = columns.names().len() - unused.len();
-    if maps.is_empty() {
-        if known == 0 {
-            text += "; name them with --map 'speed=ReleaseSpeed:mph'";
+
+    /// The maps that are taken with `--accept`.
+    ///
+    /// # Errors
+    /// The unit of a column is not known; what to add.
+    pub fn accepted(&self) -> Result<Vec<String>, String> {
+        if let Some(open) = self.maps.iter().find(|map| !map.is_complete) {
+            let units = Quantity::ALL
+                .into_iter()
+                .find(|quantity| quantity.name() == open.target)
+                .map_or_else(Vec::new, Quantity::unit_names);
+            let first = units.first().copied().unwrap_or_default();
+            return Err(format!(
+                "--accept: nothing says the unit of {}: add --map '{}' (or {})",
+                open.target,
+                open.map.replace("UNIT", first),
+                units[1.min(units.len())..].join(", ")
+            ));
         }
-        return text;
+        Ok(self.maps.iter().map(|map| map.map.clone()).collect())
     }
-    // One a line, so that they can be copied whole.
-    text += &format!(
-        "\nadd to each command on this file, where it fits (or keep these lines in a file, and add --map @FILE):\n  {}",
-        maps.join(" \\\n  ")
-    );
-    for quantity in has_no_unit {
-        text += &format!(
-            "\n  UNIT of {}: {}",
-            quantity.name(),
-            quantity.unit_names().join(", ")
-        );
-    }
-    for (quantity, side, other) in [
-        (Quantity::Aim, "left", "right"),
-        (Quantity::Polar, "left", "right"),
-        (Quantity::LeftRight, "right", "left"),
-    ] {
-        let name = quantity.name();
-        if taken.contains(&name) {
-            text += &format!(
-                "\n  {name} is positive to the shooter's {side}: for a column that is positive to \
-                 the {other}, write a minus before its name"
-            );
+
+    /// Columns that may name players although their names do not say so: texts that nothing else is
+    /// taken from, each for many rows. With some of the texts.
+    #[must_use]
+    pub fn possible_players(&self) -> Vec<(String, Vec<String>)> {
+        /// Shots of a player, at least.
+        const SHOTS: usize = 8;
+        if self.has("shooter") || self.columns.label(Label::Shooter).is_some() || self.is_tracked {
+            return Vec::new();
         }
+        let unused = self.columns.unused_indices().into_iter();
+        let is_open = |index: &usize| {
+            let name = self.columns.name(*index);
+            !self
+                .maps
+                .iter()
+                .any(|map| map.map.ends_with(&format!("={name}")))
+        };
+        unused
+            .filter(is_open)
+            .filter_map(|index| {
+                let summary = self.columns.summary(index)?;
+                let are_texts = summary.median.is_none() && summary.label_by_cells.is_none();
+                let is_repeated = (2..=summary.filled / SHOTS).contains(&summary.distinct);
+                (are_texts && is_repeated).then(|| {
+                    (
+                        self.columns.name(index).to_owned(),
+                        summary.examples.clone(),
+                    )
+                })
+            })
+            .collect()
     }
-    if is_short_height {
-        text += "\n  release_height is that of the ball when it leaves the hand: leave it out if the \
-                 column has the player's height";
+
+    fn has(&self, target: &str) -> bool {
+        self.maps.iter().any(|map| map.target == target)
     }
-    text +=
-        "\n  without --physics the shots are taken to be at the men's college ball and hoop (ncaa)";
-    if maps.iter().any(|map| is_metric(map)) {
-        text += "\n  answers are in feet and ft/s: --units metric gives metres and m/s";
+
+    fn is_known(&self, quantity: Quantity) -> bool {
+        self.has(quantity.name()) || self.columns.quantity(quantity).is_some()
     }
-    let is_known = |quantity: Quantity| {
-        taken.contains(&quantity.name()) || columns.quantity(quantity).is_some()
-    };
-    if is_tracked {
-        text += "\n  x, y and z are taken from the hoop's centre (x onto the court, y to the right of who faces the hoop, z upwards); for another origin give --frame, or --hoop such as '7.2 m,12.45 m,-y'";
-    } else if !is_known(Quantity::Time) {
+
+    /// In words, for a message.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let names = self.columns.names();
+        let mut text = format!("\nits columns are {}", names_in_short(names));
+        let all_unused = self.columns.unused().len() == names.len();
+        if self.maps.is_empty() {
+            if all_unused {
+                text += "; name them with --map 'speed=ReleaseSpeed:mph'";
+            }
+            return text;
+        }
+        text += "\nthey may hold (the first values in brackets):";
+        for map in &self.maps {
+            let examples = match map.examples.is_empty() {
+                true => String::new(),
+                false => format!("   ({})", map.examples.join(", ")),
+            };
+            text += &format!("\n  --map '{}'{examples}", map.map);
+        }
+        for quantity in &self.missing {
+            text += &format!("\n  --map '{}=COLUMN:UNIT'", quantity.name());
+        }
+        text += "\nif this is right, add --accept; to change a line, add it corrected beside --accept (or keep the lines in a file: --map @FILE)";
+        for map in self.maps.iter().filter(|map| !map.is_complete) {
+            let quantity = Quantity::ALL.into_iter().find(|q| q.name() == map.target);
+            let units = quantity.map_or_else(Vec::new, Quantity::unit_names);
+            text += &format!("\n  UNIT of {}: {}", map.target, units.join(", "));
+        }
+        text + &self.remarks()
+    }
+
+    /// What must be known beside the names.
+    fn remarks(&self) -> String {
+        let mut text = String::new();
+        for (quantity, side, other) in [
+            (Quantity::Aim, "left", "right"),
+            (Quantity::Polar, "left", "right"),
+            (Quantity::LeftRight, "right", "left"),
+        ] {
+            let name = quantity.name();
+            if self.has(name) {
+                text += &format!(
+                    "\n  {name} is positive to the shooter's {side}: for a column that is positive to \
+                     the {other}, write a minus before its name"
+                );
+            }
+        }
+        if self.is_short_height {
+            text += "\n  release_height is that of the ball when it leaves the hand: leave it out if the \
+                     column has the player's height";
+        }
+        text += "\n  without --physics, the men's college ball and hoop (ncaa) are assumed";
+        if self.maps.iter().any(|map| is_metric(&map.map)) {
+            text += "\n  answers are in feet and ft/s: --units metric gives metres and m/s";
+        }
+        if self.is_tracked {
+            text += "\n  x, y and z are taken from the hoop's centre (x onto the court, y to the right of who faces the hoop, z upwards); for another origin give --frame, or --hoop such as '7.2 m,12.45 m,-y'";
+        } else if !self.is_known(Quantity::Time) {
+            text += &self.place_to_give();
+        }
+        text
+    }
+
+    /// The options that say the place, where no column does.
+    fn place_to_give(&self) -> String {
+        let has_place = self.has("place") || self.columns.label(Label::Place).is_some();
         let missing: Vec<&str> = [
-            (Quantity::Distance, "--distance '13.75 ft'"),
+            (Quantity::Distance, "--at 'free throw'"),
             (Quantity::ReleaseHeight, "--release-height '7 ft'"),
         ]
         .into_iter()
-        .filter_map(|(quantity, option)| (!is_known(quantity)).then_some(option))
+        .filter(|(quantity, _)| !(*quantity == Quantity::Distance && has_place))
+        .filter_map(|(quantity, option)| (!self.is_known(quantity)).then_some(option))
         .collect();
-        if !missing.is_empty() {
-            text += &format!(
-                "\nand, as no column gives the place of the shots: {}",
-                missing.join(" ")
-            );
-            if taken.contains(&"shooter") || columns.label(Label::Shooter).is_some() {
-                text += "\n  (each shooter can have a height: --release-height 'NAME=6.9 ft', repeated)";
-            }
+        if missing.is_empty() {
+            return String::new();
         }
+        let mut text = format!(
+            "\nand, as no column gives the place of the shots: {}",
+            missing.join(" ")
+        );
+        if self.has("shooter") || self.columns.label(Label::Shooter).is_some() {
+            text +=
+                "\n  (each shooter can have a height: --release-height 'NAME=6.9 ft', repeated)";
+        }
+        text
     }
-    text
+}
+
+/// The names of columns, not all of them if they are many or long.
+fn names_in_short(names: &[String]) -> String {
+    const MOST: usize = 20;
+    const LONGEST: usize = 40;
+    let shown = names.iter().take(MOST).map(|name| {
+        let short: String = name.chars().take(LONGEST).collect();
+        match short.len() < name.len() {
+            true => format!("{short}..."),
+            false => short,
+        }
+    });
+    let shown: Vec<String> = shown.collect();
+    let more = match names.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    shown.join(", ") + &more
+}
+
+/// The columns of a file and what they may hold, in words.
+#[must_use]
+pub fn map_proposal(columns: &Columns) -> String {
+    Proposal::of(columns).text()
 }
 
 /// Whether a map such as `--map 'speed=v:m/s'` has a metric unit.
 fn is_metric(map: &str) -> bool {
-    let unit = map.trim_end_matches('\'').rsplit(':').next();
+    let unit = map.rsplit(':').next();
     let unit = unit.map(|unit| unit.split(['+', '-']).next().unwrap_or(unit));
     matches!(unit, Some("m" | "cm" | "mm" | "m/s" | "cm/s" | "km/h"))
 }

@@ -3,6 +3,8 @@
 //! A column is `QUANTITY_UNIT`, such as `speed_ft_s`; columns of other names are named with
 //! `--map`, which can also turn a sign round and move the zero.
 
+use super::column_texts::{ColumnSummary, ColumnText, unit_named};
+use super::table::Table;
 use crate::units::{DEGREE_RAD, Dimension, FOOT_M, INCH_M, REV_RAD};
 
 /// A unit: its suffix and its size in SI units.
@@ -209,12 +211,14 @@ impl QuantityColumn {
 }
 
 /// The known columns of a file.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
     quantities: Vec<(Quantity, QuantityColumn)>,
     labels: Vec<(Label, usize)>,
     /// The names of the columns, as in the file.
     names: Vec<String>,
+    /// What the cells say of each column; empty where only names are known.
+    texts: Vec<ColumnText>,
 }
 
 /// What a mapped or file column is taken as.
@@ -224,7 +228,12 @@ enum Meaning {
 }
 
 /// Units as others write them, longest first, and their suffixes here.
-pub(super) const OTHER_UNITS: [(&str, &str); 32] = [
+pub(super) const OTHER_UNITS: [(&str, &str); 37] = [
+    ("degree", "deg"),
+    ("grad", "deg"),
+    ("inch", "in"),
+    ("foot", "ft"),
+    ("ft.", "ft"),
     ("degrees", "deg"),
     ("inches", "in"),
     ("metres", "m"),
@@ -320,8 +329,25 @@ impl Columns {
     /// # Errors
     /// A map that cannot be followed, or a quantity given twice.
     pub fn new(header: &[String], maps: &[String]) -> Result<Self, Vec<String>> {
+        Self::with_texts(header, &[], maps)
+    }
+
+    /// The columns of a table, whose cells may say the units.
+    ///
+    /// # Errors
+    /// As [`Columns::new`].
+    pub fn of_table(table: &Table, maps: &[String]) -> Result<Self, Vec<String>> {
+        Self::with_texts(&table.header, &table.texts, maps)
+    }
+
+    fn with_texts(
+        header: &[String],
+        texts: &[ColumnText],
+        maps: &[String],
+    ) -> Result<Self, Vec<String>> {
         let mut columns = Self {
             names: header.to_vec(),
+            texts: texts.to_vec(),
             ..Self::default()
         };
         let mut errors = Vec::new();
@@ -335,7 +361,7 @@ impl Columns {
             if is_mapped[index] {
                 continue;
             }
-            match meaning(name.trim(), None) {
+            match columns.meaning_of_name(name, index) {
                 Ok(Some(meaning)) => {
                     if let Err(error) = columns.add(meaning, index, Zero::OWN) {
                         errors.push(error);
@@ -350,6 +376,41 @@ impl Columns {
         } else {
             Err(errors)
         }
+    }
+
+    /// What a column is by its own name: `speed_ft_s`, `Speed (ft/s)`, or `speed` with a unit in
+    /// its cells.
+    fn meaning_of_name(&self, name: &str, index: usize) -> Result<Option<Meaning>, String> {
+        if let Some(found) = meaning(name.trim(), None)? {
+            return Ok(Some(found));
+        }
+        let lower = name.trim().to_lowercase();
+        let (base, bracket) = match lower.split_once(['(', '[']) {
+            Some((base, unit)) => (base.trim(), Some(unit)),
+            None => (lower.as_str(), None),
+        };
+        let base = base.replace([' ', '-', '/'], "_");
+        if LABELS.iter().any(|(label, _)| *label == base) {
+            return meaning(&base, None);
+        }
+        if !Quantity::ALL.iter().any(|quantity| quantity.name() == base) {
+            return Ok(None);
+        }
+        let unit = bracket.and_then(unit_named).or(self.unit_by_cells(index));
+        // A unit that the quantity does not have is that of something else.
+        Ok(unit.and_then(|unit| meaning(&base, Some(unit)).ok().flatten()))
+    }
+
+    /// The unit that the cells of a column have, or a row of units says.
+    #[must_use]
+    pub(super) fn unit_by_cells(&self, index: usize) -> Option<&'static str> {
+        self.texts.get(index)?.unit
+    }
+
+    /// The cells of a column in short.
+    #[must_use]
+    pub(super) fn summary(&self, index: usize) -> Option<&ColumnSummary> {
+        self.texts.get(index)?.summary.as_ref()
     }
 
     fn add_map(
@@ -399,6 +460,13 @@ impl Columns {
                 (index, Some(unit).filter(|unit| !unit.is_empty()))
             }
         };
+        let unit = unit.or_else(|| {
+            let quantity = Quantity::ALL
+                .into_iter()
+                .find(|q| q.name() == target.trim())?;
+            let own = self.unit_by_cells(index)?;
+            quantity.unit_names().contains(&own).then_some(own)
+        });
         let meaning = meaning(target.trim(), unit)?.ok_or_else(|| {
             let target = target.trim();
             let quantity = Quantity::ALL.into_iter().find(|q| q.name() == target);
@@ -435,6 +503,16 @@ impl Columns {
             }
             Meaning::Label(label) => self.labels.push((label, index)),
             Meaning::Quantity(quantity, unit) => {
+                let is_right = self
+                    .texts
+                    .get(index)
+                    .is_some_and(|text| text.is_positive_to_the_right);
+                let zero = match quantity {
+                    Quantity::Aim | Quantity::Polar if is_right && zero == Zero::OWN => {
+                        Zero { sign: -1.0, ..zero }
+                    }
+                    _ => zero,
+                };
                 if let Some(other) = self.quantity(quantity) {
                     return Err(format!(
                         "columns {} and {} both give the {}; keep one",
@@ -464,6 +542,12 @@ impl Columns {
         found.map(|(_, index)| *index)
     }
 
+    /// Whether there is a column of the label of this name.
+    pub(super) fn has_label(&self, name: &str) -> bool {
+        let mut labels = LABELS.iter().filter(|(known, _)| *known == name);
+        labels.any(|(_, label)| self.label(*label).is_some())
+    }
+
     /// The names of all columns.
     #[must_use]
     pub fn names(&self) -> &[String] {
@@ -479,26 +563,102 @@ impl Columns {
     /// The columns that nothing is taken from.
     #[must_use]
     pub fn unused(&self) -> Vec<&str> {
+        let unused = self.unused_indices().into_iter();
+        unused.map(|index| self.names[index].as_str()).collect()
+    }
+
+    /// See [`Columns::unused`].
+    pub(super) fn unused_indices(&self) -> Vec<usize> {
         let is_used = |index: usize| {
             self.quantities
                 .iter()
                 .any(|(_, column)| column.index == index)
                 || self.labels.iter().any(|(_, label)| *label == index)
         };
-        let unused = (0..self.names.len()).filter(|&index| !is_used(index));
-        unused.map(|index| self.names[index].as_str()).collect()
+        (0..self.names.len())
+            .filter(|&index| !is_used(index))
+            .collect()
     }
 }
+
+/// Words for a make and for a miss, in small letters.
+const MADE: &[&str] = &[
+    "basket",
+    "bucket",
+    "1",
+    "1.0",
+    "true",
+    "t",
+    "yes",
+    "y",
+    "made",
+    "make",
+    "hit",
+    "in",
+    "swish",
+    "success",
+    "successful",
+    "good",
+    "goal",
+    "scored",
+    "score",
+    "wahr",
+    "ja",
+    "treffer",
+    "vrai",
+    "oui",
+    "réussi",
+    "verdadero",
+    "sí",
+    "vero",
+    "made shot",
+    "✓",
+    "✔",
+];
+const MISSED: &[&str] = &[
+    "no basket",
+    "not made",
+    "not in",
+    "0",
+    "0.0",
+    "false",
+    "f",
+    "no",
+    "n",
+    "missed",
+    "miss",
+    "out",
+    "airball",
+    "air ball",
+    "fail",
+    "failed",
+    "failure",
+    "unsuccessful",
+    "bad",
+    "no goal",
+    "falsch",
+    "nein",
+    "fehlwurf",
+    "daneben",
+    "faux",
+    "non",
+    "raté",
+    "falso",
+    "missed shot",
+    "✗",
+    "✘",
+];
 
 /// Whether a cell says made or missed; `None` where it says nothing.
 ///
 /// # Errors
 /// The cell says something else.
 pub fn parse_made(cell: &str) -> Result<Option<bool>, String> {
-    match cell.trim().to_ascii_lowercase().as_str() {
-        "" | "na" | "nan" => Ok(None),
-        "1" | "true" | "yes" | "y" | "made" | "make" | "hit" | "in" | "swish" => Ok(Some(true)),
-        "0" | "false" | "no" | "n" | "missed" | "miss" | "out" | "airball" => Ok(Some(false)),
+    let lower = cell.trim().to_lowercase();
+    match lower.as_str() {
+        "" | "na" | "n/a" | "nan" | "null" | "none" | "-" => Ok(None),
+        word if MADE.contains(&word) => Ok(Some(true)),
+        word if MISSED.contains(&word) => Ok(Some(false)),
         other => Err(format!(
             "made: \"{}\" is neither made (1, true, yes, made) nor missed (0, false, no, missed)",
             other.chars().take(20).collect::<String>()

@@ -3,12 +3,14 @@
 
 use super::column_map_proposal::names_players;
 use super::columns::{Columns, Label, Quantity, parse_made};
-use super::session_days::{DateOrder, Days, day_in_words, days};
+use super::session_days::{
+    DateOrder, Days, SHOTS_OF_SESSION, can_tell_sessions, day_in_words, days,
+};
 use super::source::Source;
 use super::table::Table;
+use crate::model::league_courts::League;
+use crate::model::named_places::place_named;
 
-/// A session has at least so many shots on average.
-const SHOTS_OF_SESSION: usize = 3;
 /// Values that a message names.
 const MOST_NAMED: usize = 6;
 
@@ -115,9 +117,14 @@ fn refuse_places_as_one(
         let is_taken = Some(name) == named;
         if places.len() >= 2 && (are_places || is_taken) && 2 * places.len() <= table.rows.len() {
             return Err(format!(
-                "column {name} has {} places ({}), and one --distance is not that of all: keep the rows of one place in a file of their own, or add columns distance_ft and court_angle_deg",
+                "column {name} has {} places ({}), and one --distance or --at is not that of all: {}",
                 places.len(),
-                listed(&places)
+                listed(&places),
+                match are_places {
+                    true if is_taken => "leave it out, so that the names say the places".to_owned(),
+                    true => format!("leave it out and add --map 'place={name}', so that the names say the places"),
+                    false => "keep the rows of one place in a file of their own, or add columns distance_ft and court_angle_deg".to_owned(),
+                }
             ));
         }
     }
@@ -130,6 +137,9 @@ fn is_place(text: &str) -> bool {
         "throw", "elbow", "wing", "corner", "block", "baseline", "key", "arc", "paint", "layup",
         "post", "3pt", "three", "midrange",
     ];
+    if place_named(text, League::Ncaa).is_some() {
+        return true;
+    }
     let text = text.to_lowercase();
     let mut words = text.split(|c: char| !c.is_alphanumeric());
     words.any(|word| WORDS.iter().any(|known| word.starts_with(known)) || word == "ft")
@@ -170,6 +180,22 @@ fn decide_blanks(
         .filter(|(_, cells)| cell(cells, index).is_empty())
         .count();
     let known = values(table, index);
+    let are_known = |made: bool| {
+        let mut read = known.iter().filter_map(|value| parse_made(value).ok());
+        read.any(|result| result == Some(made))
+    };
+    // Where both results are known, an odd cell costs its own row.
+    let is_odd = known.iter().any(|value| parse_made(value).is_err());
+    if is_odd && !(are_known(true) && are_known(false)) {
+        let and_blanks = match blanks {
+            0 => String::new(),
+            rows => format!(" and blanks ({rows} rows)"),
+        };
+        return Err(format!(
+            "column {name} has {}{and_blanks}: which of them is a make? Add --made VALUE, with one of these; all other rows are then misses",
+            listed(&known)
+        ));
+    }
     let [only] = known[..] else {
         return Ok(());
     };
@@ -291,11 +317,5 @@ pub fn can_be_sessions(table: &Table, index: usize) -> bool {
         .iter()
         .map(|(_, cells)| cell(cells, index))
         .collect();
-    let mut names: Vec<String> = match days(&cells, Some(DateOrder::DayFirst)) {
-        Days::Moments(moments, _) => moments.iter().flatten().map(day_in_words).collect(),
-        _ => cells.into_iter().map(str::to_owned).collect(),
-    };
-    names.sort();
-    names.dedup();
-    (2..=table.rows.len() / SHOTS_OF_SESSION).contains(&names.len())
+    can_tell_sessions(&cells)
 }

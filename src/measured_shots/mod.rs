@@ -2,13 +2,14 @@
 //! them.
 
 pub mod column_map_proposal;
+mod column_texts;
 pub mod columns;
 pub mod court_frame;
 pub mod decisions;
 mod implausible_columns;
 mod places;
 pub mod read;
-mod rejected_shots;
+pub mod rejected_shots;
 mod row_reader;
 pub mod session_days;
 pub mod shooter_shots;

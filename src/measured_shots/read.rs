@@ -155,8 +155,13 @@ fn check_place(reader: &RowReader<'_>) -> Result<(), String> {
     let has = |quantity| reader.columns.quantity(quantity).is_some();
     // Name, column, flag.
     let mut missing = Vec::new();
-    if !has(Quantity::Distance) && reader.options.distance_m.is_none() {
-        missing.push(["distance", "distance_ft", "--distance '13.75 ft'"]);
+    let is_named = reader.has_places_by_name();
+    if !has(Quantity::Distance) && reader.options.distance_m.is_none() && !is_named {
+        missing.push([
+            "distance",
+            "distance_ft",
+            "--at 'free throw' (or --distance '13.75 ft')",
+        ]);
     }
     let heights = &reader.options.release_heights_m;
     if !has(Quantity::ReleaseHeight) && heights.is_empty() {
@@ -181,7 +186,7 @@ fn check_place(reader: &RowReader<'_>) -> Result<(), String> {
         ));
     }
     // What is given once for all rows is refused once.
-    if !has(Quantity::Distance) && !has(Quantity::CourtAngle) {
+    if !has(Quantity::Distance) && !has(Quantity::CourtAngle) && !is_named {
         reader.location(&[])?;
     }
     if !has(Quantity::ReleaseHeight) {
@@ -211,7 +216,9 @@ fn shooter(
             shots
         }
     };
-    let spin = if reader.columns.quantity(Quantity::Backspin).is_some() {
+    let spin = if reader.has_no_direction() {
+        SpinSource::AssumedWithDirection
+    } else if reader.columns.quantity(Quantity::Backspin).is_some() {
         SpinSource::Measured
     } else if reader.options.backspin_rad_s.is_some() {
         SpinSource::Given

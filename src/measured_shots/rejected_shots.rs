@@ -3,13 +3,52 @@
 use super::row_reader::{FARTHEST_LANDING_M, IS_MISSING};
 use super::shooter_shots::ShooterShots;
 use crate::dynamics::Simulator;
-use crate::fitting::{
-    CENTRE_DEPTH_M, MeasuredRelease, Place, SpinSource, Values, far_shots, landing_of,
-};
+use crate::fitting::{CENTRE_DEPTH_M, MeasuredRelease, Place, Values, far_shots, landing_of};
 use crate::units::FOOT_M;
 
 /// A shot farther than this from the others, in robust standard deviations, is doubtful.
 const DOUBTFUL: f64 = 6.0;
+
+/// Rows that were kept out for one kind of reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReasonGroup {
+    /// How many.
+    pub rows: usize,
+    /// The first of them.
+    pub first: u64,
+    /// The reason of the first.
+    pub reason: String,
+}
+
+/// The reasons with how often each occurs, the most frequent first. Reasons that differ in numbers
+/// or in quoted cells alone are one.
+#[must_use]
+pub fn grouped_reasons(rejected: &[(u64, String)]) -> Vec<ReasonGroup> {
+    let kind = |reason: &str| -> String {
+        let outside: Vec<&str> = reason.split('"').step_by(2).collect();
+        outside
+            .concat()
+            .replace(|c: char| c.is_ascii_digit() || "-.+".contains(c), "")
+    };
+    let mut groups: Vec<(String, ReasonGroup)> = Vec::new();
+    for (row, reason) in rejected {
+        let kind = kind(reason);
+        match groups.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, group)) => group.rows += 1,
+            None => groups.push((
+                kind,
+                ReasonGroup {
+                    rows: 1,
+                    first: *row,
+                    reason: reason.clone(),
+                },
+            )),
+        }
+    }
+    let mut groups: Vec<ReasonGroup> = groups.into_iter().map(|(_, group)| group).collect();
+    groups.sort_by_key(|group| std::cmp::Reverse(group.rows));
+    groups
+}
 
 /// Refuses a file in which so many rows hold absurd values that the columns are probably others. An
 /// empty cell is not absurd.
@@ -18,19 +57,28 @@ pub(super) fn too_many_absurd(rows: usize, rejected: &[(u64, String)]) -> Result
     const MANY: usize = 10;
     /// One in so many.
     const FRACTION: usize = 4;
-    let absurd: Vec<_> = rejected
+    let absurd: Vec<(u64, String)> = rejected
         .iter()
         .filter(|(_, reason)| !reason.ends_with(IS_MISSING))
+        .cloned()
         .collect();
-    match absurd[..] {
-        [(row, reason), ..] if absurd.len() >= MANY && FRACTION * absurd.len() > rows => {
-            Err(format!(
-                "{} of {rows} rows hold absurd values; do the columns hold what their names say, in these units? The first is that of row {row}: {reason}",
-                absurd.len()
-            ))
-        }
-        _ => Ok(()),
+    if absurd.len() < MANY || FRACTION * absurd.len() <= rows {
+        return Ok(());
     }
+    let reasons: Vec<String> = grouped_reasons(&absurd)
+        .iter()
+        .map(|group| {
+            format!(
+                "\n  {} rows, the first in row {}: {}",
+                group.rows, group.first, group.reason
+            )
+        })
+        .collect();
+    Err(format!(
+        "{} of {rows} rows hold absurd values; do the columns hold what their names say, in these units?{}",
+        absurd.len(),
+        reasons.concat()
+    ))
 }
 
 /// Keeps out shots that are none, and those far from all others.
@@ -42,16 +90,12 @@ pub(super) fn reject_shots(simulator: &Simulator, shooter: &mut ShooterShots) {
         .collect();
     let good: Vec<usize> = (0..keep.len()).filter(|&i| keep[i].is_ok()).collect();
     let kept: Vec<MeasuredRelease> = good.iter().map(|&i| shooter.shots[i].clone()).collect();
-    let values = if shooter.spin == SpinSource::Measured {
-        4
-    } else {
-        3
-    };
+    let values = shooter.spin.measured_values();
     let far = far_shots(&kept, shooter.places.len(), values, DOUBTFUL);
     for (&i, far) in good.iter().zip(far) {
         if far {
             keep[i] = Err(format!(
-                "is more than {DOUBTFUL:.0} robust standard deviations from the other shots: doubtful"
+                "left out as doubtful: it is more than {DOUBTFUL:.0} robust standard deviations from the other shots"
             ));
         }
     }

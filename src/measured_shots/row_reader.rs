@@ -5,6 +5,7 @@ use super::shooter_shots::{Raw, RawShot, ReadOptions};
 use super::source::Source;
 use crate::dynamics::Simulator;
 use crate::fitting::{Landing, Place};
+use crate::model::named_places::{place_named, place_names_in_words};
 use crate::shooter::Location;
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 
@@ -28,6 +29,12 @@ pub(super) fn check_release_height(height_m: f64) -> Result<(), String> {
         "release height: {height_m:.2} m ({:.2} ft) is not that of a player; 0.5 to 3.5 m are",
         height_m / FOOT_M
     ))
+}
+
+/// Whether a cell says that nothing was measured.
+fn is_no_value(cell: &str) -> bool {
+    const NO_VALUES: [&str; 8] = ["", "na", "n/a", "nan", "null", "none", "-", "--"];
+    NO_VALUES.contains(&cell.to_ascii_lowercase().as_str())
 }
 
 /// Reads the cells of rows as quantities in SI units.
@@ -63,7 +70,7 @@ impl RowReader<'_> {
         };
         let name = self.columns.name(column.index);
         let cell = cells.get(column.index).map_or("", String::as_str);
-        if cell.is_empty() {
+        if is_no_value(cell) {
             return Err(format!("{name}: {IS_MISSING}"));
         }
         let shown: String = cell.chars().take(30).collect();
@@ -85,6 +92,9 @@ impl RowReader<'_> {
 
     /// The place on the court.
     pub(super) fn location(&self, cells: &[String]) -> Result<Location, String> {
+        if let Some(location) = self.location_by_name(cells)? {
+            return Ok(location);
+        }
         let or =
             |quantity, given: Option<f64>| Ok::<_, String>(self.value(cells, quantity)?.or(given));
         let location = Location {
@@ -95,6 +105,36 @@ impl RowReader<'_> {
             .check(self.simulator.physics())
             .map_err(|error| format!("place: {error}"))?;
         Ok(location)
+    }
+
+    /// The place that a row names, where the file has no distance.
+    fn location_by_name(&self, cells: &[String]) -> Result<Option<Location>, String> {
+        if !self.has_places_by_name() {
+            return Ok(None);
+        }
+        let name = self.label(cells, Label::Place).unwrap_or_default();
+        match place_named(name, self.options.court) {
+            Some(place) => Ok(Some(Location::from_xy(place.x_m, place.y_m))),
+            None if name.is_empty() => Err(format!("place: {IS_MISSING}")),
+            None => Err(format!(
+                "place \"{}\" is not known; known are {}",
+                name.chars().take(30).collect::<String>(),
+                place_names_in_words()
+            )),
+        }
+    }
+
+    /// Whether the places are those that a column names.
+    pub(super) fn has_places_by_name(&self) -> bool {
+        self.columns.label(Label::Place).is_some()
+            && self.columns.quantity(Quantity::Distance).is_none()
+            && self.options.distance_m.is_none()
+    }
+
+    /// Whether the releases have no direction, as a camera from the side sees none.
+    pub(super) fn has_no_direction(&self) -> bool {
+        let has = |quantity| self.columns.quantity(quantity).is_some();
+        self.source == Source::Releases && !has(Quantity::Aim) && !has(Quantity::Polar)
     }
 
     fn place(&self, cells: &[String]) -> Result<Place, String> {
@@ -164,6 +204,7 @@ impl RowReader<'_> {
         }
         let polar = match self.value(cells, Quantity::Aim)? {
             Some(aim) => place.location.angle_rad + aim,
+            None if self.has_no_direction() => place.location.angle_rad,
             None => need(Quantity::Polar)?,
         };
         let values = [
@@ -217,7 +258,7 @@ impl RowReader<'_> {
                     measured,
                 }),
                 (Err(reason), Ok(Some(made))) if !reason.ends_with(IS_MISSING) => {
-                    let result = if made { "it went in" } else { "it missed" };
+                    let result = if made { "a make" } else { "a miss" };
                     rejected.push((row, format!("{reason} ({result})")));
                 }
                 (Err(reason), _) | (_, Err(reason)) => rejected.push((row, reason)),

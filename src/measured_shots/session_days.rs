@@ -51,6 +51,25 @@ const OTHER_MONTHS: [(&str, u32); 8] = [
     ("aoû", 8),
 ];
 
+/// A session has at least so many shots on average.
+pub(super) const SHOTS_OF_SESSION: usize = 3;
+
+/// Whether all cells are dates.
+pub(super) fn are_dates(cells: &[&str]) -> bool {
+    matches!(days(cells, Some(DateOrder::DayFirst)), Days::Moments(..))
+}
+
+/// Whether cells can tell sessions apart: several values, or days, with enough rows for each.
+pub(super) fn can_tell_sessions(cells: &[&str]) -> bool {
+    let mut names: Vec<String> = match days(cells, Some(DateOrder::DayFirst)) {
+        Days::Moments(moments, _) => moments.iter().flatten().map(day_in_words).collect(),
+        _ => cells.iter().map(|cell| (*cell).to_owned()).collect(),
+    };
+    names.sort();
+    names.dedup();
+    (2..=cells.len() / SHOTS_OF_SESSION).contains(&names.len())
+}
+
 /// The day as text.
 pub(super) fn day_in_words(moment: &Moment) -> String {
     format!("{:04}-{:02}-{:02}", moment.0, moment.1, moment.2)

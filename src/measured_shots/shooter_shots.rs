@@ -6,12 +6,15 @@ use crate::fitting::{
     FlightFit, Landing, MeasuredRelease, Place, PlaceScatter, ReleaseDifference, SpinSource,
     TrackedPoint, TrackerNoise, Values,
 };
+use crate::model::league_courts::League;
 
 /// What the file does not say.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
     /// The coordinates of trajectories.
     pub frame: CourtFrame,
+    /// The court whose places have the names of the file.
+    pub court: League,
     /// Distance of the place, m.
     pub distance_m: Option<f64>,
     /// Its angle on the court, rad.

@@ -1,6 +1,6 @@
 //! What a file of measured shots holds of each shot.
 
-use super::column_map_proposal::map_proposal;
+use super::column_map_proposal::{Proposal, map_proposal};
 use super::columns::{Columns, Label, Quantity};
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +70,17 @@ impl Source {
         {
             return Ok(Self::Releases);
         }
+        // Without a direction: where no other column may hold it.
+        let proposal = Proposal::of(columns);
+        let may_have = |target| proposal.maps.iter().any(|map| map.target == target);
+        if has(Quantity::Speed)
+            && has(Quantity::Pitch)
+            && !may_have("aim")
+            && !may_have("polar")
+            && !has(Quantity::Depth)
+        {
+            return Ok(Self::Releases);
+        }
         if let Some(missing) = one_missing(columns) {
             return Err(format!("{missing}{}", map_proposal(columns)));
         }
@@ -97,7 +108,7 @@ fn one_missing(columns: &Columns) -> Option<String> {
         let missing: Vec<&Quantity> = needed.iter().filter(is_missing).collect();
         let [missing] = missing[..] else { return None };
         Some(format!(
-            "has the columns of {source} but for {}; name its column with --map '{}=COLUMN:UNIT'",
+            "looks like a file of {source}, but no column {} was found; say which it is: --map '{}=COLUMN:UNIT'",
             missing.name(),
             missing.name()
         ))

@@ -1,8 +1,8 @@
-//! A whole CSV or Parquet file as rows of text.
+//! A whole file of any kind as rows of text.
 
-use crate::files::csv_records::CsvRecords;
-use crate::files::parquet_rows::ParquetRows;
-use std::fs::File;
+use super::column_texts::{ColumnSummary, ColumnText, tidy_cells, unit_named};
+use crate::files::csv_records::Row;
+use crate::files::table_rows::TableRows;
 use std::path::Path;
 
 /// Rows and bytes that are read at a time, and rows of a file at most.
@@ -14,61 +14,42 @@ const MAX_ROWS: usize = 5_000_000;
 pub struct Table {
     /// The names of the columns.
     pub header: Vec<String>,
+    /// What the cells or a row of units say of each column.
+    pub texts: Vec<ColumnText>,
     /// The line or row of each, and its cells.
     pub rows: Vec<(u64, Vec<String>)>,
     /// Rows that cannot be read.
     pub unreadable: Vec<(u64, String)>,
     /// What the numbers count.
     pub row_name: &'static str,
+    /// What was found in the file, in words.
+    pub found: Vec<String>,
 }
 
 impl Table {
-    /// Reads a file.
+    /// Reads a file, or the files of one kind in a folder.
     ///
     /// # Errors
     /// It cannot be read, or has no header.
     pub fn read(path: &Path) -> Result<Self, String> {
-        let file = File::open(path).map_err(|error| error.to_string())?;
-        if file.metadata().map_err(|error| error.to_string())?.is_dir() {
-            return Err("is a folder; give a CSV or Parquet file".to_owned());
-        }
-        let is_parquet = path
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"));
+        let mut source = TableRows::open(path)?;
         let mut table = Self {
-            header: Vec::new(),
+            header: source.header().iter().map(text).collect(),
+            texts: Vec::new(),
             rows: Vec::new(),
             unreadable: Vec::new(),
-            row_name: if is_parquet { "row" } else { "line" },
-        };
-        let mut separator = b',';
-        let mut next: Box<dyn FnMut() -> Result<Vec<_>, String>> = if is_parquet {
-            let mut rows = ParquetRows::open(file).map_err(|error| error.to_string())?;
-            table.header = text(&rows.header(), b',');
-            Box::new(move || rows.next_rows(BLOCK.0, BLOCK.1).map_err(|e| e.to_string()))
-        } else {
-            let mut records =
-                CsvRecords::with_any_separator(file).map_err(|error| error.to_string())?;
-            separator = records.separator();
-            Box::new(move || {
-                records
-                    .next_rows(BLOCK.0, BLOCK.1)
-                    .map_err(|e| e.to_string())
-            })
+            row_name: source.row_name(),
+            found: source.found().words.clone(),
         };
         loop {
-            let rows = next()?;
+            let rows = source.next_rows(BLOCK.0, BLOCK.1)?;
             if rows.is_empty() {
                 break;
             }
-            for row in rows {
-                match row.cells {
-                    // A spreadsheet's note on the separator, above the names.
-                    Ok(cells) if table.header.is_empty() && cells.get(0) == Some(b"sep=") => {}
-                    Ok(cells) if table.header.is_empty() => table.header = text(&cells, separator),
-                    Ok(cells) => table.rows.push((row.number, text(&cells, separator))),
-                    Err(reason) if reason == "is empty" => {}
-                    Err(reason) => table.unreadable.push((row.number, reason)),
+            for Row { number, cells } in rows {
+                match cells {
+                    Ok(cells) => table.rows.push((number, cells.iter().map(text).collect())),
+                    Err(reason) => table.unreadable.push((number, reason)),
                 }
             }
             if table.rows.len() > MAX_ROWS {
@@ -77,45 +58,75 @@ impl Table {
                 ));
             }
         }
-        if table.header.is_empty() {
+        table.check_widths()?;
+        table.tidy();
+        Ok(table)
+    }
+
+    /// Refuses a file whose rows are wider or narrower than the names of its columns.
+    fn check_widths(&self) -> Result<(), String> {
+        if self.header.is_empty() {
             return Err("is empty".to_owned());
         }
-        // A comma at the end of the first line names no column.
-        while table.header.last().is_some_and(String::is_empty) {
-            table.header.pop();
-        }
-        let most_cells = table.rows.iter().map(|(_, cells)| cells.len()).max();
-        if let Some(most) = most_cells
-            && most < table.header.len()
-        {
+        let names = self.header.len();
+        let widths = self.rows.iter().map(|(_, cells)| cells.len());
+        let wider = widths.clone().filter(|width| *width > names).count();
+        let most = widths.max().unwrap_or(names);
+        if 2 * wider > self.rows.len() && wider > 0 {
             return Err(format!(
-                "its first line has {} names, and no other line has more than {most} {}; put a name with a comma in quotes",
-                table.header.len(),
+                "its rows have up to {most} cells and its header {names}: are the commas decimal commas? Save it with semicolons between the cells, or with decimal points"
+            ));
+        }
+        if most < names {
+            return Err(format!(
+                "its header has {names} names, and no row has more than {most} {}; put a name with a comma in quotes",
                 if most == 1 { "value" } else { "values" }
             ));
         }
-        Ok(table)
+        Ok(())
+    }
+
+    /// Takes a row of units, and makes numbers of cells with units.
+    fn tidy(&mut self) {
+        self.texts = vec![ColumnText::default(); self.header.len()];
+        let is_of_units = |cells: &[String]| {
+            let filled = cells
+                .iter()
+                .filter(|cell| !matches!(cell.as_str(), "" | "-"));
+            let units = filled
+                .clone()
+                .filter(|cell| unit_named(cell).is_some())
+                .count();
+            units > 0 && 2 * units >= filled.count()
+        };
+        if self
+            .rows
+            .first()
+            .is_some_and(|(_, cells)| is_of_units(cells))
+        {
+            let (number, units) = self.rows.remove(0);
+            self.found
+                .push(format!("units in {} {number}", self.row_name));
+            for (text, unit) in self.texts.iter_mut().zip(&units) {
+                text.unit = unit_named(unit);
+            }
+        }
+        for index in 0..self.header.len() {
+            let mut cells: Vec<&mut String> = self
+                .rows
+                .iter_mut()
+                .filter_map(|(_, cells)| cells.get_mut(index))
+                .collect();
+            let found = tidy_cells(&mut cells);
+            let text = &mut self.texts[index];
+            text.unit = found.unit.or(text.unit);
+            text.is_positive_to_the_right = found.is_positive_to_the_right;
+            let cells = self.rows.iter().filter_map(|(_, cells)| cells.get(index));
+            text.summary = Some(ColumnSummary::of(cells.map(String::as_str)));
+        }
     }
 }
 
-/// The cells of a record. Where no comma separates them, one in a number is its decimal point.
-fn text(record: &csv::ByteRecord, separator: u8) -> Vec<String> {
-    let cells = record.iter().map(|cell| {
-        let cell = String::from_utf8_lossy(cell).trim().to_owned();
-        if separator != b',' && is_number_with_comma(&cell) {
-            cell.replace(',', ".")
-        } else {
-            cell
-        }
-    });
-    cells.collect()
-}
-
-/// Whether a cell is a number with a decimal comma: `-5,7`.
-fn is_number_with_comma(cell: &str) -> bool {
-    let digits = cell.strip_prefix(['-', '+']).unwrap_or(cell);
-    let are_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
-    digits
-        .split_once(',')
-        .is_some_and(|(whole, part)| are_digits(whole) && are_digits(part) && !part.is_empty())
+fn text(cell: &[u8]) -> String {
+    crate::files::table_rows::cell_as_text(cell)
 }

@@ -1,7 +1,7 @@
 //! Tracked shots: the points of each, and the flight that is fitted to them.
 
 use super::columns::{Label, Quantity, parse_made};
-use super::row_reader::{FARTHEST_LANDING_M, RowReader};
+use super::row_reader::{FARTHEST_LANDING_M, IS_MISSING, RowReader};
 use super::shooter_shots::{Raw, RawShot};
 use crate::fitting::{TrackedPoint, TrackerNoise, fit_flight, noise_of_tracks};
 use crate::units::FOOT_M;
@@ -150,17 +150,27 @@ fn track(
         made = made.or(parse_made(
             reader.label(cells, Label::Made).unwrap_or_default(),
         )?);
+        let position = [Quantity::X, Quantity::Y, Quantity::Z].map(need);
+        // A frame in which the ball was not seen.
+        let is_gap = |value: &Result<f64, String>| {
+            value
+                .as_ref()
+                .is_err_and(|reason| reason.ends_with(IS_MISSING))
+        };
+        if position.iter().any(is_gap) {
+            continue;
+        }
         // From the first frame on: a clock may count from 1970.
         let time_s = need(Quantity::Time)?;
         let start_s = *start_s.get_or_insert(time_s);
+        let [x, y, z] = position;
         points.push(TrackedPoint {
             time_s: time_s - start_s,
-            position_m: [
-                need(Quantity::X)?,
-                need(Quantity::Y)?,
-                need(Quantity::Z)? - z0,
-            ],
+            position_m: [x?, y?, z? - z0],
         });
+    }
+    if points.is_empty() {
+        return Err("no frame has all coordinates of the ball".to_owned());
     }
     let floor: Vec<(f64, f64)> = points
         .iter()

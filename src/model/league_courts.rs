@@ -2,8 +2,10 @@
 //! midcourt, y across.
 //!
 //! Sources: NCAA Men's Basketball Rules 2023-24, rule 1; NBA Official Rules 2023-24, rule 1; FIBA
-//! Official Basketball Rules 2022, rule 2. Distances are to the outer edge of the lines.
+//! Official Basketball Rules 2022, rule 2; NFHS Basketball Rules 2023-24, rule 1 (high schools of the
+//! United States). Distances are to the outer edge of the lines.
 
+use super::{Physics, Preset};
 use crate::units::{FOOT_M, INCH_M};
 use serde::Serialize;
 
@@ -17,19 +19,45 @@ pub enum League {
     Nba,
     /// International basketball.
     Fiba,
+    /// High schools of the United States.
+    #[serde(rename = "high_school")]
+    HighSchool,
 }
 
 impl League {
     /// All leagues.
-    pub const ALL: [Self; 3] = [Self::Ncaa, Self::Nba, Self::Fiba];
+    pub const ALL: [Self; 4] = [Self::Ncaa, Self::Nba, Self::Fiba, Self::HighSchool];
 
-    /// `ncaa`, `nba` or `fiba`.
+    /// `ncaa`, `nba`, `fiba` or `high_school`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Ncaa => "ncaa",
             Self::Nba => "nba",
             Self::Fiba => "fiba",
+            Self::HighSchool => "high_school",
+        }
+    }
+
+    /// The court that goes with a ball and a hoop.
+    #[must_use]
+    pub fn of_physics(physics: &Physics) -> Self {
+        match Preset::of(physics).map(|preset| preset.name) {
+            Some("nba" | "wnba") => Self::Nba,
+            Some("fiba" | "fiba_women") => Self::Fiba,
+            Some("youth") => Self::HighSchool,
+            _ => Self::Ncaa,
+        }
+    }
+
+    /// x of the middle of the block: the mark at the lane between the first two players, m.
+    #[must_use]
+    pub fn block_x_m(self) -> f64 {
+        match self {
+            // 7 to 8 ft from the baseline.
+            Self::Ncaa | Self::Nba | Self::HighSchool => self.court().baseline_x_m + 7.5 * FOOT_M,
+            // The neutral zone, 2.6 to 3.0 m from the baseline.
+            Self::Fiba => self.court().baseline_x_m + 2.8,
         }
     }
 
@@ -58,6 +86,12 @@ impl League {
                 three_radius_m: 23.75 * FOOT_M,
                 three_corner_y_m: 22.0 * FOOT_M,
                 lane_half_width_m: 8.0 * FOOT_M,
+                ..Self::Ncaa.court()
+            },
+            Self::HighSchool => Court {
+                half_line_x_m: 36.75 * FOOT_M,
+                three_radius_m: 19.75 * FOOT_M,
+                three_corner_y_m: 19.75 * FOOT_M,
                 ..Self::Ncaa.court()
             },
             Self::Fiba => Court {

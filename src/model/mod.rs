@@ -4,6 +4,7 @@ pub(crate) mod ball_params;
 mod ball_state;
 pub(crate) mod constants_per_ball_mass;
 pub mod league_courts;
+pub mod named_places;
 mod physics;
 mod restitution;
 pub(crate) mod solids;

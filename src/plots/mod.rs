@@ -17,6 +17,7 @@ mod polyline_thinning;
 pub mod probability_along_variable;
 pub mod probability_curves;
 pub mod rasterise;
+pub mod rebound_map;
 pub mod release_map;
 pub mod session_changes;
 pub mod shot_views;

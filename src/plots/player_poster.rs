@@ -248,7 +248,7 @@ fn hoop_in_words(bank: &[&PlaceProbabilities], units: UnitSystem) -> String {
             format!("from {}", words.collect::<Vec<_>>().join("; "))
         }
     };
-    format!(" On a very dead or lively ring, or another board, direct is better {places}.")
+    format!(" On some rings or boards direct is better {places}: try both in your gym.")
 }
 
 /// Where banking helps most, and where to aim from each place.

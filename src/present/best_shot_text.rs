@@ -219,7 +219,7 @@ fn training(shot: &BestShot) -> Option<String> {
         .collect();
     (!gains.is_empty()).then(|| {
         format!(
-            "10 % less scatter adds, per 100 shots: {}.",
+            "Makes per 100 gained by 10 % less scatter: {}.",
             gains.join(", ")
         )
     })
@@ -253,7 +253,11 @@ fn what_limits(profile: &Profile, found: &[(ShotKind, &BestShot)]) -> Vec<String
         ));
     } else if uses_all(Limit::MaxBackspin) {
         notes.push(format!(
-            "Both kinds use the most backspin of the profile (max_backspin, {spin:.1} rev/s)."
+            "{} the most backspin of the profile (max_backspin, {spin:.1} rev/s).",
+            match found.len() {
+                1 => "The shot uses",
+                _ => "Both kinds use",
+            }
         ));
     }
     for (kind, shot) in found {

@@ -8,6 +8,7 @@ pub mod layout;
 pub mod physics_text;
 pub mod probability_along_variable;
 pub mod probability_text;
+pub mod rebounds_text;
 pub mod sensitivity_rows;
 pub mod shot_note_text;
 pub mod shot_table_files;

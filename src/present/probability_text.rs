@@ -1,6 +1,7 @@
 //! P of one nominal shot in text.
 
 use super::layout::TextAnswer;
+use super::rebounds_text::rebounds_text;
 use super::words::{
     capitalised, nominal_name, of_100, per_100, per_100_with_error, scatter_note, simulation_error,
     subject, taken_as_exact, variable_name,
@@ -173,5 +174,8 @@ fn details(answer: &ProbabilityAnswer, units: UnitSystem) -> String {
     for (name, share) in answer.shares.iter().flat_map(|shares| &shares.0) {
         text += &format!("  outcome      {} {:.2}\n", outcome(name), 100.0 * share);
     }
-    text
+    let rebounds = answer.rebounds.as_ref();
+    text + &rebounds.map_or_else(String::new, |rebounds| {
+        rebounds_text(rebounds, "misses", units)
+    })
 }

@@ -6,12 +6,14 @@ use super::page_data::Scene;
 use super::report_error::ReportError;
 use super::sensitivity_table::sensitivity_table;
 use super::shot_in_words::ReportShot;
+use crate::analysis::rebounds::{REACH_M, find_rebounds};
+use crate::answers::rebounds::ReboundsAnswer;
 use crate::dynamics::Trace;
 use crate::model::league_courts::League;
 use crate::plots::shot_views::{self, ShotPath};
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
-use crate::plots::{bank_direct_release_map, probability_curves};
+use crate::plots::{bank_direct_release_map, probability_curves, rebound_map};
 use crate::probability::Progress;
 use crate::shooter::{Profile, ShotKind};
 use crate::store::best_run::{BestRun, FoundShot};
@@ -94,8 +96,20 @@ fn draw_plots(
         profile,
         &curves.collect::<Vec<_>>(),
     ));
+    plots.extend(draw_rebounds(profile, &shots));
     progress.end();
     plots
+}
+
+/// Where the misses of the better shot come down.
+fn draw_rebounds(profile: &Profile, shots: &[PlottedShot]) -> Option<Plot> {
+    let by_probability =
+        |a: &&PlottedShot, b: &&PlottedShot| a.probability.total_cmp(&b.probability);
+    let better = shots.iter().max_by(by_probability)?;
+    let seed = profile.search().seed;
+    let found = find_rebounds(profile, &better.nominal, seed, REACH_M);
+    let answer = ReboundsAnswer::new(profile, &found, REACH_M);
+    rebound_map::draw(profile, &found, &answer)
 }
 
 /// The best shots without an error: where they cross the ring, and where on the board they go.

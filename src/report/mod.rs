@@ -5,6 +5,7 @@
 
 pub mod best_shot_page;
 mod best_shot_table;
+pub mod coach_sheet;
 pub mod fit_page;
 mod html_table;
 pub mod page;

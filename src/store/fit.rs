@@ -5,8 +5,8 @@ use super::free_parameters::FreeParameter;
 use super::sealed::Sealed;
 use crate::config::parse_profile;
 use crate::fitting::{
-    DrawProbabilities, FitNote, KnownRelease, Place, Posterior, ShooterFit, SpinSource,
-    VALUE_NAMES, Values, fitted_profile, usual_probabilities,
+    Contradiction, DrawProbabilities, FitNote, Interval, KnownRelease, Place, Posterior,
+    ShooterFit, SpinSource, VALUE_NAMES, Values, fitted_profile, usual_probabilities,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::measured_shots::source::Source;
@@ -171,6 +171,15 @@ pub fn shooter(folder: &Path) -> Result<String, StoreError> {
 }
 
 impl Fit {
+    /// How the makes contradict the measured shots, of the whole fit or of a place, where P of the
+    /// current shot is `p`.
+    #[must_use]
+    pub fn contradiction(&self, place: usize, p: &Interval) -> Option<Contradiction> {
+        let shots = self.observed.iter().map(|(_, shots)| shots).sum();
+        Contradiction::of_fit(&self.notes, shots)
+            .or_else(|| Contradiction::of_place(self.observed[place], p))
+    }
+
     /// The fit of shots that no folder holds.
     #[must_use]
     pub fn of(fit: ShooterFit, shots: &ShooterShots, tracker: &str) -> Self {
@@ -296,7 +305,13 @@ impl FitJson {
     fn spin(&self) -> Option<SpinSource> {
         let mut parameters = self.parameters.iter();
         let spin = parameters.find(|parameter| parameter.name == "backspin_mean")?;
-        SpinSource::named(&spin.source)
+        let mut parameters = self.parameters.iter();
+        let has_no_direction = parameters
+            .any(|parameter| parameter.name == "polar_mean" && parameter.source == "assumed");
+        match has_no_direction {
+            true => Some(SpinSource::AssumedWithDirection),
+            false => SpinSource::named(&spin.source),
+        }
     }
 }
 

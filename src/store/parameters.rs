@@ -67,13 +67,9 @@ pub fn parameters(posterior: &Posterior, kind: &str) -> Vec<Parameter> {
         _ => "measured",
     };
     let of_value = |value: usize| ReleaseVariable::ALL[value].dimension();
-    let measured = if posterior.spin == SpinSource::Measured {
-        4
-    } else {
-        3
-    };
+    let measured = posterior.spin.measured_values();
     let source = |value: usize| {
-        if value < 3 {
+        if value < measured.min(3) {
             release_source
         } else {
             posterior.spin.name()
@@ -95,7 +91,7 @@ pub fn parameters(posterior: &Posterior, kind: &str) -> Vec<Parameter> {
         }
     }
     for (i, name) in VALUE_NAMES.iter().enumerate() {
-        let source = match (i < 3, posterior.spin) {
+        let source = match (i < measured.min(3), posterior.spin) {
             (true, _) => release_source,
             (false, SpinSource::Measured) => "measured",
             // The scatter of a spin that was not measured is the population's, also where its

@@ -43,12 +43,12 @@ const KINDS: [RegionKind; 5] = [
     },
     RegionKind {
         name: "places",
-        required: &["places"],
-        optional: &[],
+        required: &[],
+        optional: &["places", "names"],
     },
 ];
 
-const REGION_KEYS: [&str; 8] = [
+const REGION_KEYS: [&str; 9] = [
     "step",
     "within",
     "x",
@@ -57,6 +57,7 @@ const REGION_KEYS: [&str; 8] = [
     "angles",
     "angle_step",
     "places",
+    "names",
 ];
 
 /// The values of the keys, as far as they are given.
@@ -97,6 +98,10 @@ pub(super) fn read_region(
             false
         }
     };
+    if kind.is_some_and(|kind| kind.name == "places") && table.has("places") == table.has("names") {
+        let message = "the region \"places\" needs one of: names = [\"left elbow\", ...] (or [\"all\"]), or places = the name of a CSV file";
+        diagnostics.push(table.diagnostic("region", message));
+    }
     match locations {
         Some(Ok(locations)) => values.locations = Some(locations),
         Some(Err(message)) => diagnostics.push(table.diagnostic("places", message)),

@@ -11,6 +11,7 @@ use crate::config::{
     read_settings, read_settings_of,
 };
 use crate::model::league_courts::League;
+use crate::model::named_places::{named_places, place_named, place_names_in_words};
 use crate::shooter::{
     IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash,
     is_control_or_direction,
@@ -151,6 +152,17 @@ pub fn parse_sweep(texts: &SourceTexts, origin: &str) -> Result<SweepConfig, Con
         let _ = table.text("shooter", diagnostics);
         let league = read_league(&mut table, diagnostics);
         let compute = read_compute(&mut table, diagnostics);
+        let named = table.texts("names", diagnostics);
+        let (locations, place_names) = match named {
+            None => (locations, place_names),
+            Some(names) => match points_of_names(&names, league) {
+                Ok((points, names)) => (Some(Ok(points)), names),
+                Err(message) => {
+                    diagnostics.push(table.diagnostic("names", message));
+                    (None, Vec::new())
+                }
+            },
+        };
         let region = read_region(&mut table, locations, diagnostics);
         let sweep_table = table.clone();
         table.report_unknown_keys(diagnostics);
@@ -208,12 +220,38 @@ fn read_name(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>)
     name
 }
 
+/// The places that a sweep names, with their names; all of the court for `["all"]`.
+fn points_of_names(
+    names: &[String],
+    league: League,
+) -> Result<(Vec<(f64, f64)>, Vec<String>), String> {
+    let all = named_places(league);
+    let mut found = Vec::new();
+    for name in names {
+        if name == "all" {
+            found.extend(
+                all.iter()
+                    .map(|place| ((place.x_m, place.y_m), place.name.clone())),
+            );
+            continue;
+        }
+        let place = place_named(name, league).ok_or_else(|| {
+            format!(
+                "\"{name}\" is no place; the places are {}, or \"all\"",
+                place_names_in_words()
+            )
+        })?;
+        found.push(((place.x_m, place.y_m), name.clone()));
+    }
+    Ok(found.into_iter().unzip())
+}
+
 fn read_league(table: &mut TableReader<'_, '_>, diagnostics: &mut Vec<Diagnostic>) -> League {
     let Some(name) = table.text("court", diagnostics) else {
         return League::Ncaa;
     };
     League::from_name(&name).unwrap_or_else(|| {
-        let message = "must be \"ncaa\", \"nba\" or \"fiba\"";
+        let message = "must be \"ncaa\", \"nba\", \"fiba\" or \"high_school\"";
         diagnostics.push(table.diagnostic("court", message));
         League::Ncaa
     })

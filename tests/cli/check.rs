@@ -24,8 +24,8 @@ fn contract_check_and_plan_accept_the_shipped_profiles() {
     let arguments = ["plan", "configs/free_throw.toml", "--wide-sample", "20000"];
     Answer::of(bankshot().args(arguments))
         .exits(0)
-        .prints("870912 in each window")
-        .prints("; 0 of those were made");
+        .prints("then 870912 around each best shot")
+        .prints("and 0 of those went in");
 }
 
 #[test]

@@ -228,7 +228,7 @@ fn contract_bad_shots_are_refused_or_named() {
             "rows",
             bad_rows,
             3,
-            "30 shots are used, 4 are left out: if these are misses",
+            "30 shots used, 4 left out; if those were misses",
         ),
         ("none", String::new(), 2, "has no rows"),
     ] {
@@ -249,14 +249,14 @@ fn contract_bad_shots_are_refused_or_named() {
     .unwrap();
     fit(path.to_str().unwrap(), &folder.path().join("short"), &[])
         .exits(3)
-        .says("line 127: is more than 6 robust standard deviations from the other shots")
-        .says("-60.0 in is no shot at this hoop (0 in is the front of the ring, 18 in its back; -48 to 66 are read) (it missed)");
+        .says("line 127: left out as doubtful: it is more than 6 robust standard deviations")
+        .says("-60.0 in is no shot at this hoop (0 in is the front of the ring, 18 in its back; -48 to 66 are read) (a miss)");
     // A comma inside a name shifts all columns after it; one at the end of the line names none.
     let path = folder.path().join("names.csv");
     fs::write(&path, "entry,Depth (in, + = long),made\n45,9,1\n").unwrap();
     fit(path.to_str().unwrap(), &folder.path().join("names"), &[])
         .exits(2)
-        .says("has 4 names, and no other line has more than 3 values");
+        .says("has 4 names, and no row has more than 3 values");
     fs::write(&path, "entry,made,\n45,1\n").unwrap();
     fit(path.to_str().unwrap(), &folder.path().join("names"), &[])
         .exits(2)
@@ -483,7 +483,7 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     let sessions = Answer::of(bankshot().arg("compare-sessions").arg(&path));
     sessions
         .exits(2)
-        .says("has no column session; name it with --map 'session=COLUMN'");
+        .says("has no column session: say which column it is with --map 'session=COLUMN'");
     fit(path.to_str().unwrap(), &one, &["--shooter", "Cy"])
         .exits(2)
         .says("has no shooter \"Cy\"; it has Ann, Bob");
@@ -495,12 +495,14 @@ fn contract_shooters_have_a_folder_each_and_one_table() {
     let compared = Answer::of(bankshot().arg("compare-sessions").arg(&path).arg("--quiet"));
     let text = compared.exits(0).stdout().to_owned();
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let (_, needed) = words.split_once("Shots a session to decide: ").unwrap();
+    let (_, needed) = words
+        .split_once("Shots to measure in each session to decide: ")
+        .unwrap();
     let needed: u32 = needed.split(' ').next().unwrap().parse().unwrap();
     assert!(
         text.contains("before    Ann, 30 shots, ")
             && text.starts_with("No change shown: 73 of 100 before, 61 after")
-            && words.contains("May have changed: the angle, 51.52 to 50.70 deg.")
+            && words.contains("May have changed: the angle (from 51.52 to 50.70 deg).")
             && needed > 30,
         "{text}"
     );
@@ -895,7 +897,7 @@ fn contract_places_of_a_shooter_are_told_apart() {
         "{brief}"
     );
     assert!(
-        brief.contains("Then train the speed") && !brief.contains("current"),
+        brief.contains("No advice yet: 23 of 30 went in") && !brief.contains("current"),
         "{brief}"
     );
     assert_eq!(rows[0][6], "7.000");
@@ -1007,7 +1009,7 @@ fn contract_warnings_of_a_fit_follow_its_profile() {
     let mut advise = bankshot();
     Answer::of(advise.arg("advise").arg(&out).arg("--quiet"))
         .exits(0)
-        .prints("Do not act on this yet");
+        .prints("No advice yet: 59 of 60 went in");
     let mut command = bankshot();
     command.arg("team").arg(out.join("profile.toml"));
     Answer::of(&mut command)

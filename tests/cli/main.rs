@@ -14,6 +14,7 @@ mod plain_words;
 mod sample_size;
 mod schema;
 mod shot;
+mod shot_files;
 mod silent_guesses;
 mod simulate;
 mod stored;

@@ -210,7 +210,7 @@ fn contract_sessions_are_in_the_order_of_time() {
     let file = write_file(&folder, "stamps.csv", stamps);
     fit(&file, &out, &[])
         .exits(0)
-        .says("--map 'session=timestamp'");
+        .says("they may hold: session=timestamp; add --accept");
     fit(&file, &out, &["--map", "session=timestamp"])
         .exits(0)
         .says("sessions are days in the order of time, from 2025-10-14 to 2025-10-15");
@@ -237,7 +237,7 @@ fn contract_players_and_places_are_not_pooled() {
         let file = write_file(&folder, "places.csv", without);
         fit(&file, &out, &["--distance", "13.75 ft"])
             .exits(2)
-            .says("one --distance is not that of all")
+            .says("one --distance or --at is not that of all")
             .says("Free Throw, Left Elbow, Right Wing 3");
         let file = write_file(&folder, "places.csv", lab);
         fit(&file, &folder.path().join("good"), &[]).exits(0);

@@ -89,3 +89,14 @@ fn contract_the_plots_of_the_tutorial_are_up_to_date() {
         assert_up_to_date(name, &drawn.unwrap());
     }
 }
+
+/// The picture and the table of docs/places.md are those of the program's places.
+#[test]
+fn contract_the_named_places_are_up_to_date() {
+    assert_up_to_date("places", &super::places::draw());
+    let page = std::fs::read_to_string("docs/places.md").unwrap();
+    assert!(
+        page.contains(&super::places::table()),
+        "run the example draw_places"
+    );
+}

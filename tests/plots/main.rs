@@ -8,6 +8,7 @@ mod common;
 mod compare_command;
 mod figures;
 mod half_court;
+mod places;
 mod release_maps;
 mod report_pages;
 mod shot_plots;

@@ -577,7 +577,7 @@ fn campaign_unseen_backspin_is_told_by_made_and_missed() {
                 profiles: &[fitted],
                 shots: &shots,
                 typical: &typical,
-                is_spin_measured: false,
+                measured_values: 3,
             };
             let curve = likelihood_curve(parameter, &[shooter]).unwrap();
             (

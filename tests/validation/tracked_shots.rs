@@ -15,6 +15,7 @@ use bankshot::measured_shots::read::{read, tracker_by_flights};
 use bankshot::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use bankshot::measured_shots::table::Table;
 use bankshot::model::Preset;
+use bankshot::model::league_courts::League;
 use bankshot::units::{DEGREE_RAD, FOOT_M, INCH_M};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
@@ -213,6 +214,7 @@ fn read_shots(text: &str, has_place: bool, height_m: Option<f64>) -> ShooterShot
     let physics = Preset::named("ncaa").unwrap().physics();
     let simulator = Simulator::new(&physics).unwrap();
     let mut options = ReadOptions {
+        court: League::Ncaa,
         frame: CourtFrame::named("hoop").unwrap(),
         distance_m: has_place.then_some(13.75 * FOOT_M),
         court_angle_rad: None,

@@ -8,7 +8,7 @@ use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{is_quiet, print_answer, print_next, print_remark, print_text};
-use crate::fitting::advise;
+use crate::fitting::{FitNote, advise};
 use crate::present::fit_files::advice_text::PlayerAdvice;
 use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::store::fit::Fit;
@@ -78,7 +78,8 @@ fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Res
         print_answer("\n")?;
     }
     // Advice is no better than the fit that it rests on: these come first.
-    for note in &fit.notes {
+    let is_told = |note: &&FitNote| matches!(note, FitNote::OtherMakes { .. });
+    for note in fit.notes.iter().filter(|note| !is_told(note)) {
         print_remark(&format!("{name}: warning: {}", fit_note_text(note)));
     }
     for (place, profile) in fit.profiles.iter().enumerate() {
@@ -89,7 +90,6 @@ fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Res
                 place + 1,
             ));
         }
-        let observed = Some(fit.observed[place]);
         let advice = advise(profile, &fit.posterior, place, &bars)?;
         if options.json {
             let answer = AdviceAnswer::new(fit, place, &advice);
@@ -102,7 +102,8 @@ fn answer(options: &AdviseOptions, fit: &Fit, shooter_of: (usize, usize)) -> Res
         let player = PlayerAdvice {
             profile,
             advice: &advice,
-            observed,
+            observed: fit.observed[place],
+            doubt: fit.contradiction(place, &advice.usual_probability),
             units,
         };
         print_answer(&heading(fit, place, units, shooters > 1))?;

@@ -65,7 +65,7 @@ pub(crate) struct AnglesOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// Folder of a fit whose uncertainty is added [default: the fit that wrote the profile].
+    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["distances", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.
@@ -74,7 +74,7 @@ pub(crate) struct AnglesOptions {
     /// Draw the makes and the speed over the release angle (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Print JSON instead of the table: an object, with --distances an array.
+    /// Print JSON instead of the table: one object, or an array with --distances.
     #[arg(long)]
     pub(crate) json: bool,
 }

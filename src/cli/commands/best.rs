@@ -1,9 +1,11 @@
 //! `bankshot best`: load, plan, search, write.
 
 use super::plan::{WIDE_SAMPLE, print_plan_of_search};
+use crate::analysis::rebounds::{REACH_M, find_rebounds};
 use crate::answers::best_shots::BestShotsAnswer;
 use crate::answers::json;
-use crate::best_shot;
+use crate::answers::rebounds::ReboundsAnswer;
+use crate::best_shot::{self, BestShots};
 use crate::cli::failure::Failure;
 use crate::cli::fit_folder;
 use crate::cli::fixed_value_flags::FixedOptions;
@@ -11,9 +13,11 @@ use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::scatter_flags::ScatterOptions;
-use crate::cli::terminal::{print_answer, print_next, print_text};
+use crate::cli::terminal::{has_details, print_answer, print_next, print_text};
 use crate::present::best_shot_text::best_shots_text;
+use crate::present::rebounds_text::rebounds_text;
 use crate::search_space::TablePlan;
+use crate::shooter::Profile;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -27,7 +31,7 @@ Examples:
   bankshot best configs/free_throw.toml --pitch '50 deg'
   bankshot best configs/free_throw.toml --scatter 'speed=-20%'
 
-Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (makes as one value at a time changes), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
+Writes a folder, results/<name of the shooter>/1 or the next number, with best_shots.csv, best_shots.json, curves.csv (how the makes depend on each value, the others fixed), sensitivity.csv, profile.toml, plan.json, answer.json (for `report`) and provenance.json.")]
 pub(crate) struct BestOptions {
     #[command(flatten)]
     pub(crate) profile: ProfileOptions,
@@ -41,7 +45,7 @@ pub(crate) struct BestOptions {
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long = "output", short = 'o', alias = "out", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Folder of a fit whose uncertainty is added [default: the fit that wrote the profile].
+    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of the table.
@@ -84,7 +88,10 @@ pub(crate) fn run(options: &BestOptions) -> Result<u8, Failure> {
             .map(|fit| fit_folder::kinds_over_draws(fit, &profile, &best))
             .transpose()?;
         let scatter = &options.scatter.scatter;
-        let answer = best_shots_text(&profile, &best, over_draws.as_ref(), scatter);
+        let mut answer = best_shots_text(&profile, &best, over_draws.as_ref(), scatter);
+        if has_details() {
+            answer.details += &rebounds_of(&profile, &best);
+        }
         print_text(&answer)?;
     }
     print_next(
@@ -92,4 +99,17 @@ pub(crate) fn run(options: &BestOptions) -> Result<u8, Failure> {
         &format!("bankshot report {}", folder.display()),
     );
     Ok(run_folder::exit_code(&profile, &best))
+}
+
+/// Where the misses of the best shots come down.
+fn rebounds_of(profile: &Profile, best: &BestShots) -> String {
+    let mut text = String::new();
+    for (kind, shot) in best.by_kind() {
+        let Ok(shot) = shot else { continue };
+        let found = find_rebounds(profile, &shot.nominal, profile.search().seed, REACH_M);
+        let answer = ReboundsAnswer::new(profile, &found, REACH_M);
+        let misses = format!("misses of the {} shot", kind.name());
+        text += &rebounds_text(&answer, &misses, profile.output().units);
+    }
+    text
 }

@@ -4,6 +4,7 @@ pub(super) mod advise;
 pub(super) mod angles;
 pub(super) mod best;
 pub(super) mod check;
+pub(super) mod coach;
 pub(super) mod compare;
 pub(super) mod figures;
 pub(super) mod fit;

@@ -150,13 +150,13 @@ fn text(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> String {
             plan.backspin.count
         ),
         format!(
-            "speed       {} points on each line, within the search range; nominal {:.2} to {:.2} {long}/s\n",
+            "speed       {} points for each angle, direction and backspin; over the whole table {:.2} to {:.2} {long}/s\n",
             plan.speeds_per_line,
             plan.nominal.speed.low / metre,
             plan.nominal.speed.high / metre
         ),
         format!(
-            "shots       {} in the search, {} in each window about a best shot\n",
+            "shots       {} in the first search, then {} around each best shot\n",
             plan.shots,
             profile.grid().points()
         ),
@@ -169,14 +169,14 @@ fn text(profile: &Profile, plan: &TablePlan, forecast: &Forecast) -> String {
             forecast.seconds, forecast.threads
         ),
         format!(
-            "outside     probability {:.1e} beyond the table in the middle of its pitch angles and backspins, {:.1e} at their lower edge\n",
+            "outside     the chance that a shot falls outside the table: {:.1e} from its middle, {:.1e} from its lower edge\n",
             forecast.mass_outside.0, forecast.mass_outside.1
         ),
     ]
     .concat();
     if let Some(sample) = forecast.wide_sample {
         text.push_str(&format!(
-            "range       of {} shots from a wider range, {} lie outside the search range; {} of those were made\n",
+            "range       {} shots were tried over a wider range; {} lay outside the search range, and {} of those went in\n",
             sample.drawn, sample.outside, sample.made_outside
         ));
         if sample.made_too_fast > 0 {

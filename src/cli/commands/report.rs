@@ -93,7 +93,8 @@ fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
         let player = PlayerAdvice {
             profile,
             advice: &of_place,
-            observed: Some(fit.observed[place]),
+            observed: fit.observed[place],
+            doubt: fit.contradiction(place, &of_place.usual_probability),
             units: fit.units,
         };
         let text = player.brief();

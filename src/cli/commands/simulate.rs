@@ -1,14 +1,15 @@
 //! `bankshot simulate`: a stream of releases in, a stream of outcomes out.
 
 use crate::cli::config_files::load_physics;
-use crate::cli::failure::{Failure, code, io_in_words, refuse_missing};
+use crate::cli::failure::{Failure, code, refuse_missing};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::{Integrator, Simulator};
 use crate::files::atomic_file::{AtomicFile, same_file};
-use crate::files::csv_records::{CsvRecords, Row};
-use crate::files::parquet_rows::{ParquetRows, ParquetSink, column};
+use crate::files::csv_records::Row;
+use crate::files::parquet_rows::{ParquetSink, column};
+use crate::files::table_rows::TableRows;
 use crate::model::DEFAULT_PRESET;
 use crate::present::simulation_files::outcome_columns::{
     OUTCOME_COLUMNS, OUTCOME_TYPES, outcome_cells,
@@ -19,8 +20,7 @@ use clap::{Args, ValueEnum};
 use csv::{ByteRecord, Writer};
 use parquet::basic::Type as Physical;
 use rayon::prelude::*;
-use std::fs::File;
-use std::io::{self, BufWriter, IsTerminal, Read, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// The integrators by name.
@@ -89,8 +89,8 @@ pub(crate) fn run(options: &SimulateOptions) -> Result<u8, Failure> {
     if options.releases != Path::new("-") {
         refuse_missing(&options.releases)?;
     }
-    let mut source = Source::open(&options.releases)?;
-    let header = source.header(options)?;
+    let mut source = open(&options.releases)?;
+    let header = source.header().clone();
     let columns = ReleaseColumns::new(&header, &options.carry)
         .map_err(|error| Failure::usage(format!("{}: {error}", options.releases.display())))?;
     if !columns.has_backspin() && !is_quiet() {
@@ -166,86 +166,13 @@ fn is_parquet(path: &Path) -> bool {
         .is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }
 
-/// Where the releases come from.
-enum Source {
-    Csv(CsvRecords<Box<dyn Read>>),
-    Parquet(Box<ParquetRows>),
-}
-
-impl Source {
-    fn open(path: &Path) -> Result<Self, Failure> {
-        let refuse = |error: io::Error| {
-            Failure::usage(format!("{}: {}", path.display(), io_in_words(&error)))
-        };
-        if path == Path::new("-") {
-            let records = CsvRecords::new(Box::new(io::stdin()) as Box<dyn Read>);
-            return records.map(Self::Csv).map_err(refuse);
-        }
-        let file = File::open(path).map_err(refuse)?;
-        if file.metadata().map_err(refuse)?.is_dir() {
-            return Err(Failure::usage(format!("{}: is a folder", path.display())));
-        }
-        if is_parquet(path) {
-            let rows = ParquetRows::open(file).map_err(|error| {
-                let reason = error.to_string();
-                let reason = reason.strip_prefix("Parquet error: ").unwrap_or(&reason);
-                Failure::usage(format!("{}: {reason}", path.display()))
-            })?;
-            return Ok(Self::Parquet(Box::new(rows)));
-        }
-        let records = CsvRecords::new(Box::new(file) as Box<dyn Read>);
-        records.map(Self::Csv).map_err(refuse)
-    }
-
-    fn header(&mut self, options: &SimulateOptions) -> Result<ByteRecord, Failure> {
-        let records = match self {
-            Self::Csv(records) => records,
-            Self::Parquet(rows) => return Ok(rows.header()),
-        };
-        loop {
-            let rows = records
-                .next_rows(1, 1)
-                .map_err(|error| StreamError::Input(error.to_string()).failure(options))?;
-            match rows.into_iter().next() {
-                None => return Ok(ByteRecord::new()),
-                Some(Row {
-                    cells: Ok(cells), ..
-                }) => return Ok(cells),
-                // Empty lines before the header.
-                Some(Row {
-                    cells: Err(reason), ..
-                }) if reason == "is empty" => {}
-                Some(Row {
-                    number,
-                    cells: Err(reason),
-                }) => {
-                    return Err(Failure::usage(format!(
-                        "{}: line {number}: {reason}",
-                        options.releases.display()
-                    )));
-                }
-            }
-        }
-    }
-
-    /// What the number of a row counts.
-    fn row_name(&self) -> &'static str {
-        match self {
-            Self::Csv(_) => "line",
-            Self::Parquet(_) => "row",
-        }
-    }
-
-    fn next_rows(&mut self) -> Result<Vec<Row>, StreamError> {
-        match self {
-            Self::Csv(records) => records
-                .next_rows(BATCH_ROWS, BATCH_BYTES)
-                .map_err(|error| StreamError::Input(error.to_string())),
-            Self::Parquet(rows) => rows
-                .next_rows(BATCH_ROWS, BATCH_BYTES)
-                .map_err(|error| StreamError::Input(error.to_string())),
-        }
-    }
+/// Opens the releases.
+fn open(path: &Path) -> Result<TableRows, Failure> {
+    let rows = match path == Path::new("-") {
+        true => TableRows::of_stream(Box::new(io::stdin())),
+        false => TableRows::open(path),
+    };
+    rows.map_err(|reason| Failure::usage(format!("{}: {reason}", path.display())))
 }
 
 /// Where the outcomes go.
@@ -266,11 +193,11 @@ impl<W: Write + Send> Sink<W> {
 
     /// The columns of a Parquet input keep their types; of a CSV input, those of parameters are
     /// numbers.
-    fn parquet(out: W, source: &Source, header: &ByteRecord) -> Result<Self, StreamError> {
+    fn parquet(out: W, source: &TableRows, header: &ByteRecord) -> Result<Self, StreamError> {
         let failed = |error: parquet::errors::ParquetError| StreamError::Input(error.to_string());
-        let mut columns = match source {
-            Source::Parquet(rows) => rows.columns().to_vec(),
-            Source::Csv(_) => header
+        let mut columns = match source.parquet_columns() {
+            Some(columns) => columns.to_vec(),
+            None => header
                 .iter()
                 .map(|cell| {
                     let name = String::from_utf8_lossy(cell.trim_ascii());
@@ -352,22 +279,25 @@ struct Stream<'a> {
 impl Stream<'_> {
     fn run<W: Write + Send>(
         &mut self,
-        source: &mut Source,
+        source: &mut TableRows,
         mut sink: Sink<W>,
     ) -> Result<W, StreamError> {
         let mut shown = 0;
         loop {
-            let batch = source.next_rows()?;
+            let batch = source
+                .next_rows(BATCH_ROWS, BATCH_BYTES)
+                .map_err(StreamError::Input)?;
             if batch.is_empty() {
                 return sink.finish();
             }
             let rows = batch.len() as u64;
             self.write(batch, source.row_name(), &mut sink)?;
-            if let Source::Csv(records) = source {
-                self.bars.advance(records.bytes_read() - shown);
-                shown = records.bytes_read();
-            } else {
-                self.bars.advance(rows);
+            match source.bytes_read() {
+                Some(read) => {
+                    self.bars.advance(read - shown);
+                    shown = read;
+                }
+                None => self.bars.advance(rows),
             }
         }
     }

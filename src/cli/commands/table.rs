@@ -35,7 +35,7 @@ use std::time::Instant;
 #[command(after_help = "\
 Distances and angles are a list, or a range with a step. Start with --draft: a second or two for each place.
 
-Without --draft the table is checked between its rows, where a machine interpolates. Where that costs more than --max-loss, rows are added halfway. Fifteen distances with a fixed angle take one to four minutes on two cores. --kind best takes twice as long, --max-loss 1 half as long. --least-probability 0.6 skips the places where fewer than 60 of 100 go in.
+Without --draft the table is checked between its rows, where a machine interpolates. Where that costs more than --max-loss, rows are added halfway. Fifteen distances with a fixed angle take one to four minutes on two cores. With --kind best it takes twice as long; with --max-loss 1, half as long. --least-probability 0.6 skips the places where fewer than 60 of 100 go in.
 
 With --output a stopped table is not lost: its results are kept beside the file, and the same command continues.
 
@@ -64,16 +64,17 @@ pub(crate) struct TableOptions {
     pub(crate) fixed: FixedOptions,
     #[command(flatten)]
     pub(crate) scatter: ScatterOptions,
-    /// Add rows until interpolation costs no more than this (0.01: 1 make per 100) and an
-    /// interpolated probability is off by no more; 1: none (except where the better kind changes).
+    /// Add rows until interpolating between them costs at most this much (0.01 is 1 make per 100)
+    /// and interpolated probabilities are off by at most as much. 1 adds no rows, except where the
+    /// better kind changes.
     #[arg(long, value_name = "PROBABILITY", default_value_t = 0.01, value_parser = share)]
     pub(crate) max_loss: f64,
-    /// Add no rows, and check nothing, where fewer shots than this go in: at the end of a
-    /// launcher's reach many rows would be added otherwise.
+    /// Where the probability is below this, check nothing and add no rows: many would be added at
+    /// the end of a launcher's reach.
     #[arg(long, value_name = "PROBABILITY", default_value_t = 0.0, value_parser = share, conflicts_with = "draft")]
     pub(crate) least_probability: f64,
-    /// A first look in a fraction of the time: check nothing between the places, and add none
-    /// (except where the better kind changes).
+    /// A first look in a fraction of the time: do not check between the places, and add no
+    /// rows (except where the better kind changes).
     #[arg(long, conflicts_with = "max_loss")]
     pub(crate) draft: bool,
     /// The form of the table [default: by the end of the output's name, else text].

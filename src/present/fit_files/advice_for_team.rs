@@ -1,9 +1,6 @@
 //! Advice in the few words of a poster and of a row of a table.
 
-use super::advice_text::{
-    MOST_DISAGREEMENT, Observed, at_the_limit, disagreement, more_shots, most_worth_training,
-    scatter_in_words,
-};
+use super::advice_text::{at_the_limit, more_shots, most_worth_training, scatter_in_words};
 use super::change_in_words::{
     ChangeWords, FirstChange, first_change, first_change_in_words, gains_alone, landing_in_words,
     likelier_beginning,
@@ -11,19 +8,11 @@ use super::change_in_words::{
 use crate::fitting::{Advice, AdviceStep, AdviceSteps};
 use crate::units::UnitSystem;
 
-/// The steps of advice if one of them is sure, and the makes and the measured shots belong
-/// together.
-fn steps_to_follow(advice: &Advice, observed: Observed) -> Option<&AdviceSteps> {
+/// The steps of advice if one of them is sure, and the makes do not contradict the measured shots.
+fn steps_to_follow(advice: &Advice, is_doubted: bool) -> Option<&AdviceSteps> {
     let steps = advice.steps.as_ref()?;
     let is_sure = steps.steps.iter().any(AdviceStep::is_sure);
-    (is_sure && !is_doubted(advice, observed)).then_some(steps)
-}
-
-/// Whether the makes and the measured shots do not belong together.
-fn is_doubted(advice: &Advice, observed: Observed) -> bool {
-    observed.is_some_and(|(made, shots)| {
-        shots > 0 && disagreement(&advice.usual_probability, made, shots) >= MOST_DISAGREEMENT
-    })
+    (is_sure && !is_doubted).then_some(steps)
 }
 
 /// Advice in a row of a table.
@@ -43,7 +32,7 @@ pub struct ShortAdvice {
 #[must_use]
 pub fn short_advice(
     advice: &Advice,
-    observed: Observed,
+    is_doubted: bool,
     court_angle_rad: f64,
     units: UnitSystem,
 ) -> ShortAdvice {
@@ -52,10 +41,8 @@ pub fn short_advice(
         units,
         court_angle_rad,
     };
-    let change = match steps_to_follow(advice, observed) {
-        _ if is_doubted(advice, observed) => {
-            "nothing yet: the makes contradict the measured shots".to_owned()
-        }
+    let change = match steps_to_follow(advice, is_doubted) {
+        _ if is_doubted => "nothing yet: the makes contradict the measured shots".to_owned(),
         None => {
             let limit = at_the_limit(&words, advice);
             let limit = match limit.is_empty() {
@@ -86,10 +73,10 @@ pub fn short_advice(
     let training: Vec<&str> = training
         .map(|training| scatter_in_words(training.cause))
         .collect();
-    let steps = steps_to_follow(advice, observed);
+    let steps = steps_to_follow(advice, is_doubted);
     ShortAdvice {
         advised: steps.map_or_else(
-            || advised_in_doubt(advice, observed),
+            || advised_in_doubt(advice, is_doubted),
             |steps| {
                 let of_advised = advice.advised_probability;
                 format!(
@@ -113,11 +100,11 @@ pub fn short_advice(
 
 /// What the best release makes where no step towards it is sure: `91 ?`; empty where it gains
 /// nothing.
-fn advised_in_doubt(advice: &Advice, observed: Observed) -> String {
+fn advised_in_doubt(advice: &Advice, is_doubted: bool) -> String {
     /// Less than this gain in P is none.
     const WORTH_IT: f64 = 0.005;
     let gain = advice.gain.filter(|gain| gain.mean > WORTH_IT);
-    let gain = gain.filter(|_| !is_doubted(advice, observed));
+    let gain = gain.filter(|_| !is_doubted);
     gain.map_or_else(String::new, |gain| {
         format!(
             "{:.0} ?",
@@ -127,18 +114,19 @@ fn advised_in_doubt(advice: &Advice, observed: Observed) -> String {
 }
 
 /// What a poster says of a player's own shots: how many go in, what to change, and what the player
-/// then sees; empty where the makes and the measured shots do not belong together.
+/// then sees; or that the makes contradict the measured shots.
 #[must_use]
 pub fn advice_for_poster(
     advice: &Advice,
-    observed: Observed,
+    is_doubted: bool,
     (from, court_angle_rad): (&str, f64),
     units: UnitSystem,
 ) -> String {
     let p = advice.usual_probability;
-    let Some(steps) = steps_to_follow(advice, observed) else {
-        return match is_doubted(advice, observed) {
-            true => String::new(),
+    let Some(steps) = steps_to_follow(advice, is_doubted) else {
+        return match is_doubted {
+            true => "No advice for your own shot yet: your makes contradict the measured shots."
+                .to_owned(),
             false => format!(
                 "Your shot, {from}: now {:.0} of 100 go in. Keep it: the data support no change.",
                 100.0 * p.mean

@@ -1,10 +1,11 @@
 //! The answer of `advise` in text.
 
 use super::change_in_words::{ChangeWords, first_change_in_words, landing_in_words};
+use super::fit_note_text::{WHAT_TO_CHECK, contradiction};
 use crate::best_shot::{BestShot, Limit};
 use crate::fitting::{
-    Advice, AdviceStep, AdviceSteps, Cause, Interval, Landing, Place, SpinSource, Support,
-    TrainingGain, Values, landing_of, values_of, wilson_interval,
+    Advice, AdviceStep, AdviceSteps, Cause, Contradiction, Interval, Landing, Place, SpinSource,
+    Support, TrainingGain, Values, landing_of, values_of,
 };
 use crate::present::layout::{Side, TextAnswer, TextTable, paragraph, paragraphs};
 use crate::present::words::{
@@ -15,24 +16,10 @@ use crate::shooter::{Profile, ShotKind};
 use crate::store::parameters::value_units;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
-/// Makes and shots with a result.
-pub type Observed = Option<(usize, usize)>;
-
-/// Advice whose model disagrees with the count of makes by more standard errors is not to be
-/// followed; about 1 of 400 tests by luck.
-pub(super) const MOST_DISAGREEMENT: f64 = 3.0;
-
 /// From this probability on the data support that one kind of shot is better.
 const SUPPORTED: f64 = 0.9;
 /// A difference of less than this decides nothing.
 const WORTH_IT: f64 = 0.01;
-
-/// By how many of its standard errors the share of makes differs from P of the current shot.
-pub(super) fn disagreement(p: &Interval, made: usize, shots: usize) -> f64 {
-    let count = wilson_interval(made, shots);
-    let error = libm::hypot(0.25 * (count.high - count.low), p.sd);
-    libm::fabs(count.share - p.mean) / error
-}
 
 /// How many more shots would support a step, if its gain is what it seems to be.
 pub(super) fn more_shots(advice: &Advice) -> Option<f64> {
@@ -89,8 +76,10 @@ pub struct PlayerAdvice<'a> {
     pub profile: &'a Profile,
     /// The advice.
     pub advice: &'a Advice,
-    /// What was counted.
-    pub observed: Observed,
+    /// Makes and shots with a result.
+    pub observed: (usize, usize),
+    /// How the makes contradict the measured shots.
+    pub doubt: Option<Contradiction>,
     /// The units of the text.
     pub units: UnitSystem,
 }
@@ -106,11 +95,18 @@ impl PlayerAdvice<'_> {
     /// The whole answer.
     #[must_use]
     pub fn text(&self) -> TextAnswer {
+        if self.doubt.is_some() {
+            return TextAnswer {
+                answer: self.answer(),
+                subject: subject(self.profile, self.units),
+                ..TextAnswer::default()
+            };
+        }
         let mut notes: Vec<String> = self.kind_in_words().into_iter().collect();
         notes.extend(self.not_suggested());
         notes.extend(self.spin_in_words());
         notes.push(
-            "The intervals do not cover another ring, ball or air (`bankshot physics`).".to_owned(),
+            "The intervals leave out what another ring, ball or air would change (`bankshot physics`).".to_owned(),
         );
         TextAnswer {
             answer: self.answer(),
@@ -126,44 +122,63 @@ impl PlayerAdvice<'_> {
     #[must_use]
     pub fn brief(&self) -> String {
         let mut sentences = self.answer();
-        sentences.extend(self.spin_at_limit());
-        sentences.extend(self.kind_in_words());
+        if self.doubt.is_none() {
+            sentences.extend(self.spin_at_limit());
+            sentences.extend(self.kind_in_words());
+        }
         paragraphs(&sentences)
     }
 
     /// The advice without the kind of shot that is not suggested.
     #[must_use]
     pub fn for_player(&self) -> String {
-        let mut sentences = self.answer();
-        sentences.extend(self.spin_at_limit());
-        sentences.extend(
-            self.other_kind()
-                .map(|_| self.kind_in_words())
-                .into_iter()
-                .flatten(),
-        );
-        paragraphs(&sentences)
+        match self.doubt.is_none() && self.other_kind().is_none() {
+            true => {
+                let mut sentences = self.answer();
+                sentences.extend(self.spin_at_limit());
+                paragraphs(&sentences)
+            }
+            false => self.brief(),
+        }
+    }
+
+    /// How many of 100 go in now, with the interval.
+    #[must_use]
+    pub fn now(&self) -> String {
+        let p = &self.advice.usual_probability;
+        format!(
+            "{} of 100 ({})",
+            of_100(p.mean),
+            interval_of_100(p.low, p.high)
+        )
+    }
+
+    /// What the supported change gains, as a probability; 0 where none is supported.
+    #[must_use]
+    pub fn supported_gain(&self) -> f64 {
+        let steps = self.supported().filter(|_| self.doubt.is_none());
+        steps.map_or(0.0, |steps| steps.gain.mean)
+    }
+
+    /// The other kind of shot, where it is clearly better: what it makes.
+    #[must_use]
+    pub fn better_kind(&self) -> Option<String> {
+        self.other_kind().filter(|_| self.doubt.is_none())?;
+        self.kind_in_words()
     }
 
     /// What to change, what that adds, what to change first, how the ball comes down, and what to
     /// train.
     fn answer(&self) -> Vec<String> {
-        let mut answer: Vec<String> = self.doubt().into_iter().collect();
-        answer.extend(self.release());
+        if let Some(doubt) = &self.doubt {
+            return vec![
+                format!("No advice yet: {}.", contradiction(doubt)),
+                WHAT_TO_CHECK.to_owned(),
+            ];
+        }
+        let mut answer = self.release();
         answer.extend(self.training());
         answer
-    }
-
-    /// That the count and the measured shots contradict each other.
-    fn doubt(&self) -> Option<String> {
-        let p = &self.advice.usual_probability;
-        let (made, shots) = self.observed.filter(|(_, shots)| *shots > 0)?;
-        (disagreement(p, made, shots) >= MOST_DISAGREEMENT).then(|| {
-            format!(
-                "Do not act on this yet: {made} of {shots} went in, but the measured shots predict {} of 100. Check the units, the distance, the release height, the columns and the physics.",
-                of_100(p.mean)
-            )
-        })
     }
 
     /// Whether and how to change the release.
@@ -221,7 +236,7 @@ impl PlayerAdvice<'_> {
     }
 
     /// What to train: the scatter that costs most, and what costs about as much.
-    fn training(&self) -> Option<String> {
+    pub(super) fn training(&self) -> Option<String> {
         let as_good = most_worth_training(&self.advice.training);
         let (first, others) = as_good.split_first()?;
         let start = match self.supported() {
@@ -307,7 +322,7 @@ impl PlayerAdvice<'_> {
         let mut notes = Vec::new();
         if !limit.is_empty() {
             notes.push(format!(
-                "Not certain yet, in makes per 100: {}.",
+                "Not certain yet (makes per 100 in brackets): {}.",
                 limit.join("; ")
             ));
         }
@@ -466,7 +481,8 @@ impl PlayerAdvice<'_> {
                 likely(advice.gain_is_positive)
             ));
         }
-        if let Some((made, shots)) = self.observed.filter(|(_, shots)| *shots > 0) {
+        let (made, shots) = self.observed;
+        if shots > 0 {
             text += &format!("Counted: {made} of {shots} went in.\n");
         }
         let words = self.words();

@@ -102,8 +102,7 @@ pub(super) fn first_change_in_words(advice: &Advice, steps: &AdviceSteps) -> Opt
     let alone = gains_alone(advice, steps)?;
     let p = advice.usual_probability.mean;
     let [of_speed, of_pitch] = [alone.speed, alone.pitch].map(|gain| of_100(p + gain.mean));
-    let both =
-        format!("with only the new speed {of_speed} go in, with only the new angle {of_pitch}");
+    let both = format!("the new speed alone makes {of_speed}, the new angle alone {of_pitch}");
     let (name, chance) = likelier_beginning(&alone);
     let chance = format!("probability that starting with the {name} is better: {chance}");
     Some(match first_change(steps) {
@@ -187,7 +186,7 @@ pub fn landing_in_words(advice: &Advice, units: UnitSystem) -> Option<String> {
         true => "steeper",
         false => "flatter",
     };
-    let angle = (now != then).then(|| format!("{steeper}, at {then} deg instead of {now}"));
+    let angle = (now != then).then(|| format!("{steeper} (at {then} deg instead of {now})"));
     let parts: Vec<String> = moves.into_iter().flatten().chain(angle).collect();
     (!parts.is_empty()).then(|| {
         format!(

@@ -1,9 +1,21 @@
 //! What should be said of a fit, in words.
 
-use crate::fitting::{FitNote, SurprisingShot};
+use crate::fitting::{Contradiction, FitNote, SurprisingShot};
 use crate::present::words::variable_name;
 use crate::shooter::ReleaseVariable;
 use crate::units::{DEGREE_RAD, FOOT_M, Measure, REV_RAD};
+
+/// What to do where the makes contradict the measured shots.
+pub const WHAT_TO_CHECK: &str = "Check which word is a make, the units, the distance, the release height, the columns and the physics.";
+
+/// How the makes contradict the measured shots, without a full stop.
+#[must_use]
+pub fn contradiction(of: &Contradiction) -> String {
+    format!(
+        "{} of {} went in, but the measured shots predict {:.0}",
+        of.made, of.shots, of.expected
+    )
+}
 
 /// A note in words, without a full stop.
 #[must_use]

@@ -1,9 +1,9 @@
 //! The answer of `fit` in text.
 
-use super::fit_note_text::{fit_note_text, p_value};
+use super::fit_note_text::{WHAT_TO_CHECK, contradiction, fit_note_text, p_value};
 use crate::answers::fit::FitSource;
 use crate::fitting::{
-    CENTRE_DEPTH_M, FitNote, ShooterFit, SpinSource, WARNING_LEVEL, values_at_height,
+    CENTRE_DEPTH_M, Contradiction, FitNote, ShooterFit, SpinSource, WARNING_LEVEL, values_at_height,
 };
 use crate::measured_shots::source::Source;
 use crate::present::layout::{Side, TextAnswer, TextTable, paragraph};
@@ -38,26 +38,16 @@ struct FitText<'a> {
 }
 
 impl FitText<'_> {
-    /// Whether the makes contradict the fit.
-    fn is_doubted(&self) -> bool {
-        let mut notes = self.fit.notes.iter();
-        notes.any(|note| matches!(note, FitNote::OtherMakes { .. }))
-    }
-
     /// How many go in, and what was counted.
     fn answer(&self) -> Vec<String> {
         let (fit, makes) = (self.fit, &self.fit.makes);
-        let mut answer = Vec::new();
-        if self.is_doubted() {
-            answer.push(format!(
-                "Do not use this fit yet: {} of {} went in, but the measured shots predict {:.0}.",
-                makes.made, makes.labelled, makes.expected
-            ));
-            answer.push(
-                "Check the units, the distance, the release height, the columns and the physics."
-                    .to_owned(),
-            );
+        if let Some(doubt) = Contradiction::of_fit(&fit.notes, makes.labelled) {
+            return vec![
+                format!("Do not use this fit yet: {}.", contradiction(&doubt)),
+                WHAT_TO_CHECK.to_owned(),
+            ];
         }
+        let mut answer = Vec::new();
         let p = fit.probabilities[0].interval();
         let from = match fit.places.len() {
             1 => String::new(),
@@ -69,13 +59,13 @@ impl FitText<'_> {
             interval_of_100(p.low, p.high),
             fit.posterior.shots
         ));
-        if makes.labelled > 0 && !self.is_doubted() {
+        if makes.labelled > 0 {
             let without = match fit.posterior.shots - makes.labelled {
                 0 => String::new(),
                 n => format!(" ({n} shots have no result.)"),
             };
             answer.push(format!(
-                "Counted: {} of {} went in. The measured shots predict {:.0}, so the two agree.{without}",
+                "Counted: {} of {} went in. By their measurements {:.0} should have, so the two agree.{without}",
                 makes.made, makes.labelled, makes.expected
             ));
         }
@@ -137,7 +127,11 @@ impl FitText<'_> {
             let decimals = if i == 0 { 2 } else { 1 };
             let number = |value: f64| format!("{:.decimals$}", value + 0.0);
             let source = match (variable, posterior.spin) {
-                (ReleaseVariable::Backspin, SpinSource::Assumed) => "assumed",
+                (ReleaseVariable::Polar, SpinSource::AssumedWithDirection)
+                | (
+                    ReleaseVariable::Backspin,
+                    SpinSource::Assumed | SpinSource::AssumedWithDirection,
+                ) => "assumed",
                 (ReleaseVariable::Backspin, SpinSource::Given) => "given",
                 _ => "",
             };
@@ -227,6 +221,7 @@ impl FitText<'_> {
                     | FitNote::SessionsDiffer { .. }
                     | FitNote::ScatterDiffers { .. }
                     | FitNote::SerialCorrelation { .. }
+                    | FitNote::OtherMakes { .. }
             )
         };
         let passed = match fit.notes.iter().any(is_of_checks) {
@@ -239,9 +234,15 @@ impl FitText<'_> {
             "Scatter: standard deviation from shot to shot, with the sensor's noise ({}, {}) removed.{passed}",
             source.tracker.0, source.tracker.1
         ));
+        if fit.posterior.spin == SpinSource::AssumedWithDirection {
+            notes.push(
+                "The direction was not measured: its aim and scatter are those of other players (assumed)."
+                    .to_owned(),
+            );
+        }
         notes.extend(warnings);
         notes.push(
-            "The intervals do not cover another ring, ball or air (`bankshot physics`), or a sensor that reads too high or too low."
+            "The intervals leave out what another ring, ball or air would change (`bankshot physics`), and any constant error of the sensor."
                 .to_owned(),
         );
         notes
@@ -290,6 +291,9 @@ impl FitText<'_> {
     /// What was measured, and how the release follows from it.
     fn add_measured(&self, add: &mut dyn FnMut(String)) {
         let (fit, source) = (self.fit, self.source);
+        if !source.found.is_empty() {
+            add(format!("File: {}.", source.found.join(", ")));
+        }
         if source.kind == Source::Landings {
             let (unit, size) = self.units.short_length();
             add(format!(

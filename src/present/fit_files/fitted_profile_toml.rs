@@ -127,11 +127,7 @@ pub fn fitted_profile_toml(
     }
     line(String::new());
     line("[shooter.correlation]".to_owned());
-    let values = if fit.posterior.spin == SpinSource::Measured {
-        4
-    } else {
-        3
-    };
+    let values = fit.posterior.spin.measured_values();
     for (j, second) in VALUE_NAMES.iter().enumerate().take(values) {
         for (i, first) in VALUE_NAMES.iter().enumerate().take(j) {
             let pair = format!("{first}_{second}");

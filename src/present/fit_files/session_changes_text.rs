@@ -159,7 +159,7 @@ impl Changes<'_> {
         }
         if certain.is_empty() && possible.is_empty() {
             sentences.push(format!(
-                "None of the {} values compared shows a change.",
+                "None of the {} values compared shows a change (correlations without one are not listed).",
                 self.tested
             ));
         }
@@ -203,7 +203,7 @@ impl Changes<'_> {
             .collect();
         if !possible.is_empty() {
             notes.push(format!(
-                "\"May have changed\" comes up by chance in {:.0} of 100 comparisons of {} values.",
+                "With {1} values compared, {0:.0} of 100 comparisons show at least one \"may have changed\" by chance alone.",
                 100.0 * (1.0 - libm::pow(0.95, self.tested as f64)),
                 self.tested
             ));
@@ -220,10 +220,13 @@ impl Changes<'_> {
             });
         let needed: Vec<String> = needed.collect();
         if !needed.is_empty() {
-            notes.push(format!("Shots a session to decide: {}.", needed.join(", ")));
+            notes.push(format!(
+                "Shots to measure in each session to decide: {}.",
+                needed.join(", ")
+            ));
         }
         notes.push(
-            "The intervals do not cover how a player varies from day to day, another ring, ball or air, or a constant offset of the sensor."
+            "The intervals leave out how a player varies from day to day, another ring, ball or air, and any constant error of the sensor."
                 .to_owned(),
         );
         notes
@@ -333,7 +336,7 @@ impl SessionChange {
         let [before, after] = [&self.comparison.before, &self.comparison.after]
             .map(|interval| format!("{:.decimals$}", interval.mean / self.size + 0.0));
         let text = format!(
-            "{}, {before} to {after} {}",
+            "{} (from {before} to {after} {})",
             quantity_in_words(&self.name),
             self.unit
         );

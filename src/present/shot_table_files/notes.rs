@@ -535,14 +535,14 @@ fn nearly_other_kind_note(table: &ShotTable, units: UnitSystem) -> Option<String
         }
         is_many
     });
-    let touch = match table.kind {
-        TableKind::One(ShotKind::Direct) => "touch the board first",
-        TableKind::One(ShotKind::Bank) => "do not touch the board first",
-        TableKind::Better => "are of the other kind",
+    let (touch, exact) = match table.kind {
+        TableKind::One(ShotKind::Direct) => ("touch the board first", "direct"),
+        TableKind::One(ShotKind::Bank) => ("do not touch the board first", "a bank shot"),
+        TableKind::Better => ("are of the other kind", "of this kind"),
     };
     (!places.is_empty()).then(|| {
         format!(
-            "Bank and direct merge at {}: up to {:.0} % of the makes {touch}, so the label is arbitrary there.",
+            "Between bank and direct: {}. Up to {:.0} % of the makes there {touch}, though the exact shot is {exact}.",
             places.text(table, units),
             100.0 * most
         )

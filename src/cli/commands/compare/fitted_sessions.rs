@@ -188,7 +188,7 @@ pub(super) fn fit_by_session(
         return Err(Failure::usage(match &names[..] {
             [] => format!("{place}: has no shots"),
             [one] if one.is_empty() => format!(
-                "{place}: has no column session; name it with --map 'session=COLUMN', or give two files"
+                "{place}: has no column session: say which column it is with --map 'session=COLUMN', or give two files"
             ),
             [one] if !wanted.is_empty() => {
                 format!("--session {one}: name two sessions; {place} has {listed}")

@@ -35,9 +35,9 @@ Examples:
   bankshot compare season.csv --plot season.svg
   bankshot compare season.csv --session September --session March
 
-A file with a column session needs no second file; with several players, each is compared. Sessions named by numbers or dates are compared in that order, others in the order of the file or of --session.")]
+A file with a column named session needs no second file; with several players, each is compared. Sessions named by numbers or dates are compared in that order, others in the order of the file or of --session.")]
 pub(crate) struct CompareOptions {
-    /// The first session, or a file with a column session that has two values.
+    /// The first session, or a file whose column "session" has two values.
     pub(crate) before: PathBuf,
     /// The second session.
     pub(crate) after: Option<PathBuf>,

@@ -14,12 +14,13 @@ use crate::cli::run_folder;
 use crate::cli::terminal::is_quiet;
 use crate::files::atomic_file::same_file;
 use crate::store::fit::SHOTS_FILE;
-use remarks::{print_sessions, print_sides};
+use remarks::print_sides;
 use std::path::{Path, PathBuf};
 
 pub(crate) use failure::failure;
 pub(crate) use options::FitOptions;
-pub(crate) use remarks::report_rejected;
+pub(crate) use remarks::{print_sessions, print_unused, report_rejected};
+pub(crate) use several_shooters::fit_each;
 
 pub(crate) fn run(options: &FitOptions) -> Result<u8, Failure> {
     unmeasured_parameters::check_names(&options.free)?;

@@ -30,7 +30,7 @@ pub(crate) struct FitOptions {
     pub(crate) out: Option<PathBuf>,
     /// Also estimate a value the sensor does not measure: backspin or hoop_restitution (from makes
     /// and misses), drag_coefficient (from trajectories). Repeatable. With several players, ring
-    /// and air are estimated once for all.
+    /// and air have one estimate for all.
     #[arg(long, value_name = "PARAMETER")]
     pub(crate) free: Vec<String>,
     /// Print fit.json instead of the text.

@@ -2,6 +2,7 @@
 
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::terminal::print_remark;
+use crate::measured_shots::rejected_shots::grouped_reasons;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::units::UnitSystem;
 
@@ -20,34 +21,38 @@ pub(crate) fn report_rejected(file: &MeasuredFile, shots: &ShooterShots, is_only
     };
     // Of several shooters, fewer of each.
     let most_named = if is_only { MOST_NAMED } else { 3 };
-    for (row, reason) in shots.rejected.iter().take(most_named) {
+    if shots.rejected.len() > most_named {
+        for group in grouped_reasons(&shots.rejected) {
+            print_remark(&format!(
+                "{}: {} rows, the first in {} {}: {}",
+                file.file.display(),
+                group.rows,
+                file.row_name,
+                group.first,
+                group.reason
+            ));
+        }
+    }
+    let named = match shots.rejected.len() > most_named {
+        true => 0,
+        false => most_named,
+    };
+    for (row, reason) in shots.rejected.iter().take(named) {
         print_remark(&format!(
             "{}: {} {row}: {reason}",
             file.file.display(),
             file.row_name
         ));
     }
-    if shots.rejected.len() > most_named {
-        // Without any shot nothing is written.
-        let all = if shots.shots.is_empty() {
-            ""
-        } else {
-            "; `fit` lists all in its shots.csv"
-        };
-        print_remark(&format!(
-            "... and {} more{all}",
-            shots.rejected.len() - most_named
-        ));
-    }
     print_remark(&format!(
-        "{of}{} shots are used, {} are left out: if these are misses, the makes per 100 are too high",
+        "{of}{} shots used, {} left out; if those were misses, the makes per 100 are too high",
         shots.shots.len(),
         shots.rejected.len()
     ));
 }
 
 /// Says that sessions were fitted as one.
-pub(super) fn print_sessions(file: &MeasuredFile) {
+pub(crate) fn print_sessions(file: &MeasuredFile) {
     if let Some(order) = &file.session_order {
         print_remark(order);
     }
@@ -90,24 +95,36 @@ pub(super) fn print_sides(shooters: &[ShooterShots]) {
 }
 
 /// Names the columns that nothing was taken from.
-pub(super) fn print_unused(file: &MeasuredFile) {
+pub(crate) fn print_unused(file: &MeasuredFile) {
+    for (name, texts) in &file.possible_players {
+        print_remark(&format!(
+            "warning: all shots are taken as one player's, but column {name} has several texts ({}): if they are players, add --map 'shooter={name}'",
+            texts.join(", ")
+        ));
+    }
     if !file.unused.is_empty() {
         print_remark(&format!(
             "columns that were not used: {}",
             file.unused.join(", ")
         ));
+        if !file.proposed.is_empty() {
+            print_remark(&format!(
+                "they may hold: {}; add --accept to use them",
+                file.proposed.join(", ")
+            ));
+        }
         let mut sessions = file.shooters.iter().flat_map(|shots| &shots.sessions);
         if let Some(name) = file
             .sessions_column
             .as_ref()
-            .filter(|_| sessions.all(String::is_empty))
+            .filter(|_| sessions.all(String::is_empty) && file.proposed.is_empty())
         {
             print_remark(&format!(
                 "if column {name} names the sessions, type --map 'session={name}' to test whether they differ"
             ));
         }
         let mut shots = file.shooters.iter().flat_map(|shots| &shots.shots);
-        if shots.all(|shot| shot.made.is_none()) {
+        if shots.all(|shot| shot.made.is_none()) && file.proposed.is_empty() {
             print_remark(
                 "no column shows what went in, so nothing checks the prediction; if one does, type --map 'made=COLUMN'",
             );

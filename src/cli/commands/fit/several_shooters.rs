@@ -11,7 +11,7 @@ use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{is_quiet, print_next, print_prose, print_remark, print_text};
-use crate::fitting::{FitNote, Place, ShooterFit};
+use crate::fitting::{Contradiction, Place, ShooterFit};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
 use crate::present::fit_files::fit_note_text::fit_note_text;
@@ -26,20 +26,8 @@ use std::path::{Path, PathBuf};
 
 /// Fits several shooters side by side: one folder for each, and one table.
 pub(super) fn fit(file: &MeasuredFile, out: &Path, options: &FitOptions) -> Result<u8, Failure> {
-    let bars = ProgressBars::new();
     let folders = folders_of(file, out);
-    bars.begin("fitting shooters", file.shooters.len() as u64);
-    let rows = file
-        .shooters
-        .par_iter()
-        .zip(&folders)
-        .map(|(shots, folder)| {
-            let row = fit_one(file, shots, folder, options);
-            bars.advance(1);
-            row
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
-    bars.end();
+    let rows = fit_rows(file, &folders, options)?;
     if rows.iter().all(|row| row.result.is_err()) {
         return answer_without_fit(file, options);
     }
@@ -67,6 +55,51 @@ pub(super) fn fit(file: &MeasuredFile, out: &Path, options: &FitOptions) -> Resu
         true => Ok(code::INCOMPLETE),
         false => Ok(code::DONE),
     }
+}
+
+fn fit_rows(
+    file: &MeasuredFile,
+    folders: &[PathBuf],
+    options: &FitOptions,
+) -> Result<Vec<ShooterRow>, Failure> {
+    let bars = ProgressBars::new();
+    bars.begin("fitting shooters", file.shooters.len() as u64);
+    let rows = file
+        .shooters
+        .par_iter()
+        .zip(folders)
+        .map(|(shots, folder)| {
+            let row = fit_one(file, shots, folder, options);
+            bars.advance(1);
+            row
+        })
+        .collect();
+    bars.end();
+    rows
+}
+
+/// Fits the shooters of a file, a folder for each in `out`, and prints their warnings alone: the
+/// folders of those that were fitted, and why others were not.
+pub(crate) fn fit_each(
+    file: &MeasuredFile,
+    out: &Path,
+    options: &FitOptions,
+) -> Result<Vec<Result<PathBuf, String>>, Failure> {
+    let folders = folders_of(file, out);
+    let rows = fit_rows(file, &folders, options)?;
+    remove_older(out, &folders)?;
+    let shooters = Shooters {
+        places: rows.iter().flat_map(|row| row.places.clone()).collect(),
+        free: Vec::new(),
+    };
+    write_table(out, &shooters, options.measured.unit_system())?;
+    let rows = rows.into_iter().zip(folders);
+    Ok(rows
+        .map(|(row, folder)| {
+            row.warnings.iter().for_each(|words| print_remark(words));
+            row.result.map(|_| folder)
+        })
+        .collect())
 }
 
 /// A folder for each shooter. Different names can be the same as folders.
@@ -237,7 +270,7 @@ struct ShooterRow {
     /// A row of the printed table for each place, or why there is no fit.
     result: Result<Vec<PlaceRow>, String>,
     warnings: Vec<String>,
-    /// See [`is_doubted`].
+    /// Whether the makes contradict the measured shots.
     is_doubted: bool,
 }
 
@@ -265,12 +298,6 @@ struct PlaceRow {
     from: String,
     /// Shots, made, expected, P.
     cells: [String; 5],
-}
-
-/// Whether the makes and the measured shots of a fit do not belong together.
-fn is_doubted(fit: &ShooterFit) -> bool {
-    let mut notes = fit.notes.iter();
-    notes.any(|note| matches!(note, FitNote::OtherMakes { .. }))
 }
 
 fn fit_one(
@@ -335,7 +362,7 @@ fn fit_one(
     Ok(ShooterRow {
         places: places_of(&name, &shots.place_names, &fit, folder),
         result: Ok(places),
-        is_doubted: is_doubted(&fit),
+        is_doubted: Contradiction::of_fit(&fit.notes, fit.makes.labelled).is_some(),
         warnings: fit
             .notes
             .iter()

@@ -74,7 +74,7 @@ pub(super) fn estimate(
             profiles: &fit.profiles,
             shots: &shots.shots,
             typical: &fit.typical,
-            is_spin_measured: is_measured(shots),
+            measured_values: shots.spin.measured_values(),
         })
         .collect();
     let curve = likelihood_curve(parameter, &fitted)?;

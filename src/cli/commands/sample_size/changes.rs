@@ -115,11 +115,11 @@ pub(super) fn shots_to_show(
         |shots: &dyn Fn(f64) -> Option<f64>| falls.map(|fall| in_short(shots(fall))).join(", ");
     let mut notes = vec![
         format!(
-            "Shots in each of two sessions that show a change: {}.",
+            "Shots needed in each of two sessions to show a change: {}.",
             listed(&|change| Some(shots_in_each(rows, change)))
         ),
         format!(
-            "Shots in each that show 10, 20 or 30 % less scatter in one value: {}.",
+            "Shots needed in each to show 10, 20 or 30 % less scatter in one value: {}.",
             of_falls(&|fall| Some(SessionError::each_session(scatter, fall, 1.0 - fall)))
         ),
     ];

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Simulates sessions of each size with the tracker's noise, fits them, and prints how precise the results are. The shot comes from the flags, then from the profile's [nominal] table, else the best shot is used; for the folder of a fit it is the measured shot. This takes a minute or two.
+Simulates sessions of each size with the tracker's noise, fits them, and prints how precise the results are. The flags set the shot. Without them it is the one in the profile's [nominal] table, or else the best shot; for a fit's folder it is the measured shot. This takes a minute or two.
 
-The answer includes how many shots show a change: after the fitted shots (for the folder of a fit), or in each of two equal sessions. --first N compares with a first session of N shots, --against OTHER with another player or day.
+The answer also says how many shots are needed to show a change: in a second session after the fitted shots (for a fit's folder), or in each of two equal sessions (for a profile). --first N compares with a first session of N shots, --against OTHER with another player or day.
 
 Examples:
   bankshot sample-size results/gym-sensor-fit --tracker noah --target 3
@@ -23,7 +23,7 @@ pub(crate) struct SampleSizeOptions {
     pub(crate) physics: PhysicsArg,
     #[command(flatten)]
     pub(crate) nominal: NominalOptions,
-    /// Shots of a session; several sizes.
+    /// Sizes of the simulated sessions, in shots.
     #[arg(long, value_name = "N,N", value_delimiter = ',', default_value = "25,50,100,200", value_parser = clap::value_parser!(u32).range(10..=5000))]
     pub(crate) shots: Vec<u32>,
     /// The tracker: lab, noah, optical_25hz, optical_60hz, or a TOML file with its noise as for
@@ -33,18 +33,19 @@ pub(crate) struct SampleSizeOptions {
     /// The number of the place, for a fit with several places [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) place: Option<u32>,
-    /// Shots of a first session with the same tracker, to compare a second one with [default: those
-    /// of the fit; none for a profile].
+    /// Shots already measured with the same tracker in a first session, which a second one is
+    /// compared with [default: those of the fit; none for a profile].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(10..=5000))]
     pub(crate) first: Option<u32>,
     /// A second profile or the folder of a second fit (such as the same player when tired): also
-    /// print how many shots show how the two differ.
+    /// print how many shots are needed to show the difference.
     #[arg(long, value_name = "PROFILE|FIT_DIR")]
     pub(crate) against: Option<PathBuf>,
     /// Changes in makes per 100 that a second session should show.
     #[arg(long, value_name = "PER_100", value_delimiter = ',', default_value = "5,10,20", value_parser = value_parsers::points)]
     pub(crate) change: Vec<f64>,
-    /// Also print how many shots give a 95 % interval of this many makes per 100 to each side.
+    /// Also print how many shots are needed to know the makes per 100 to within this (95 % interval,
+    /// plus or minus).
     #[arg(long, value_name = "PER_100", value_parser = value_parsers::points)]
     pub(crate) target: Option<f64>,
     /// Units of the answer [default: those of the profile or the fit].

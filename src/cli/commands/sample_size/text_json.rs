@@ -40,7 +40,7 @@ impl DesignedTests {
         );
         if let Some(shots) = self.checked {
             notes.push(format!(
-                "The row of {shots} shots was added, as the smallest --change needs about that many."
+                "The row of {shots} shots was added because the smallest change asked about needs about that many."
             ));
         }
         notes.extend(
@@ -68,7 +68,7 @@ impl DesignedTests {
             return Vec::new();
         };
         let mut answer = vec![format!(
-            "With {} measured shots makes per 100 are known to within {}; with counting alone, to within {}.",
+            "Measuring {} shots gives the makes per 100 to within {}; only counting them, to within {}.",
             row.shots,
             width_text(half_width(row.probability_error)),
             width_text(half_width(row.counting_error))

@@ -4,6 +4,7 @@ mod along_variable;
 mod options;
 
 use super::trace;
+use crate::analysis::rebounds::find_rebounds;
 use crate::answers::json;
 use crate::answers::nominal_shot::notes_of_shot;
 use crate::answers::probability::Method;
@@ -11,10 +12,11 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::{of_flags, print_notes};
 use crate::cli::output_files;
-use crate::cli::plot_files::PlotType;
+use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_answer, print_hint, print_next, print_text};
 use crate::dynamics::Release;
+use crate::plots::rebound_map;
 use crate::present::probability_text::probability_text;
 use crate::probability::{MAX_SHOTS, Sampler, monte_carlo};
 use crate::shooter::{Nominal, Profile};
@@ -29,7 +31,7 @@ pub(crate) fn run(options: &ShotOptions) -> Result<u8, Failure> {
     let fit = fit_folder::draws_for(draws, &loaded, !scatter.is_empty())?;
     let profile = loaded.profile;
     output_files::check(&options.output)?;
-    if let Some(path) = &options.plot {
+    for path in options.plot.iter().chain(&options.rebounds) {
         PlotType::of(path)?;
     }
     if let Some(vary) = &options.vary {
@@ -57,6 +59,14 @@ pub(crate) fn run(options: &ShotOptions) -> Result<u8, Failure> {
     let bars = ProgressBars::new();
     let (answer, estimate) = effort.probability(&profile, &nominal, over_draws, &bars)?;
     let units = profile.output().units;
+    if let (Some(path), Some(rebounds)) = (&options.rebounds, &answer.rebounds) {
+        let seed = options.seed.unwrap_or(profile.search().seed);
+        let found = find_rebounds(&profile, &nominal, seed, rebounds.height_m);
+        match rebound_map::draw(&profile, &found, rebounds) {
+            Some(plot) => plot_files::write_one(path, &plot)?,
+            None => print_hint("no shot misses: no map of the rebounds was drawn"),
+        }
+    }
     if options.json {
         print_answer(&json::text(&json::document(&answer, units)))?;
     } else {

@@ -5,6 +5,7 @@ use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::value_parsers::{sample, standard_error};
+use crate::units::{self, Dimension};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -33,19 +34,26 @@ pub(crate) struct ShotOptions {
     /// Standard error at which to stop [default: the profile's standard_error, else 0.001].
     #[arg(long, alias = "target", value_name = "PROBABILITY", value_parser = standard_error)]
     pub(crate) standard_error: Option<f64>,
-    /// Greatest number of shots, 64 or more.
+    /// Stop after this many shots (at least 64).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(64..=1_000_000_000_000))]
     pub(crate) budget: Option<u64>,
     /// Values along each axis of a grid [default: 20 for grid, 40 for paper-grid].
     #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=400))]
     pub(crate) grid: Option<usize>,
+    /// The height at which a rebound is within reach, for --details, --json and --rebounds [default:
+    /// 8 ft].
+    #[arg(long, value_name = "LENGTH", value_parser = reach)]
+    pub(crate) reach: Option<f64>,
+    /// Draw where the misses come down (.svg or .png).
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["vary", "replay"])]
+    pub(crate) rebounds: Option<PathBuf>,
     /// Seed of the samples [default: the profile's].
     #[arg(long)]
     pub(crate) seed: Option<u64>,
     /// Trace one simulated shot, by its seed and number, instead of counting makes.
     #[arg(long, value_name = "SEED:INDEX", value_parser = sample)]
     pub(crate) replay: Option<(u64, u64)>,
-    /// Folder of a fit whose uncertainty is added [default: the fit that wrote the profile].
+    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "scatter")]
     pub(crate) draws: Option<PathBuf>,
     /// Try several settings of one quantity: speed, pitch, polar, aim, backspin,
@@ -63,6 +71,15 @@ pub(crate) struct ShotOptions {
     pub(crate) json: bool,
 }
 
+/// A height of a rebounder's reach, m.
+fn reach(text: &str) -> Result<f64, String> {
+    let height_m = units::parse(text, Dimension::Length).map_err(|error| error.to_string())?;
+    match (0.5..=4.0).contains(&height_m) {
+        true => Ok(height_m),
+        false => Err("must be from 0.5 m to 4 m (1.7 to 13 ft)".to_owned()),
+    }
+}
+
 impl ShotOptions {
     pub(super) fn effort(&self) -> Effort {
         Effort {
@@ -71,6 +88,7 @@ impl ShotOptions {
             budget: self.budget,
             seed: self.seed,
             grid: self.grid,
+            reach_m: self.reach,
         }
     }
 }

@@ -140,11 +140,11 @@ pub(super) fn remarks(
     };
     let has_unsure_places = |player: &PlayerSweep| !player.unsure_places().is_empty();
     let of_profiles = if players.iter().any(has_unsure_places) {
-        "?: not clear, as the probability that this kind is better is below 90 % (listed in team.csv). Each profile is taken as exact.\n"
+        "?: not clear, as the probability that this kind is better is below 90 % (listed in team.csv). The numbers take each profile as exact, however few shots it rests on.\n"
     } else if players.iter().any(has_draws) {
-        "Each profile is taken as exact; team.csv has the probability that bank is better.\n"
+        "The numbers take each profile as exact, however few shots it rests on; team.csv has the probability that bank is better.\n"
     } else {
-        "Each profile is taken as exact; for a measured player see `bankshot advise`.\n"
+        "The numbers take each profile as exact; for a measured player see `bankshot advise`.\n"
     };
     (of_level + &of_hoops(players, ring), of_profiles)
 }

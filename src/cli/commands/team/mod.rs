@@ -15,7 +15,7 @@ mod words;
 use crate::cli::failure::Failure;
 use crate::cli::profile_flags::PlaceOptions;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -37,7 +37,7 @@ pub(crate) struct TeamOptions {
     /// shooters.
     #[arg(required = true, num_args = 1..)]
     pub(crate) players: Vec<PathBuf>,
-    /// A sweep, for its places and its search. Each player in turn is its shooter.
+    /// A sweep file: its places and its search, with each player in turn as the shooter.
     #[arg(long, value_name = "SWEEP.toml")]
     pub(crate) sweep: Option<PathBuf>,
     /// Folder of the results of --sweep.
@@ -58,6 +58,15 @@ pub(crate) struct TeamOptions {
     /// With --sweep: print how long it takes, and stop.
     #[arg(long, requires = "sweep")]
     pub(crate) plan: bool,
+}
+
+/// Fitted players over a sweep: its page, posters and table in `out`.
+pub(crate) fn over_the_court_of(
+    players: &[PathBuf],
+    sweep: &Path,
+    out: &Path,
+) -> Result<u8, Failure> {
+    over_the_court::run(players, sweep, out)
 }
 
 pub(crate) fn run(options: &TeamOptions) -> Result<u8, Failure> {

@@ -229,7 +229,9 @@ pub(super) fn run(
     };
     let players: Vec<PlayerShots> = profiles.into_iter().map(find).collect::<Result<_, _>>()?;
     print_text(&team_text(&players))?;
-    print_hint("Whole court, maps and posters: add --sweep configs/half_court_3ft.toml");
+    print_hint(
+        "Whole court, maps and posters: `bankshot new sweep sweep.toml`, then add --sweep sweep.toml",
+    );
     Ok(code::DONE)
 }
 

@@ -13,7 +13,7 @@ pub(super) struct PlayerAdvice {
     /// A paragraph. (That the other kind is no better from there is no news on a page about
     /// banking.)
     pub(super) text: String,
-    /// A sentence for the poster; empty where nothing is to be changed.
+    /// A sentence for the poster.
     pub(super) poster: String,
     /// For a row of a table.
     pub(super) short: ShortAdvice,
@@ -33,24 +33,30 @@ impl PlayerAdvice {
         let (profile, units) = (&fit.profiles[0], output.units);
         let advice = advise(profile, &fit.posterior, 0, progress)?;
         let location = profile.location();
-        let (observed, angle) = (Some(fit.observed[0]), location.angle_rad);
+        let angle = location.angle_rad;
+        let doubt = fit.contradiction(0, &advice.usual_probability);
+        let is_doubted = doubt.is_some();
         let player = present::PlayerAdvice {
             profile,
             advice: &advice,
-            observed,
+            observed: fit.observed[0],
+            doubt,
             units,
         };
-        let from = location.in_words(units);
+        let from = match fit.place_names[0].as_str() {
+            "" => location.in_words(units),
+            name => name.to_owned(),
+        };
         let further_places = fit.profiles.len() - 1;
-        let mut poster = advice_for_poster(&advice, observed, (&from, angle), units);
-        if further_places == 0 && !poster.is_empty() {
+        let mut poster = advice_for_poster(&advice, is_doubted, (&from, angle), units);
+        if further_places == 0 && !is_doubted {
             poster +=
                 " (You were measured only there; the map assumes the same scatter everywhere.)";
         }
         Ok(Self {
             text: player.for_player(),
             poster,
-            short: short_advice(&advice, observed, angle, units),
+            short: short_advice(&advice, is_doubted, angle, units),
             from,
             further_places,
         })
