@@ -101,7 +101,8 @@ pub enum Method {
     Sobol,
     /// Plain random samples.
     MonteCarlo,
-    /// The grid of Eq. 25 (Silverberg et al. 2003), shifted from line to line; for four errors only.
+    /// The grid of Eq. 25 (Silverberg et al. 2003), shifted from line to line; for four errors
+    /// only.
     Grid,
     /// Eq. 25 as printed in the paper, on one common grid (four errors only).
     PaperGrid,

@@ -42,8 +42,8 @@ pub(crate) struct MeasuredShotsOptions {
     /// releases, noah for landings; for trajectories the frame rate and noise that they show].
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
-    /// Which column holds a quantity, where its name differs: QUANTITY=COLUMN:UNIT, such as 'speed=ReleaseSpeed:mph' or
-    /// 'made=Result'. A minus before COLUMN reverses the sign, a number after UNIT is added:
+    /// Which column holds a quantity, where its name differs: QUANTITY=COLUMN:UNIT, such as
+    /// 'speed=ReleaseSpeed:mph' or 'made=Result'. A minus before COLUMN reverses the sign, a number after UNIT is added:
     /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such
     /// maps, one a line.
     #[arg(long, value_name = "MAP")]

@@ -16,7 +16,8 @@ pub(crate) struct NominalOptions {
     /// Pitch angle of the release, such as '52 deg'.
     #[arg(long, allow_hyphen_values = true)]
     pitch: Option<String>,
-    /// Direction of the release, from the court's long axis, positive to the left [default: the profile's, else towards the hoop's centre].
+    /// Direction of the release, from the court's long axis: the court angle towards the hoop's
+    /// centre, greater to the left of it [default: the profile's, else the centre].
     #[arg(long, allow_hyphen_values = true)]
     polar: Option<String>,
     /// Instead of --polar: the angle of the release from the line to the hoop's centre, such as

@@ -64,8 +64,8 @@ pub(crate) fn location_named(
 /// The flags of a place. Each overrides the profile's `[location]` table.
 #[derive(Args, Debug)]
 pub(crate) struct PlaceOptions {
-    /// A place by its name, such as 'left elbow', 'free throw' or 'right corner three' (docs/places.md
-    /// has all).
+    /// A place by its name, such as 'left elbow', 'free throw' or 'right corner three'
+    /// (docs/places.md has all).
     #[arg(long, value_name = "PLACE", conflicts_with_all = ["distance", "angle"])]
     at: Option<String>,
     /// The court of --at: ncaa, nba, fiba or high_school [default: that of the physics, else ncaa].

@@ -57,14 +57,8 @@ fn rows(range: &Range<Data>) -> Vec<(u64, ByteRecord)> {
 fn cell(cell: &Data) -> String {
     match cell {
         Data::Empty | Data::Error(_) => String::new(),
-        Data::DateTime(moment) if moment.is_datetime() => {
-            let (year, month, day, hour, minute, second, _) = moment.to_ymd_hms_milli();
-            let time = match (hour, minute, second) {
-                (0, 0, 0) => String::new(),
-                _ => format!(" {hour:02}:{minute:02}:{second:02}"),
-            };
-            format!("{year:04}-{month:02}-{day:02}{time}")
-        }
+        // The number of the day, which is read as a date where one is meant.
+        Data::DateTime(moment) => moment.as_f64().to_string(),
         other => other.to_string(),
     }
 }

@@ -14,6 +14,7 @@ mod advice_steps;
 mod angle_over_draws;
 mod chain_diagnostics;
 mod constant_error;
+mod contradiction;
 mod dispersion_posterior;
 mod draw_probabilities;
 mod expected_makes;
@@ -42,6 +43,7 @@ pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabiliti
 pub use advice_steps::{AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S, Support};
 pub use angle_over_draws::{AngleOverDraws, best_angles_of_draws};
 pub use constant_error::{ConstantError, constant_errors};
+pub use contradiction::Contradiction;
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
 pub use expected_makes::{
@@ -52,7 +54,7 @@ pub use fit_checks::{
     FlightResiduals, ReleaseDifference, ShapeTest, TestError, WARNING_LEVEL, check_releases,
     check_speed_unit, far_shots, notes, shape_test, tails_of,
 };
-pub use fit_note::{Contradiction, FitNote, SurprisingShot};
+pub use fit_note::{FitNote, SurprisingShot};
 pub use fitted_profile::fitted_profile;
 pub use flight_fit::{
     DragEstimate, FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight,

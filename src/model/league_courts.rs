@@ -2,8 +2,8 @@
 //! midcourt, y across.
 //!
 //! Sources: NCAA Men's Basketball Rules 2023-24, rule 1; NBA Official Rules 2023-24, rule 1; FIBA
-//! Official Basketball Rules 2022, rule 2; NFHS Basketball Rules 2023-24, rule 1 (high schools of the
-//! United States). Distances are to the outer edge of the lines.
+//! Official Basketball Rules 2022, rule 2; NFHS Basketball Rules 2023-24, rule 1 (high schools of
+//! the United States). Distances are to the outer edge of the lines.
 
 use super::{Physics, Preset};
 use crate::units::{FOOT_M, INCH_M};

@@ -65,7 +65,8 @@ pub(crate) struct AnglesOptions {
     /// Fix the backspin.
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
-    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the profile].
+    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the
+    /// profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["distances", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Write the shots into a file (.csv, .json or .txt); may be repeated.

@@ -45,7 +45,8 @@ pub(crate) struct BestOptions {
     /// Folder of the results [default: a numbered one in results/<name of the shooter>].
     #[arg(long = "output", short = 'o', alias = "out", value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the profile].
+    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the
+    /// profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with_all = ["json", "scatter"])]
     pub(crate) draws: Option<PathBuf>,
     /// Print one JSON object instead of the table.

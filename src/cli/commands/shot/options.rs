@@ -53,7 +53,8 @@ pub(crate) struct ShotOptions {
     /// Trace one simulated shot, by its seed and number, instead of counting makes.
     #[arg(long, value_name = "SEED:INDEX", value_parser = sample)]
     pub(crate) replay: Option<(u64, u64)>,
-    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the profile].
+    /// Folder of a fit: adds its uncertainty to the answer [default: the fit that wrote the
+    /// profile].
     #[arg(long, value_name = "FIT_DIR", conflicts_with = "scatter")]
     pub(crate) draws: Option<PathBuf>,
     /// Try several settings of one quantity: speed, pitch, polar, aim, backspin,
