@@ -43,9 +43,9 @@ pub(crate) struct MeasuredShotsOptions {
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) tracker: Option<String>,
     /// Which column holds a quantity, where its name differs: QUANTITY=COLUMN:UNIT, such as
-    /// 'speed=ReleaseSpeed:mph' or 'made=Result'. A minus before COLUMN reverses the sign, a number after UNIT is added:
-    /// 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE is a file of such
-    /// maps, one a line.
+    /// 'speed=ReleaseSpeed:mph' or 'made=Result'. A minus before COLUMN reverses the sign, a number
+    /// after UNIT is added: 'left_right=-Left:in', 'depth=PastCentre:in+9'. May be repeated; @FILE
+    /// is a file of such maps, one a line.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
     /// Take the columns as bankshot proposes them: a file whose columns have other names is refused
@@ -75,12 +75,12 @@ pub(crate) struct MeasuredShotsOptions {
     /// The coordinates must be right-handed: facing +x, +y is to the left.
     #[arg(long, value_name = "X,Y,DIRECTION", allow_hyphen_values = true)]
     pub(crate) hoop: Option<String>,
-    /// The place of all shots by its name, such as 'free throw' or 'left elbow', where the file does
-    /// not say it.
+    /// The place of all shots by its name, such as 'free throw' or 'left elbow', where the file
+    /// does not say it.
     #[arg(long, value_name = "PLACE", conflicts_with_all = ["distance", "angle"])]
     pub(crate) at: Option<String>,
-    /// The court of places by name, in --at or in the file: ncaa, nba, fiba or high_school [default:
-    /// that of the physics, else ncaa].
+    /// The court of places by name, in --at or in the file: ncaa, nba, fiba or high_school
+    /// [default: that of the physics, else ncaa].
     #[arg(long, value_name = "COURT", value_parser = court)]
     pub(crate) court: Option<League>,
     /// Distance of the place from the hoop's centre, where the file has no column for it.

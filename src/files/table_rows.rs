@@ -101,8 +101,8 @@ impl TableRows {
         }
     }
 
-    /// The rows of a stream of text, whose first row has the names: nothing waits for more rows than
-    /// have come.
+    /// The rows of a stream of text, whose first row has the names: nothing waits for more rows
+    /// than have come.
     ///
     /// # Errors
     /// It cannot be read.

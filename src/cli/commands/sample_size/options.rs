@@ -44,8 +44,8 @@ pub(crate) struct SampleSizeOptions {
     /// Changes in makes per 100 that a second session should show.
     #[arg(long, value_name = "PER_100", value_delimiter = ',', default_value = "5,10,20", value_parser = value_parsers::points)]
     pub(crate) change: Vec<f64>,
-    /// Also print how many shots are needed to know the makes per 100 to within this (95 % interval,
-    /// plus or minus).
+    /// Also print how many shots are needed to know the makes per 100 to within this (95 %
+    /// interval, plus or minus).
     #[arg(long, value_name = "PER_100", value_parser = value_parsers::points)]
     pub(crate) target: Option<f64>,
     /// Units of the answer [default: those of the profile or the fit].

@@ -40,8 +40,8 @@ pub(crate) struct ShotOptions {
     /// Values along each axis of a grid [default: 20 for grid, 40 for paper-grid].
     #[arg(long, value_name = "N", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=400))]
     pub(crate) grid: Option<usize>,
-    /// The height at which a rebound is within reach, for --details, --json and --rebounds [default:
-    /// 8 ft].
+    /// The height at which a rebound is within reach, for --details, --json and --rebounds
+    /// [default: 8 ft].
     #[arg(long, value_name = "LENGTH", value_parser = reach)]
     pub(crate) reach: Option<f64>,
     /// Draw where the misses come down (.svg or .png).
