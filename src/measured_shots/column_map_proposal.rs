@@ -1,6 +1,7 @@
 //! What to write as `--map` for a file whose columns have other names.
 
-use super::columns::{Columns, Label, OTHER_UNITS, Quantity, in_unit};
+use super::columns::{Columns, Label, Quantity, in_unit};
+use super::other_units::OTHER_UNITS;
 use crate::fitting::CENTRE_DEPTH_M;
 use crate::units::{DEGREE_RAD, INCH_M, REV_RAD};
 

@@ -1,6 +1,7 @@
 //! Cells with their units, sides and decimal commas as plain numbers: `42°`, `13' 9"`, `L 0.9`.
 
-use super::columns::{OTHER_UNITS, parse_made};
+use super::made_or_missed::parse_made;
+use super::other_units::OTHER_UNITS;
 use super::session_days::{are_dates, can_tell_sessions};
 use crate::files::table_rows::is_number_with_comma;
 use crate::model::league_courts::League;

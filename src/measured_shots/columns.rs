@@ -4,6 +4,7 @@
 //! `--map`, which can also turn a sign round and move the zero.
 
 use super::column_texts::{ColumnSummary, ColumnText, unit_named};
+use super::other_units::OTHER_UNITS;
 use super::table::Table;
 use crate::units::{DEGREE_RAD, Dimension, FOOT_M, INCH_M, REV_RAD};
 
@@ -226,47 +227,6 @@ enum Meaning {
     Quantity(Quantity, Unit),
     Label(Label),
 }
-
-/// Units as others write them, longest first, and their suffixes here.
-pub(super) const OTHER_UNITS: [(&str, &str); 37] = [
-    ("degree", "deg"),
-    ("grad", "deg"),
-    ("inch", "in"),
-    ("foot", "ft"),
-    ("ft.", "ft"),
-    ("degrees", "deg"),
-    ("inches", "in"),
-    ("metres", "m"),
-    ("meters", "m"),
-    ("rad/s", "rad_s"),
-    ("rad_s", "rad_s"),
-    ("rev/s", "rev_s"),
-    ("rev_s", "rev_s"),
-    ("km/h", "km_h"),
-    ("feet", "ft"),
-    ("ft/s", "ft_s"),
-    ("ft_s", "ft_s"),
-    ("kmh", "km_h"),
-    ("kph", "km_h"),
-    ("mph", "mph"),
-    ("fps", "ft_s"),
-    ("m/s", "m_s"),
-    ("m_s", "m_s"),
-    ("mps", "m_s"),
-    ("rpm", "rpm"),
-    ("rps", "rev_s"),
-    ("deg", "deg"),
-    ("rad", "rad"),
-    ("hz", "rev_s"),
-    ("cm", "cm"),
-    ("mm", "mm"),
-    ("ms", "ms"),
-    ("m", "m"),
-    ("s", "s"),
-    ("in", "in"),
-    ("ft", "ft"),
-    ("°", "deg"),
-];
 
 /// The unit that is written as its suffix or as others write it: `m_s`, `m/s`, `inches`.
 fn known_as_written(given: &str, units: &[Unit]) -> Option<Unit> {
@@ -581,94 +541,10 @@ impl Columns {
     }
 }
 
-/// Words for a make and for a miss, in small letters.
-const MADE: &[&str] = &[
-    "basket",
-    "bucket",
-    "1",
-    "1.0",
-    "true",
-    "t",
-    "yes",
-    "y",
-    "made",
-    "make",
-    "hit",
-    "in",
-    "swish",
-    "success",
-    "successful",
-    "good",
-    "goal",
-    "scored",
-    "score",
-    "wahr",
-    "ja",
-    "treffer",
-    "vrai",
-    "oui",
-    "réussi",
-    "verdadero",
-    "sí",
-    "vero",
-    "made shot",
-    "✓",
-    "✔",
-];
-const MISSED: &[&str] = &[
-    "no basket",
-    "not made",
-    "not in",
-    "0",
-    "0.0",
-    "false",
-    "f",
-    "no",
-    "n",
-    "missed",
-    "miss",
-    "out",
-    "airball",
-    "air ball",
-    "fail",
-    "failed",
-    "failure",
-    "unsuccessful",
-    "bad",
-    "no goal",
-    "falsch",
-    "nein",
-    "fehlwurf",
-    "daneben",
-    "faux",
-    "non",
-    "raté",
-    "falso",
-    "missed shot",
-    "✗",
-    "✘",
-];
-
-/// Whether a cell says made or missed; `None` where it says nothing.
-///
-/// # Errors
-/// The cell says something else.
-pub fn parse_made(cell: &str) -> Result<Option<bool>, String> {
-    let lower = cell.trim().to_lowercase();
-    match lower.as_str() {
-        "" | "na" | "n/a" | "nan" | "null" | "none" | "-" => Ok(None),
-        word if MADE.contains(&word) => Ok(Some(true)),
-        word if MISSED.contains(&word) => Ok(Some(false)),
-        other => Err(format!(
-            "made: \"{}\" is neither made (1, true, yes, made) nor missed (0, false, no, missed)",
-            other.chars().take(20).collect::<String>()
-        )),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured_shots::made_or_missed::parse_made;
 
     fn header(names: &[&str]) -> Vec<String> {
         names.iter().map(|name| (*name).to_owned()).collect()

@@ -2,7 +2,8 @@
 //! and what a blank result means.
 
 use super::column_map_proposal::names_players;
-use super::columns::{Columns, Label, Quantity, parse_made};
+use super::columns::{Columns, Label, Quantity};
+use super::made_or_missed::parse_made;
 use super::session_days::{
     DateOrder, Days, SHOTS_OF_SESSION, can_tell_sessions, day_in_words, days,
 };

@@ -2,7 +2,8 @@
 //!
 //! A single absurd row is kept out. Where the middle of a whole column is absurd, the column is.
 
-use super::columns::{Columns, Label, Quantity, Zero, in_unit, parse_made};
+use super::columns::{Columns, Label, Quantity, Zero, in_unit};
+use super::made_or_missed::parse_made;
 use crate::fitting::CENTRE_DEPTH_M;
 use crate::units::{DEGREE_RAD, INCH_M};
 

@@ -7,6 +7,8 @@ pub mod columns;
 pub mod court_frame;
 pub mod decisions;
 mod implausible_columns;
+pub mod made_or_missed;
+mod other_units;
 mod places;
 pub mod read;
 pub mod rejected_shots;

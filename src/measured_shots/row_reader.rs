@@ -1,6 +1,7 @@
 //! The cells of a row as quantities, and rows as shots.
 
-use super::columns::{Columns, Label, Quantity, parse_made};
+use super::columns::{Columns, Label, Quantity};
+use super::made_or_missed::parse_made;
 use super::shooter_shots::{Raw, RawShot, ReadOptions};
 use super::source::Source;
 use crate::dynamics::Simulator;

@@ -1,6 +1,7 @@
 //! Tracked shots: the points of each, and the flight that is fitted to them.
 
-use super::columns::{Label, Quantity, parse_made};
+use super::columns::{Label, Quantity};
+use super::made_or_missed::parse_made;
 use super::row_reader::{FARTHEST_LANDING_M, IS_MISSING, RowReader};
 use super::shooter_shots::{Raw, RawShot};
 use crate::fitting::{TrackedPoint, TrackerNoise, fit_flight, noise_of_tracks};
