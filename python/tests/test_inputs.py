@@ -185,7 +185,7 @@ def test_faulty_profiles_and_shots():
             bankshot.Profile(**{**{k: v for k, v in good.items() if not ("distance_ft" in k and "distance" in "".join(change))}, **change})
     with pytest.raises(bankshot.InputError, match="given twice"):
         guard.probability(speed_ft_s=24, speed="24 ft/s", pitch_deg=50)
-    with pytest.raises(bankshot.InputError, match="pitch: missing"):
+    with pytest.raises(bankshot.InputError, match="pitch: is missing"):
         guard.probability(speed_ft_s=24)
     with pytest.raises(bankshot.InputError, match="unknown table|is not a key|colour"):
         bankshot.Profile.from_toml(guard.toml + "\n[colour]\nball = 1\n")

@@ -417,6 +417,35 @@ fn contract_open_questions_are_asked() {
     );
 }
 
+/// The mapping files of the repository; the data are made up, in the form that each documents.
+#[test]
+fn val_mapping_files_read_the_exports_that_they_are_for() {
+    let trials: Vec<String> = shots()
+        .iter()
+        .enumerate()
+        .map(|(number, s)| {
+            let trial = serde_json::json!({
+                "sampling_rate": 30,
+                "trial_date": format!("2024-08-{:02}", 20 + s.day),
+                "participant_id": "P0001",
+                "trial_id": format!("T{number:04}"),
+                "result": word(s.made, ["made", "missed"]),
+                "landing_x": s.right_in,
+                "landing_y": s.depth_in,
+                "entry_angle": s.entry_deg,
+                "tracking": [{"frame": 0, "time": 0, "data": {"ball": ["NAN", "NAN", "NAN"]}}],
+            });
+            trial.to_string().replace("\"NAN\"", "NaN")
+        })
+        .collect();
+    let options = [
+        &AT_THE_LINE[..],
+        &["--map", "@configs/exports/spl_open_data.txt"],
+    ]
+    .concat();
+    gives_the_clean_fit("trials.json", trials.join("\n").as_bytes(), &options);
+}
+
 /// A column of players under a name that nobody knows is not pooled in silence.
 #[test]
 fn contract_possible_players_are_named() {
