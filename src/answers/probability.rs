@@ -24,7 +24,6 @@ use super::json::{Answer, Named, Provenance, si_name};
 use super::nominal_shot::FieldError;
 use super::rebounds::ReboundsAnswer;
 use crate::analysis::miss_breakdown::{MissBreakdown, classify_misses};
-use crate::analysis::rebounds::{REACH_M, find_rebounds};
 use crate::fitting::{DrawProbabilities, Interval};
 use crate::probability::{
     Estimate, MAX_SHOTS, MIN_SHOTS, Progress, Sampler, grid_integration, monte_carlo,
@@ -87,7 +86,7 @@ pub struct ProbabilityAnswer {
     /// P over the draws of a fit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub over_draws: Option<OverDraws>,
-    /// Where the misses come down; null under the grid methods.
+    /// Where the misses come down; null where nobody asked, and under the grid methods.
     pub rebounds: Option<ReboundsAnswer>,
 }
 
@@ -141,8 +140,6 @@ pub struct Effort {
     pub seed: Option<u64>,
     /// Values along each axis of a grid.
     pub grid: Option<usize>,
-    /// The height at which rebounds are within reach, m; else 8 ft.
-    pub reach_m: Option<f64>,
 }
 
 /// Default values along each axis of the paper's grid.
@@ -203,10 +200,6 @@ impl Effort {
         let misses = (!self.method.is_grid())
             .then(|| classify_misses(profile, nominal, &estimate, self.seed(profile)));
         let mut answer = self.answer(profile, nominal, &estimate, misses);
-        let reach_m = self.reach_m.unwrap_or(REACH_M);
-        let rebounds = find_rebounds(profile, nominal, self.seed(profile), reach_m);
-        answer.rebounds =
-            (!self.method.is_grid()).then(|| ReboundsAnswer::new(profile, &rebounds, reach_m));
         answer.over_draws = draws.map(OverDraws::from);
         Ok((answer, estimate))
     }

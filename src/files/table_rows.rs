@@ -210,7 +210,7 @@ impl TableRows {
                 _ => Err("is empty".to_owned()),
             };
         };
-        // A line that cannot be read is told; titles are not.
+        // A line that cannot be read is named; titles are passed.
         if let Some(Row {
             number,
             cells: Err(reason),

@@ -27,7 +27,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a file, or the files of one kind in a folder.
+    /// Reads a file.
     ///
     /// # Errors
     /// It cannot be read, or has no header.

@@ -55,8 +55,8 @@ pub fn coach_paragraph(places: &[AtPlace<'_>]) -> String {
         }
         (None, None) => {}
     }
-    let told = most.map(|(place, _)| place);
-    let others = trusted.iter().filter(|(place, _)| Some(place) != told);
+    let advised = most.map(|(place, _)| place);
+    let others = trusted.iter().filter(|(place, _)| Some(place) != advised);
     if trusted.len() > 1 {
         sentences.extend(others.filter_map(|(place, advice)| {
             Some(format!("From the {place}: {}", advice.better_kind()?))

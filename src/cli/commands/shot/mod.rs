@@ -4,17 +4,18 @@ mod along_variable;
 mod options;
 
 use super::trace;
-use crate::analysis::rebounds::find_rebounds;
+use crate::analysis::rebounds::{REACH_M, find_rebounds};
 use crate::answers::json;
 use crate::answers::nominal_shot::notes_of_shot;
 use crate::answers::probability::Method;
+use crate::answers::rebounds::ReboundsAnswer;
 use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::nominal_shot_flags::{of_flags, print_notes};
 use crate::cli::output_files;
 use crate::cli::plot_files::{self, PlotType};
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::terminal::{print_answer, print_hint, print_next, print_text};
+use crate::cli::terminal::{has_details, print_answer, print_hint, print_next, print_text};
 use crate::dynamics::Release;
 use crate::plots::rebound_map;
 use crate::present::probability_text::probability_text;
@@ -57,15 +58,10 @@ pub(crate) fn run(options: &ShotOptions) -> Result<u8, Failure> {
         .transpose()?;
     let over_draws = of_draws.as_ref();
     let bars = ProgressBars::new();
-    let (answer, estimate) = effort.probability(&profile, &nominal, over_draws, &bars)?;
+    let (mut answer, estimate) = effort.probability(&profile, &nominal, over_draws, &bars)?;
     let units = profile.output().units;
-    if let (Some(path), Some(rebounds)) = (&options.rebounds, &answer.rebounds) {
-        let seed = options.seed.unwrap_or(profile.search().seed);
-        let found = find_rebounds(&profile, &nominal, seed, rebounds.height_m);
-        match rebound_map::draw(&profile, &found, rebounds) {
-            Some(plot) => plot_files::write_one(path, &plot)?,
-            None => print_hint("no shot misses: no map of the rebounds was drawn"),
-        }
+    if (options.json || has_details() || options.rebounds.is_some()) && !options.method.is_grid() {
+        answer.rebounds = Some(rebounds(options, &profile, &nominal)?);
     }
     if options.json {
         print_answer(&json::text(&json::document(&answer, units)))?;
@@ -78,6 +74,25 @@ pub(crate) fn run(options: &ShotOptions) -> Result<u8, Failure> {
     }
     print_hint("the simulation error is larger than wanted; raise --budget or --standard-error");
     Ok(code::IMPRECISE)
+}
+
+/// Where the misses come down, with the map that was asked for.
+fn rebounds(
+    options: &ShotOptions,
+    profile: &Profile,
+    nominal: &Nominal,
+) -> Result<ReboundsAnswer, Failure> {
+    let seed = options.seed.unwrap_or(profile.search().seed);
+    let reach_m = options.reach.unwrap_or(REACH_M);
+    let found = find_rebounds(profile, nominal, seed, reach_m);
+    let answer = ReboundsAnswer::new(profile, &found, reach_m);
+    if let Some(path) = &options.rebounds {
+        match rebound_map::draw(profile, &found, &answer) {
+            Some(plot) => plot_files::write_one(path, &plot)?,
+            None => print_hint("no shot misses: no map of the rebounds was drawn"),
+        }
+    }
+    Ok(answer)
 }
 
 /// The place of a fit whose current shot is asked about: the profile as the fit wrote it, and no

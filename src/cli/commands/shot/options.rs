@@ -89,7 +89,6 @@ impl ShotOptions {
             budget: self.budget,
             seed: self.seed,
             grid: self.grid,
-            reach_m: self.reach,
         }
     }
 }
