@@ -8,7 +8,8 @@ use super::change_in_words::{
 use crate::fitting::{Advice, AdviceStep, AdviceSteps};
 use crate::units::UnitSystem;
 
-/// The steps of advice if one of them is supported, and the makes do not contradict the measured shots.
+/// The steps of advice if one of them is supported, and the makes do not contradict the measured
+/// shots.
 fn steps_to_follow(advice: &Advice, is_doubted: bool) -> Option<&AdviceSteps> {
     let steps = advice.steps.as_ref()?;
     let is_sure = steps.steps.iter().any(AdviceStep::is_sure);
