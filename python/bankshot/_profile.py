@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Union
 from . import _engine
 from ._commands import Progress, ask
 from ._engine import InputError
-from ._units import SHOT, plain, quantities
+from ._units import SHOT, in_words, plain, quantities
 
 if TYPE_CHECKING:
     from ._shots import BestShots, Probability, Trace
@@ -218,6 +218,7 @@ class Profile:
         budget: int | None = None,
         seed: int | None = None,
         method: str = "sobol",
+        reach: Any = None,
         threads: int | None = None,
         progress: Progress = None,
         **shot: Any,
@@ -235,11 +236,16 @@ class Profile:
             Standard error at which to stop.
         budget : int
             Greatest number of shots.
+        reach : text or pint quantity
+            The height at which a rebound is within reach, such as ``"8 ft"``: ``raw["rebounds"]`` then
+            says where the misses come down.
         """
         from ._shots import Probability
 
         effort = {"target": target, "budget": budget, "seed": seed, "method": method}
         question: dict[str, Any] = {"shot": quantities(shot, SHOT), "effort": effort}
+        if reach is not None:
+            question["reach"] = in_words("reach", reach, "length")
         return Probability._of(
             self._ask("probability", threads=threads, progress=progress, **question)
         )

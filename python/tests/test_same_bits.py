@@ -60,12 +60,16 @@ def test_probability(command, guard_file):
                 "--backspin", "2 rev/s", "--target", "0.001", "--json")
     )
     guard = bankshot.Profile.from_file(guard_file)
-    p = guard.probability(speed_ft_s=24.1, pitch="52.5 deg", backspin_rev_s=2, target=0.001)
+    shot = {"speed_ft_s": 24.1, "pitch": "52.5 deg", "backspin_rev_s": 2, "target": 0.001}
+    p = guard.probability(**shot, reach="8 ft")
     assert p.raw == {**said, "configuration_blake3": p.raw["configuration_blake3"]}
     assert p.raw["configuration_blake3"] == said["configuration_blake3"]
     assert float(p) == said["probability"] and p.shots == said["shots"]
-    again = bankshot.probability(guard, speed_ft_s=24.1, pitch_deg=52.5, backspin="2 rev/s", target=0.001)
+    again = bankshot.probability(guard, speed_ft_s=24.1, pitch_deg=52.5, backspin="2 rev/s", target=0.001, reach="8 ft")
     assert again == p
+    assert guard.probability(**shot).raw == {**p.raw, "rebounds": None}
+    with pytest.raises(bankshot.InputError, match="reach: must be from"):
+        guard.probability(**shot, reach="8 in")
 
 
 def test_best(command, guard_file, tmp_path):

@@ -22,6 +22,7 @@
 use crate::analysis::rebounds::{REBOUND_SHOTS, Rebound, Spot};
 use crate::dynamics::OutcomeKind;
 use crate::shooter::Profile;
+use crate::units::{self, Dimension};
 use serde::Serialize;
 
 /// The middle half of a quantity.
@@ -87,6 +88,18 @@ pub struct ReboundsAnswer {
     pub floor_distance_m: Quartiles,
     /// Distance where they fall below 9 ft.
     pub contested_distance_m: Quartiles,
+}
+
+/// A height of a rebounder's reach, m.
+///
+/// # Errors
+/// It is no length, or nobody's reach.
+pub fn reach(text: &str) -> Result<f64, String> {
+    let height_m = units::parse(text, Dimension::Length).map_err(|error| error.to_string())?;
+    match (0.5..=4.0).contains(&height_m) {
+        true => Ok(height_m),
+        false => Err("must be from 0.5 m to 4 m (1.7 to 13 ft)".to_owned()),
+    }
 }
 
 /// The name of a kind of miss.

@@ -22,7 +22,9 @@ use super::checks::{CheckAnswer, Checked};
 use super::json::{Provenance, document, in_units};
 use super::nominal_shot::{FieldError, NominalRequest, ShotNote, notes_of_shot};
 use super::probability::Effort;
+use super::rebounds::{self, ReboundsAnswer};
 use super::trace::{TraceAnswer, points};
+use crate::analysis::rebounds::find_rebounds;
 use crate::best_shot::{self, BestShotError};
 use crate::config::{ConfigError, parse_profile};
 use crate::dynamics::StateError;
@@ -71,6 +73,10 @@ pub enum Request {
         /// How P is computed.
         #[serde(default)]
         effort: Effort,
+        /// The height at which a rebound is within reach: with it, the answer says where the
+        /// misses come down.
+        #[serde(default)]
+        reach: Option<String>,
     },
     /// The path of a nominal shot without errors.
     Trace {
@@ -159,7 +165,8 @@ impl Request {
                 profile,
                 shot,
                 effort,
-            } => probability(profile, shot, effort, progress),
+                reach,
+            } => probability(profile, shot, effort, reach.as_deref(), progress),
             Self::Trace { profile, shot } => trace(profile, shot),
         }
     }
@@ -183,6 +190,7 @@ fn probability(
     profile: &ProfileRequest,
     shot: &NominalRequest,
     effort: &Effort,
+    reach: Option<&str>,
     progress: &dyn Progress,
 ) -> Result<Answered, RequestError> {
     let (profile, mut notes) = profile.read()?;
@@ -192,7 +200,18 @@ fn probability(
     let of_request = shot.notes(&profile, &nominal).into_iter();
     let of_shot = of_request.chain(notes_of_shot(&profile, &nominal));
     notes.extend(of_shot.map(Note::Shot));
-    let (answer, _) = effort.probability(&profile, &nominal, None, progress)?;
+    let reach_m = reach.map(rebounds::reach).transpose();
+    let reach_m = reach_m.map_err(|message| {
+        faulty(FieldError {
+            field: "reach",
+            message,
+        })
+    })?;
+    let (mut answer, _) = effort.probability(&profile, &nominal, None, progress)?;
+    if let Some(reach_m) = reach_m.filter(|_| !effort.method.is_grid()) {
+        let found = find_rebounds(&profile, &nominal, answer.provenance.seed, reach_m);
+        answer.rebounds = Some(ReboundsAnswer::new(&profile, &found, reach_m));
+    }
     if answer.target_met == Some(false) {
         notes.push(Note::Imprecise);
     }

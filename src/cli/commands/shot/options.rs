@@ -1,11 +1,11 @@
 //! The options of `bankshot shot`.
 
 use crate::answers::probability::{Effort, Method};
+use crate::answers::rebounds::reach;
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::profile_flags::ProfileOptions;
 use crate::cli::scatter_flags::ScatterOptions;
 use crate::cli::value_parsers::{sample, standard_error};
-use crate::units::{self, Dimension};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -70,15 +70,6 @@ pub(crate) struct ShotOptions {
     /// Print one JSON object instead of text.
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-/// A height of a rebounder's reach, m.
-fn reach(text: &str) -> Result<f64, String> {
-    let height_m = units::parse(text, Dimension::Length).map_err(|error| error.to_string())?;
-    match (0.5..=4.0).contains(&height_m) {
-        true => Ok(height_m),
-        false => Err("must be from 0.5 m to 4 m (1.7 to 13 ft)".to_owned()),
-    }
 }
 
 impl ShotOptions {
