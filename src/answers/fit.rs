@@ -3,8 +3,9 @@
 use super::json::{Answer, Named, Provenance};
 use super::probability::OverDraws;
 use crate::fitting::{
-    ConstantError, FitNote, PopulationPrior, ReleaseDifference, ReliabilityBin, SessionTrend,
-    ShooterFit, Spread, TrackerNoise, VALUE_NAMES, Wilson, constant_errors,
+    AimPrior, ConstantErrorPrior, FitNote, PopulationPrior, ReleaseDifference, ReliabilityBin,
+    SessionTrend, ShooterFit, Spread, StudentSpread, TrackerNoise, UnseenPrior, UnseenSample,
+    VALUE_NAMES, Wilson,
 };
 use crate::measured_shots::source::Source;
 use crate::shooter::ReleaseVariable;
@@ -30,6 +31,8 @@ pub struct FitSource<'a> {
     pub noise: TrackerNoise,
     /// What was known of the shooter before.
     pub prior: PopulationPrior,
+    /// What was known of what no sensor sees.
+    pub unseen: UnseenPrior,
     /// The physics.
     pub physics: String,
     /// Seed of the random numbers.
@@ -42,18 +45,6 @@ pub struct FitSource<'a> {
     pub differences: &'a [ReleaseDifference],
     /// The name of each place; empty where the file does not say.
     pub place_names: &'a [String],
-}
-
-impl FitSource<'_> {
-    /// What constant errors of the tracker would do; empty where no releases were measured.
-    #[must_use]
-    pub fn constant_errors(&self, fit: &ShooterFit) -> Vec<ConstantError> {
-        if self.kind != Source::Releases {
-            return Vec::new();
-        }
-        let noise = self.noise.release_covariance();
-        constant_errors(fit, [0, 1, 2].map(|i| libm::sqrt(noise[(i, i)].max(0.0))))
-    }
 }
 
 /// How many shots went in.
@@ -132,6 +123,8 @@ pub struct PlaceAnswer {
     pub place_scatter: Scatter,
     /// P of the current shot.
     pub probability: OverDraws,
+    /// P of it as it is at the end of the session, where a value drifts; else null.
+    pub probability_at_the_end: Option<OverDraws>,
 }
 
 /// How well tracked flights fit.
@@ -188,20 +181,6 @@ pub struct Tests {
     pub order: Vec<OrderTests>,
 }
 
-/// What a constant error of the tracker would do.
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ConstantErrorAnswer {
-    /// Of which value.
-    pub name: &'static str,
-    /// By how much it reads too high.
-    pub reads_too_high_by: Measure,
-    /// P of the current shot at the first place.
-    pub probability: f64,
-    /// See [`Prediction::made_z`].
-    pub made_z: Option<f64>,
-}
-
 /// A row that was kept out.
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -238,6 +217,8 @@ pub struct SamplerAnswer {
     pub r_hat: f64,
     /// The least effective sample size.
     pub effective_sample_size: f64,
+    /// How evenly what no sensor sees was sampled.
+    pub unseen: Option<UnseenSample>,
 }
 
 /// A named value.
@@ -263,8 +244,8 @@ pub struct ScatterPrior {
     pub sd_of_logarithm: f64,
 }
 
-/// What was known of the shooter before the shots: normal distributions. That of the means is
-/// flat.
+/// What was known before the shots: normal distributions, and t distributions with four degrees of
+/// freedom of what no sensor sees.
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PriorAnswer {
@@ -278,10 +259,16 @@ pub struct PriorAnswer {
     pub growth_of_speed_sd: Spread,
     /// Of a backspin that was not measured.
     pub backspin_mean_rad_s: Spread,
+    /// Of the ring's restitution; null where it was given.
+    pub hoop_restitution: Option<StudentSpread>,
+    /// Scales of the constant errors of the tracker.
+    pub constant_errors: Vec<NamedMeasure>,
+    /// Scales of the aims about the best shot.
+    pub aim: Option<AimPrior>,
 }
 
-impl From<&PopulationPrior> for PriorAnswer {
-    fn from(prior: &PopulationPrior) -> Self {
+impl PriorAnswer {
+    fn new(prior: &PopulationPrior, unseen: &UnseenPrior) -> Self {
         let scatter = (0..VALUE_NAMES.len()).map(|i| ScatterPrior {
             name: format!("{}_sd", VALUE_NAMES[i]),
             median: Measure::si(prior.median_sd[i], dimension(i)),
@@ -293,6 +280,9 @@ impl From<&PopulationPrior> for PriorAnswer {
             fisher_z_of_other_partial_correlations: prior.other_correlations,
             growth_of_speed_sd: prior.growth,
             backspin_mean_rad_s: prior.backspin,
+            hoop_restitution: unseen.ring,
+            constant_errors: constant_errors(unseen.constant_error),
+            aim: unseen.aim,
         }
     }
 }
@@ -345,6 +335,7 @@ fn tracker_errors(kind: Source, noise: &TrackerNoise) -> Vec<NamedMeasure> {
         },
     };
     match kind {
+        Source::Makes => Vec::new(),
         Source::Releases => (0..VALUE_NAMES.len())
             .map(|i| {
                 let name = format!("{}_sd", VALUE_NAMES[i]);
@@ -360,6 +351,25 @@ fn tracker_errors(kind: Source, noise: &TrackerNoise) -> Vec<NamedMeasure> {
             of("position_sd", UnitName::Metres, noise.position_m),
             of("frame_correlation", UnitName::None, noise.frame_correlation),
             of("frames_per_s", UnitName::PerSecond, noise.frames_per_s),
+        ],
+    }
+}
+
+/// The scales of the constant errors of a tracker.
+fn constant_errors(prior: Option<ConstantErrorPrior>) -> Vec<NamedMeasure> {
+    let of = |name: &str, dimension: Dimension, scale: f64| NamedMeasure {
+        name: name.to_owned(),
+        value: Measure::si(scale, dimension),
+    };
+    match prior {
+        None => Vec::new(),
+        Some(ConstantErrorPrior::Release(scales)) => (0..scales.len())
+            .map(|i| of(VALUE_NAMES[i], dimension(i), scales[i]))
+            .collect(),
+        Some(ConstantErrorPrior::Landing([depth, right, entry])) => vec![
+            of("depth", Dimension::Length, depth),
+            of("left_right", Dimension::Length, right),
+            of("entry_angle", Dimension::Angle, entry),
         ],
     }
 }
@@ -389,8 +399,6 @@ pub struct FitAnswer {
     pub residuals: Option<Residuals>,
     /// Of the model's assumptions.
     pub tests: Tests,
-    /// Of the tracker.
-    pub constant_errors: Vec<ConstantErrorAnswer>,
     /// Shots that were fitted.
     pub shots: usize,
     /// Rows that were kept out.
@@ -449,7 +457,6 @@ impl FitAnswer {
                 kurtosis_over_that_of_normal_values: fit.shape.kurtosis_ratio,
                 order: fit.trends.iter().map(OrderTests::from).collect(),
             },
-            constant_errors: constant_error_answers(fit, source),
             shots: posterior.shots,
             rejected: rejected.collect(),
             measured_minus_from_landings: source.differences.iter().map(difference).collect(),
@@ -458,13 +465,14 @@ impl FitAnswer {
                 draws: posterior.draws.len(),
                 r_hat: posterior.r_hat,
                 effective_sample_size: posterior.effective_sample_size,
+                unseen: posterior.unseen,
             },
             weight_of_the_population: Named(
                 weights
                     .map(|(name, weight)| (format!("{name}_sd"), weight))
                     .collect(),
             ),
-            prior: (&source.prior).into(),
+            prior: PriorAnswer::new(&source.prior, &source.unseen),
             source: source.into(),
             provenance: Provenance {
                 seed: source.seed,
@@ -509,18 +517,8 @@ fn place_answer(fit: &ShooterFit, source: &FitSource<'_>, index: usize) -> Place
             height_m: scatter.height_m,
         },
         probability: (&fit.probabilities[index]).into(),
+        probability_at_the_end: fit.at_the_end[index].as_ref().map(Into::into),
     }
-}
-
-fn constant_error_answers(fit: &ShooterFit, source: &FitSource<'_>) -> Vec<ConstantErrorAnswer> {
-    let errors = source.constant_errors(fit).into_iter();
-    let answer = |error: ConstantError| ConstantErrorAnswer {
-        name: VALUE_NAMES[error.value],
-        reads_too_high_by: Measure::si(error.by, dimension(error.value)),
-        probability: error.probability,
-        made_z: error.made_z,
-    };
-    errors.map(answer).collect()
 }
 
 fn difference(difference: &ReleaseDifference) -> Difference {

@@ -152,7 +152,7 @@ impl FittedRows {
         let advice = advise(profile, &fit.posterior, place, progress)?;
         let measured = match fit.source {
             Source::Releases => Measured::Release,
-            Source::Landings | Source::Trajectories => Measured::Landing,
+            Source::Landings | Source::Trajectories | Source::Makes => Measured::Landing,
         };
         let shots = FittedShots::new((profile, &fit.posterior, place), &advice, measured);
         let made_z = |physics: &Physics| {

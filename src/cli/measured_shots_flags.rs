@@ -8,8 +8,9 @@ use super::value_parsers::UnitsArg;
 use crate::answers::fit::FitSource;
 use crate::dynamics::Simulator;
 use crate::fitting::{
-    DragEstimate, FitNote, FitOptions, PopulationPrior, ShooterFit, ShooterFitError, ShooterTest,
-    Tails, TrackedPoint, Tracker, TrackerNoise, fit_drag_coefficient, fit_shooter, tails_of,
+    AimPrior, DragEstimate, FitNote, FitOptions, PopulationPrior, RINGS_OF_GYMS, ShooterFit,
+    ShooterFitError, ShooterTest, Tails, TrackedPoint, Tracker, TrackerNoise, UnseenPrior,
+    fit_drag_coefficient, fit_shooters, tails_of,
 };
 use crate::measured_shots::column_map_proposal::{Proposal, map_proposal, names_sessions};
 use crate::measured_shots::columns::{Columns, Label};
@@ -21,7 +22,7 @@ use crate::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
 use crate::model::league_courts::League;
-use crate::model::{DEFAULT_PRESET, Physics};
+use crate::model::{DEFAULT_PRESET, Physics, SolidId};
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
 use std::collections::BTreeSet;
@@ -96,6 +97,10 @@ pub(crate) struct MeasuredShotsOptions {
     /// Backspin, if it was not measured [default: 2.5 rev/s with a standard deviation of 0.25].
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
+    /// Restitution of this gym's ring, where it was measured [default: fitted; 0.65 without
+    /// results].
+    #[arg(long, value_name = "NUMBER", value_parser = ring)]
+    pub(crate) ring: Option<f64>,
     /// Distribution of the releases: normal, student (heavier tails), or auto (student if the shots
     /// have too many outliers for a normal distribution).
     #[arg(long, value_name = "NAME", default_value = "auto")]
@@ -141,6 +146,8 @@ pub(crate) struct MeasuredFile {
     pub(crate) physics_name: String,
     /// The text of the `[physics]` table.
     pub(crate) physics_toml: String,
+    /// Whether the ring was given; otherwise it is fitted.
+    pub(crate) is_ring_known: bool,
     pub(crate) noise: TrackerNoise,
     pub(crate) tracker: (String, String),
     pub(crate) file: PathBuf,
@@ -384,7 +391,14 @@ impl MeasuredShotsOptions {
             .physics
             .clone()
             .unwrap_or_else(|| DEFAULT_PRESET.to_owned());
-        let (physics, _) = load_physics(&physics_name)?;
+        let (mut physics, _) = load_physics(&physics_name)?;
+        let mut physics_toml = physics_table(&physics_name)?;
+        let is_ring_known = self.ring.is_some() || says_the_ring(&physics_toml);
+        if let Some(ring) = self.ring {
+            let set = physics.set_restitution_on(SolidId::Ring, ring);
+            set.map_err(|error| Failure::usage(format!("--ring {ring}: {error}")))?;
+            physics_toml = with_ring(&physics_toml, ring);
+        }
         let simulator = Simulator::new(&physics).map_err(Failure::usage)?;
         let (mut noise, mut tracker) = self.noise(source)?;
         let backspin_rad_s = quantity("backspin", self.backspin.as_ref(), Dimension::Spin)?;
@@ -416,7 +430,8 @@ impl MeasuredShotsOptions {
         let bytes = std::fs::read(path).map_err(|error| Failure::io(path.display(), &error))?;
         Ok(MeasuredFile {
             shooters,
-            physics_toml: physics_table(&physics_name)?,
+            physics_toml,
+            is_ring_known,
             physics,
             physics_name,
             noise,
@@ -620,6 +635,37 @@ fn tracker_of_file(text: &str, source: Source) -> Result<TrackerNoise, String> {
     Ok(noise)
 }
 
+/// The restitution of a ring.
+fn ring(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse()
+        .ok()
+        .filter(|number| (0.2..=0.98).contains(number));
+    number.ok_or_else(|| "must be a number from 0.2 to 0.98".to_owned())
+}
+
+/// Whether a `[physics]` table has a ring of its own, or that of the paper.
+fn says_the_ring(table: &str) -> bool {
+    const KEYS: [&str; 4] = ["restitution", "hoop_restitution", "damping", "hoop_damping"];
+    let document: Option<DocumentMut> = table.parse().ok();
+    let physics = document
+        .as_ref()
+        .and_then(|document| document.get("physics"));
+    physics.is_some_and(|physics| {
+        let preset = physics.get("preset").and_then(|preset| preset.as_str());
+        preset == Some("paper") || KEYS.iter().any(|key| physics.get(key).is_some())
+    })
+}
+
+/// A `[physics]` table with this restitution of the ring.
+pub(crate) fn with_ring(table: &str, restitution: f64) -> String {
+    let Ok(mut document) = table.parse::<DocumentMut>() else {
+        return table.to_owned();
+    };
+    document["physics"]["hoop_restitution"] = toml_edit::value(restitution);
+    document.to_string()
+}
+
 /// The `[physics]` table of a preset or a file.
 fn physics_table(name: &str) -> Result<String, Failure> {
     if crate::model::Preset::named(name).is_some() {
@@ -642,6 +688,7 @@ impl MeasuredFile {
             tracker: self.tracker.clone(),
             noise: self.noise,
             prior: self.prior(),
+            unseen: self.unseen_prior(shots),
             physics: self.physics_name.clone(),
             seed: self.seed,
             is_shooter_named: !shots.name.is_empty(),
@@ -666,6 +713,7 @@ impl MeasuredFile {
             prior: self.prior(),
             spin: shots.spin,
             tails: match self.tails {
+                _ if shots.source == Source::Makes => Tails::Normal,
                 TailsArg::Auto => tails_of(&shots.shots, shots.places.len()),
                 TailsArg::Normal => Tails::Normal,
                 TailsArg::Student => Tails::Student,
@@ -675,32 +723,66 @@ impl MeasuredFile {
         }
     }
 
+    /// What is known of what no sensor sees.
+    pub(crate) fn unseen_prior(&self, shots: &ShooterShots) -> UnseenPrior {
+        UnseenPrior {
+            ring: (!self.is_ring_known).then_some(RINGS_OF_GYMS),
+            ring_of_others: None,
+            constant_error: match shots.source {
+                Source::Makes => None,
+                source => Some(self.noise.constant_error(source == Source::Releases)),
+            },
+            aim: Some(AimPrior::POPULATION),
+        }
+    }
+
     /// Fits one shooter.
     pub(crate) fn fit(
         &self,
         shots: &ShooterShots,
         physics: &Physics,
     ) -> Result<ShooterFit, ShooterFitError> {
+        let mut fits = self.fit_all(std::slice::from_ref(shots), physics, &|| ());
+        fits.swap_remove(0)
+    }
+
+    /// Fits shooters, who shot at one ring. `done` is called after each.
+    pub(crate) fn fit_all(
+        &self,
+        shooters: &[ShooterShots],
+        physics: &Physics,
+        done: &(dyn Fn() + Sync),
+    ) -> Vec<Result<ShooterFit, ShooterFitError>> {
         // Two fits of one file must not have one title.
-        let parts: Vec<String> = std::iter::once(self.name_of(shots))
-            .chain(self.sessions.clone())
-            .collect();
-        let name = parts.join(", ");
-        let test = ShooterTest {
-            name: &name,
-            places: &shots.places,
-            place_scatter: &shots.place_scatter,
-            shots: &shots.shots,
-            sessions: &shots.sessions,
-            speed_unit: shots.speed_unit,
-            chi_squares: &shots.chi_squares,
+        let title = |shots| {
+            let parts = std::iter::once(self.name_of(shots)).chain(self.sessions.clone());
+            parts.collect::<Vec<String>>().join(", ")
         };
-        let mut fit = fit_shooter(&test, physics, &self.fit_options(shots))?;
+        let names: Vec<String> = shooters.iter().map(title).collect();
+        let tests: Vec<_> = std::iter::zip(shooters, &names)
+            .map(|(shots, name)| {
+                let test = ShooterTest {
+                    name,
+                    places: &shots.places,
+                    place_scatter: &shots.place_scatter,
+                    shots: &shots.shots,
+                    sessions: &shots.sessions,
+                    speed_unit: shots.speed_unit,
+                    chi_squares: &shots.chi_squares,
+                };
+                (test, self.fit_options(shots), self.unseen_prior(shots))
+            })
+            .collect();
+        let mut fits = fit_shooters(&tests, physics, done);
         // Under another physics it is known that the drag is another one.
         if *physics == self.physics {
-            fit.notes.extend(self.drag_note(shots));
+            for (fit, shots) in fits.iter_mut().zip(shooters) {
+                if let Ok(fit) = fit {
+                    fit.notes.extend(self.drag_note(shots));
+                }
+            }
         }
-        Ok(fit)
+        fits
     }
 
     /// The drag coefficient that the flights of shooters fit best; `None` where they do not tell

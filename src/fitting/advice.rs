@@ -162,7 +162,7 @@ pub fn advise(
         .map(|best| shooting.steps(&usual, &values_of(&best.nominal), measured))
         .unzip();
     let change = change.unwrap_or_default();
-    let advised = |draw: &Draw| change.of_draw(draw, place);
+    let advised = |draw: &Draw| change.of_draw(draw, &typical, place);
     let shots = shooting.with(change);
     let advised_probability = shots.probabilities.interval();
     let mut training = training_gains(shots, &draws, place, advised);

@@ -183,9 +183,15 @@ impl Change {
         self
     }
 
-    /// The release of a draw with this change.
-    pub(super) fn of_draw(&self, draw: &Draw, place: usize) -> Values {
-        std::array::from_fn(|i| self.0[i].unwrap_or(draw.means[place][i]))
+    /// The release of a draw with this change. A shooter changes what the tracker reads: where its
+    /// constant error is greater than that of the typical draw, the release is less by that.
+    pub(super) fn of_draw(&self, draw: &Draw, typical: &Draw, place: usize) -> Values {
+        std::array::from_fn(|i| match self.0[i] {
+            Some(value) => {
+                value + typical.constant_errors[place][i] - draw.constant_errors[place][i]
+            }
+            None => draw.means[place][i],
+        })
     }
 }
 
@@ -234,7 +240,7 @@ impl<'a> Shooting<'a> {
 
     fn simulate(&self, change: Change) -> ChangedShots {
         let place = self.place;
-        let mean = |draw: &Draw| change.of_draw(draw, place);
+        let mean = |draw: &Draw| change.of_draw(draw, self.typical, place);
         let means: Vec<Values> = self.draws.iter().map(mean).collect();
         let shots = WeightedShots::simulate(
             self.profile,
@@ -369,7 +375,7 @@ impl<'a> Shooting<'a> {
             // On top of what is supported so far: what is dropped must not carry a later step.
             let with = advised.and(cause, &change);
             let difference = self.difference(with, advised);
-            let release = with.of_draw(self.typical, self.place);
+            let release = with.of_draw(self.typical, self.typical, self.place);
             let (from, to) = (usual[cause.0], release[cause.0]);
             steps.push(AdviceStep {
                 cause,
@@ -396,7 +402,7 @@ impl<'a> Shooting<'a> {
         }
         let speed_and_pitch = advised.0[0].zip(advised.0[1]);
         let steps = AdviceSteps {
-            advised: advised.of_draw(self.typical, self.place),
+            advised: advised.of_draw(self.typical, self.typical, self.place),
             is_changed: advised.0.map(|value| value.is_some()),
             gain: self.gain(advised, none),
             alone: speed_and_pitch.map(|(speed, pitch)| {
@@ -459,10 +465,12 @@ impl Shooting<'_> {
     /// The share of the draws whose usual value lies on the same side of the advised one as the
     /// typical `usual` value.
     fn same_side(&self, usual: f64, advised: f64, cause: Cause) -> f64 {
+        let known = self.typical.constant_errors[self.place][cause.0];
+        // As the tracker reads them: the advice is a change of that.
         let of_draws = self
             .draws
             .iter()
-            .map(|draw| draw.means[self.place][cause.0]);
+            .map(|draw| draw.measured_mean(self.place)[cause.0] - known);
         let same = of_draws.filter(|mean| (advised - mean) * (advised - usual) > 0.0);
         same.count() as f64 / self.draws.len() as f64
     }

@@ -6,18 +6,22 @@
 //! Owen, *Monte Carlo theory, methods and examples*, 2013, chapter 9). All draws share the shots,
 //! so their differences hardly have a numerical error.
 //!
+//! Where draws have rings of their own, each shot is simulated under three of them, and P of a draw
+//! is the parabola through its P under these.
+//!
 //! Where draws have heavier tails than normal ones, the shots are a mixture of three normal
 //! distributions, two of them wider, so that no far shot has a great weight.
 
 use super::interval::Interval;
 use super::measured_release::{Values, nominal_of};
 use super::posterior::Draw;
-use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed};
+use crate::dynamics::{BatchWorkspace, ReleaseWithoutSpeed, Simulator};
 use crate::math::exponential::exponential;
 use crate::math::normal_distribution::quantile;
 use crate::math::real::{Real, SimdReal};
 use crate::math::simd::F64x8;
 use crate::math::sobol::{ScrambleKey, Sobol};
+use crate::model::SolidId;
 use crate::shooter::Profile;
 use fearless_simd::{Level, Simd};
 use nalgebra::SMatrix;
@@ -42,9 +46,62 @@ pub struct WeightedShots {
     deviations: [Vec<f64>; 4],
     /// Twice the logarithm of the density of each shot's deviations; a common constant is left out.
     log_densities: Vec<f64>,
-    /// 1 for a made shot, else 0.
-    made: Vec<f64>,
+    /// The restitutions of the ring; a single one where no draw has its own.
+    rings: Vec<f64>,
+    /// For each ring, 1 for a made shot, else 0.
+    made: Vec<Vec<f64>>,
     level: Level,
+}
+
+/// Rings of a sample, at most; and how far they lie apart, in standard deviations of the draws'.
+const RINGS: usize = 3;
+const RING_STEP: f64 = 1.5;
+/// Rings that differ by less are one.
+const SAME_RING: f64 = 1e-4;
+/// What the ring of a gym may have.
+pub(super) const RING_RANGE: (f64, f64) = (0.2, 0.98);
+
+/// The simulator of a profile under a ring of this restitution, or under its own.
+pub(super) fn under_ring(profile: &Profile, restitution: Option<f64>) -> Simulator {
+    let mut physics = profile.physics().clone();
+    if let Some(restitution) = restitution {
+        let (low, high) = RING_RANGE;
+        let set = physics.set_restitution_on(SolidId::Ring, restitution.clamp(low, high));
+        debug_assert!(set.is_ok(), "the range is that of restitutions");
+    }
+    Simulator::new(&physics).unwrap_or_else(|_| profile.simulator().clone())
+}
+
+/// The rings under which shots are simulated for draws.
+fn rings_of(profile: &Profile, draws: &[Draw]) -> Vec<f64> {
+    let of_draws: Vec<f64> = draws
+        .iter()
+        .filter_map(|draw| draw.ring_restitution)
+        .collect();
+    if of_draws.is_empty() {
+        return vec![profile.physics().restitution_on(SolidId::Ring)];
+    }
+    let Interval { mean, sd, .. } = Interval::of(of_draws);
+    let step = RING_STEP * sd;
+    let (low, high) = RING_RANGE;
+    if step < SAME_RING {
+        return vec![mean];
+    }
+    let middle = mean.clamp(low + step, (high - step).max(low + step));
+    vec![middle - step, middle, middle + step]
+}
+
+/// The weights of the values at `nodes` in that at `x` of the polynomial through them.
+fn lagrange(nodes: &[f64], x: f64) -> [f64; RINGS] {
+    std::array::from_fn(|k| match nodes.get(k) {
+        None => 0.0,
+        Some(node) => {
+            let others = nodes.iter().enumerate().filter(|(other, _)| *other != k);
+            others
+                .map(|(_, other)| (x - other) / (node - other))
+                .product()
+        }
+    })
 }
 
 /// Twice the logarithm of the density that deviations are drawn from, without a constant.
@@ -169,7 +226,12 @@ impl WeightedShots {
         let release = profile.release(&nominal_of(&centre));
         let position_m = release.position_m();
         let is_heavy = draws.iter().any(|draw| draw.tail_weight > 0.0);
-        let parts: Vec<(Vec<Values>, Vec<f64>)> = (0..REPLICATES as u64)
+        let rings = rings_of(profile, draws);
+        let under: Vec<Simulator> = rings
+            .iter()
+            .map(|&ring| under_ring(profile, Some(ring)))
+            .collect();
+        let parts: Vec<(Vec<Values>, Vec<Vec<f64>>)> = (0..REPLICATES as u64)
             .into_par_iter()
             .map_init(BatchWorkspace::default, |workspace, replicate| {
                 let scramble = sobol.scrambled(ScrambleKey { seed, replicate });
@@ -192,23 +254,30 @@ impl WeightedShots {
                             .state(shot.speed_m_s, shot.backspin_rad_s)
                     })
                     .collect();
-                let verdicts = profile.simulator().finite_verdicts(&starts, workspace);
-                let made = verdicts.iter();
-                let made = made
-                    .map(|verdict| f64::from(u8::from(verdict.made)))
-                    .collect();
+                let mut made_under = |simulator: &Simulator| {
+                    let verdicts = simulator.finite_verdicts(&starts, workspace);
+                    let made = verdicts.iter().map(|verdict| verdict.made);
+                    made.map(|made| f64::from(u8::from(made)))
+                        .collect::<Vec<f64>>()
+                };
+                let made = under.iter().map(&mut made_under).collect();
                 (deviations, made)
             })
             .collect();
-        let (deviations, made): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        let (deviations, made): (Vec<_>, Vec<Vec<Vec<f64>>>) = parts.into_iter().unzip();
         let deviations = deviations.concat();
+        let made_under = |ring: usize| {
+            let of_ring = made.iter().flat_map(|replicate| &replicate[ring]);
+            of_ring.copied().collect()
+        };
         let density = |z: &Values| twice_log_density(z, is_heavy);
         Self {
             centre,
             scales,
             log_densities: deviations.par_iter().map(density).collect(),
             deviations: std::array::from_fn(|i| deviations.iter().map(|z| z[i]).collect()),
-            made: made.concat(),
+            made: (0..rings.len()).map(made_under).collect(),
+            rings,
             level: Level::new(),
         }
     }
@@ -223,7 +292,7 @@ impl WeightedShots {
     ) -> DrawProbabilities {
         let all: Vec<[(f64, f64); REPLICATES]> = draws
             .par_iter()
-            .map(|draw| self.weighted_counts(&mean(draw), &factor(draw), draw.tail_weight))
+            .map(|draw| self.weighted_counts(draw, &mean(draw), &factor(draw)))
             .collect();
         let share = |counts: &mut dyn Iterator<Item = (f64, f64)>| {
             let (mut made, mut total) = (0.0, 0.0);
@@ -231,7 +300,12 @@ impl WeightedShots {
                 made += m;
                 total += t;
             }
-            if total > 0.0 { made / total } else { 0.0 }
+            // A parabola may leave the range.
+            if total > 0.0 {
+                (made / total).clamp(0.0, 1.0)
+            } else {
+                0.0
+            }
         };
         DrawProbabilities {
             of_draws: all
@@ -252,9 +326,9 @@ impl WeightedShots {
     /// The weight of the made shots and of all shots of each replicate.
     fn weighted_counts(
         &self,
+        draw: &Draw,
         mean: &Values,
         factor: &SMatrix<f64, 4, 4>,
-        tail_weight: f64,
     ) -> [(f64, f64); REPLICATES] {
         // u = L^-1 (x - mean), with x = centre + scales z, is lower triangular in z.
         let Some(inverse) = factor.solve_lower_triangular(&SMatrix::<f64, 4, 4>::identity()) else {
@@ -271,28 +345,39 @@ impl WeightedShots {
         let density = TargetDensity {
             offset,
             slopes,
-            tail_weight,
+            tail_weight: draw.tail_weight,
         };
-        let points = self.made.len() / REPLICATES;
+        let parts = match draw.ring_restitution {
+            Some(ring) if self.rings.len() > 1 => lagrange(&self.rings, ring),
+            // Of a sample for draws with rings, that in the middle.
+            _ => std::array::from_fn(|k| f64::from(u8::from(k == self.rings.len() / 2))),
+        };
+        let points = self.log_densities.len() / REPLICATES;
         std::array::from_fn(|replicate| {
             let range = replicate * points..(replicate + 1) * points;
-            fearless_simd::dispatch!(self.level, simd => self.weight_sums(simd, &density, range))
+            let (made, total) = fearless_simd::dispatch!(
+                self.level,
+                simd => self.weight_sums(simd, &density, range)
+            );
+            let made = made.iter().zip(parts).map(|(made, part)| part * made);
+            (made.sum(), total)
         })
     }
 
-    /// The weight of the made shots and of all shots of a range, whose length is a multiple of the
-    /// lanes.
+    /// The weight of the shots that are made under each ring, and of all shots of a range, whose
+    /// length is a multiple of the lanes.
     #[inline(always)]
     fn weight_sums<S: Simd>(
         &self,
         simd: S,
         density: &TargetDensity,
         range: Range<usize>,
-    ) -> (f64, f64) {
+    ) -> ([f64; RINGS], f64) {
         simd.vectorize(
             #[inline(always)]
             || {
-                let mut sums = [F64x8::broadcast(simd, 0.0); 2];
+                let mut made = [F64x8::broadcast(simd, 0.0); RINGS];
+                let mut total = F64x8::broadcast(simd, 0.0);
                 for first in range.step_by(LANES) {
                     let at = |values: &[f64]| F64x8::load(simd, &values[first..]);
                     // Not by `map`: its closure is not inlined, which takes twice the time.
@@ -301,15 +386,17 @@ impl WeightedShots {
                     let weight = exponential(
                         (density.twice_logarithm(simd, z) - at(&self.log_densities)) * 0.5,
                     );
-                    sums[0] += weight * at(&self.made);
-                    sums[1] += weight;
+                    for (made, of_ring) in made.iter_mut().zip(&self.made) {
+                        *made += weight * at(of_ring);
+                    }
+                    total += weight;
                 }
-                let [made, total] = sums.map(|lanes| {
+                let sum = |lanes: F64x8<S>| {
                     let mut each = [0.0; LANES];
                     lanes.store(&mut each);
                     each.iter().sum::<f64>()
-                });
-                (made, total)
+                };
+                (made.map(sum), sum(total))
             },
         )
     }

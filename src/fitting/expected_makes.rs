@@ -157,7 +157,8 @@ impl ExpectedMakes {
     }
 }
 
-/// The release of a measured shot, given the shooter: mean and covariance.
+/// The release of a measured shot, given the shooter and the tracker's constant error: mean and
+/// covariance.
 pub(super) fn release_given(
     shot: &MeasuredRelease,
     draw: &Draw,
@@ -167,7 +168,8 @@ pub(super) fn release_given(
     let mut prior = factor * factor.transpose();
     let mean = nalgebra::Vector4::from(draw.means[shot.place]);
     let mut noise = shot.noise;
-    let mut values = nalgebra::Vector4::from(shot.values);
+    let error = nalgebra::Vector4::from(draw.constant_errors[shot.place]);
+    let mut values = nalgebra::Vector4::from(shot.values) - error;
     for i in measured_values..4 {
         // A measurement that says nothing.
         noise[(i, i)] = 1e9;
@@ -316,6 +318,27 @@ impl ExpectedMakes {
         let here = self.shots.iter().filter(|shot| shot.place == place);
         summary(here.cloned().collect())
     }
+}
+
+/// Shots of which no more is known than their place and whether they went in; `chance` is P at a
+/// place.
+pub(super) fn makes_of_counts(
+    shots: &[MeasuredRelease],
+    typical: &Draw,
+    chance: impl Fn(usize) -> f64,
+) -> ExpectedMakes {
+    let chances: Vec<f64> = (0..typical.means.len()).map(chance).collect();
+    let of_shot = |shot: &MeasuredRelease| ShotChance {
+        row: shot.row,
+        release: typical.means[shot.place],
+        release_sd: typical.sds_at(shot.place),
+        place: shot.place,
+        chance: chances[shot.place],
+        swish_chance: 0.0,
+        distance: 0.0,
+        made: shot.made,
+    };
+    summary(shots.iter().map(of_shot).collect())
 }
 
 fn summary(shots: Vec<ShotChance>) -> ExpectedMakes {

@@ -220,6 +220,15 @@ pub struct ShapeTest {
     pub kurtosis_ratio: f64,
 }
 
+impl ShapeTest {
+    /// Where no release was measured.
+    pub(super) const NONE: Self = Self {
+        skewness_p: 1.0,
+        kurtosis_p: 1.0,
+        kurtosis_ratio: 1.0,
+    };
+}
+
 /// Mardia's tests (Biometrika 57 (1970) 519) of speed, pitch and polar angle, with the normal
 /// approximations of both statistics. Each shot is taken from its own place's mean.
 #[must_use]

@@ -12,9 +12,12 @@
 mod advice;
 mod advice_steps;
 mod angle_over_draws;
+mod autocorrelation;
+mod best_aims;
 mod chain_diagnostics;
 mod constant_error;
 mod contradiction;
+mod current_form;
 mod dispersion_posterior;
 mod draw_probabilities;
 mod expected_makes;
@@ -22,8 +25,12 @@ mod fit_checks;
 mod fit_note;
 mod fitted_profile;
 mod flight_fit;
+mod importance;
 mod interval;
+mod joint_posterior;
 mod landing;
+mod makes_alone;
+mod makes_likelihood;
 mod measured_release;
 mod noise_of_tracks;
 mod other_release_height;
@@ -42,7 +49,7 @@ mod unmeasured_parameter_likelihood;
 pub use advice::{Advice, KindComparison, TrainingGain, advise, usual_probabilities};
 pub use advice_steps::{AdviceStep, AdviceSteps, AloneGains, Cause, SAME_SPEED_M_S, Support};
 pub use angle_over_draws::{AngleOverDraws, best_angles_of_draws};
-pub use constant_error::{ConstantError, constant_errors};
+pub use best_aims::BestAims;
 pub use contradiction::Contradiction;
 pub use dispersion_posterior::is_speed_scatter_possible;
 pub use draw_probabilities::{DrawProbabilities, WeightedShots};
@@ -59,6 +66,7 @@ pub use fitted_profile::fitted_profile;
 pub use flight_fit::{
     DragEstimate, FlightFit, FlightFitError, TrackedPoint, fit_drag_coefficient, fit_flight,
 };
+pub use importance::UnseenSample;
 pub use interval::Interval;
 pub use landing::{
     CENTRE_DEPTH_M, Landing, LandingError, landing_of, own_path, release_of_landing,
@@ -71,13 +79,16 @@ pub use measured_release::{
 pub use noise_of_tracks::noise_of_tracks;
 pub use other_release_height::values_at_height;
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
-pub use prior::{PopulationPrior, Spread};
+pub use prior::{
+    AimPrior, ConstantErrorPrior, PopulationPrior, RINGS_OF_GYMS, Spread, StudentSpread,
+    UnseenPrior,
+};
 pub use session_comparison::{
-    POWER, ProbabilityChange, SessionComparison, TWO_SIDED_95, compare_probabilities,
-    compare_sessions, probability_change,
+    DAILY_FORM, POWER, ProbabilityChange, SessionComparison, TWO_SIDED_95, compare_probabilities,
+    compare_sessions, probability_change, share_unseen,
 };
 pub use session_trends::{SessionTrend, session_names, trends};
-pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter};
+pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter, fit_shooters};
 pub use shots_under_physics::{FittedShots, Measured, ShotsUnderPhysics};
 pub use test_design::{DesignRow, SessionError, design, simulated_test};
 pub use tracked_flight_noise::tracked_flight_noise;

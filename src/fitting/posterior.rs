@@ -2,6 +2,7 @@
 
 use super::chain_diagnostics::ParameterChains;
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
+use super::importance::UnseenSample;
 use super::interval::Interval;
 use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
 use super::prior::{PopulationPrior, Spread};
@@ -9,7 +10,7 @@ use super::student_posterior::StudentPosterior;
 use crate::math::normal_distribution::quantile;
 use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};
 use hammer_and_sample::{MinChainLen, Move, Params, Serial, Stretch, sample};
-use nalgebra::SMatrix;
+use nalgebra::{Matrix3, SMatrix};
 use rand::rngs::ChaCha12Rng;
 use rand::{Rng, RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -41,6 +42,8 @@ pub enum SpinSource {
     Assumed,
     /// So are those of the direction: a camera from the side sees neither.
     AssumedWithDirection,
+    /// No value was measured: makes alone.
+    NothingMeasured,
 }
 
 impl SpinSource {
@@ -50,7 +53,7 @@ impl SpinSource {
         match self {
             Self::Measured => "measured",
             Self::Given => "given",
-            Self::Assumed | Self::AssumedWithDirection => "assumed",
+            Self::Assumed | Self::AssumedWithDirection | Self::NothingMeasured => "assumed",
         }
     }
 
@@ -61,6 +64,7 @@ impl SpinSource {
             Self::Measured => 4,
             Self::Given | Self::Assumed => 3,
             Self::AssumedWithDirection => 2,
+            Self::NothingMeasured => 0,
         }
     }
 
@@ -121,6 +125,11 @@ pub struct Draw {
     pub speed_coefficients: [f64; 3],
     /// One over the degrees of freedom of the releases' t distribution; 0 where they are normal.
     pub tail_weight: f64,
+    /// The restitution of the ring; `None` for that of the physics.
+    pub ring_restitution: Option<f64>,
+    /// By how much the tracker reads the values of every shot too high, at each place: the aims are
+    /// the measured ones less this.
+    pub constant_errors: Vec<Values>,
     /// The Cholesky factor of the covariance of the releases at each place.
     pub(super) factors: Vec<SMatrix<f64, 4, 4>>,
 }
@@ -147,11 +156,13 @@ impl Draw {
             })
             .collect();
         Self {
+            constant_errors: vec![Values::default(); means.len()],
             means,
             sds,
             correlation,
             speed_coefficients,
             tail_weight: 0.0,
+            ring_restitution: None,
             factors,
         }
     }
@@ -164,6 +175,53 @@ impl Draw {
             tail_weight,
             ..self
         }
+    }
+
+    /// The draw with this restitution of the ring.
+    #[must_use]
+    pub fn with_ring(self, ring_restitution: Option<f64>) -> Self {
+        Self {
+            ring_restitution,
+            ..self
+        }
+    }
+
+    /// The draw where a tracker that reads all values too high by these measured it.
+    #[must_use]
+    pub(crate) fn with_constant_errors(self, constant_errors: Vec<Values>) -> Self {
+        Self {
+            constant_errors,
+            ..self
+        }
+    }
+
+    /// The draw about other aims, where deviations of speed, pitch and polar angle turn by a
+    /// matrix.
+    #[must_use]
+    pub(super) fn turned(&self, by: &Matrix3<f64>, means: Vec<Values>) -> Self {
+        let mut turn = SMatrix::<f64, 4, 4>::identity();
+        turn.fixed_view_mut::<3, 3>(0, 0).copy_from(by);
+        let scaled = SMatrix::from_diagonal(&self.sds.into());
+        let covariance = turn * scaled * self.correlation * scaled * turn.transpose();
+        let sds: Values = std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt());
+        let correlation = SMatrix::from_fn(|i, j| match i == j {
+            true => 1.0,
+            false => covariance[(i, j)] / (sds[i] * sds[j]).max(f64::MIN_POSITIVE),
+        });
+        let growth = if self.sds[0] > 0.0 {
+            sds[0] / self.sds[0]
+        } else {
+            1.0
+        };
+        let coefficients = self.speed_coefficients.map(|c| c * growth);
+        Self::new(means, sds, correlation, coefficients).with_tail_weight(self.tail_weight)
+    }
+
+    /// The aim at a place as the tracker reads it.
+    #[must_use]
+    pub fn measured_mean(&self, place: usize) -> Values {
+        let (mean, error) = (&self.means[place], &self.constant_errors[place]);
+        std::array::from_fn(|i| mean[i] + error[i])
     }
 
     /// A draw with values of single precision, far below what shots resolve. A value that was
@@ -179,6 +237,8 @@ impl Draw {
             self.speed_coefficients.map(round),
         )
         .with_tail_weight(round(self.tail_weight))
+        .with_ring(self.ring_restitution.map(round))
+        .with_constant_errors(self.constant_errors.iter().map(|e| e.map(round)).collect())
     }
 
     /// A draw with the scatter about one other aim.
@@ -191,6 +251,7 @@ impl Draw {
             self.speed_coefficients,
         )
         .with_tail_weight(self.tail_weight)
+        .with_ring(self.ring_restitution)
     }
 
     /// The standard deviations at a place.
@@ -260,6 +321,8 @@ pub struct Posterior {
     pub growth_terms: usize,
     /// The number of shots.
     pub shots: usize,
+    /// How evenly what no sensor sees was sampled; `None` of flights alone.
+    pub unseen: Option<UnseenSample>,
 }
 
 impl Posterior {
@@ -290,6 +353,12 @@ impl Posterior {
             correlation,
             speed_coefficients: std::array::from_fn(|k| mean(&|d| d.speed_coefficients[k]) * scale),
             tail_weight: mean(&|d| d.tail_weight),
+            ring_restitution: self.draws[0]
+                .ring_restitution
+                .map(|_| mean(&|d| d.ring_restitution.unwrap_or_default())),
+            constant_errors: (0..places)
+                .map(|p| std::array::from_fn(|i| mean(&|d| d.constant_errors[p][i])))
+                .collect(),
             factors: (0..places)
                 .map(|p| {
                     let covariance: SMatrix<f64, 4, 4> = self
@@ -320,6 +389,12 @@ pub enum FitError {
     /// The covariance of the measurements is not positive definite.
     #[error("the shots have no scatter that could be fitted: they are identical or lie on a line")]
     NoScatter,
+    /// No usual shot from a place goes in.
+    #[error("no usual shot from place {place} goes in; check its distance and the release height")]
+    NoShot {
+        /// The number of the place.
+        place: usize,
+    },
 }
 
 /// Steps along the difference of two walkers (ter Braak, Stat. Comput. 16 (2006) 239), and every
@@ -364,6 +439,7 @@ pub fn fit(
         SpinSource::Measured => fit_values::<4>(shots, places, options),
         SpinSource::Given | SpinSource::Assumed => fit_values::<3>(shots, places, options),
         SpinSource::AssumedWithDirection => fit_values::<2>(shots, places, options),
+        SpinSource::NothingMeasured => Err(FitError::NoScatter),
     }
 }
 
@@ -463,6 +539,7 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
                 prior_weights: weights,
                 growth_terms: model.normal().growth_terms,
                 shots: shots.len(),
+                unseen: None,
             });
         }
         if steps >= FIRST_STEPS << DOUBLINGS {

@@ -63,12 +63,100 @@ impl PopulationPrior {
         other_correlations: Spread { mean: 0.0, sd: 0.3 },
         growth: Spread { mean: 0.0, sd: 0.5 },
         backspin: Spread {
-            mean: 2.5 * REV_RAD,
-            sd: 0.25 * REV_RAD,
+            mean: 2.25 * REV_RAD,
+            sd: 0.4 * REV_RAD,
         },
         aim: Spread {
             mean: 0.0,
             sd: 0.4 * DEGREE_RAD,
         },
+    };
+}
+
+/// Student's t distribution with four degrees of freedom.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StudentSpread {
+    /// Its middle.
+    pub middle: f64,
+    /// Its scale: half of it is within 0.74 of these, 95 % within 2.78.
+    pub scale: f64,
+}
+
+impl StudentSpread {
+    /// The normal likelihood that turns this into a distribution with this mean and standard
+    /// deviation, as if it were normal; `None` where it is no narrower.
+    #[must_use]
+    pub fn likelihood(&self, mean: f64, sd: f64) -> Option<Spread> {
+        // The variance of t with four degrees of freedom is 2.
+        let own = 1.0 / (2.0 * self.scale * self.scale);
+        let precision = 1.0 / (sd * sd) - own;
+        (precision > 0.0).then(|| Spread {
+            mean: (mean / (sd * sd) - self.middle * own) / precision,
+            sd: 1.0 / precision.sqrt(),
+        })
+    }
+}
+
+/// The constant error of a tracker: by how much it reads all shots too high, which no shot shows.
+/// Each is t distributed about 0 with this scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ConstantErrorPrior {
+    /// Of speed (m/s), pitch and polar angle (rad).
+    Release([f64; 3]),
+    /// Of depth, left and right (m), entry angle (rad) of the landing.
+    Landing([f64; 3]),
+}
+
+/// What is known, before any make, of what no sensor sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnseenPrior {
+    /// The restitution of the ring; `None` where it was measured or given: that of the physics.
+    pub ring: Option<StudentSpread>,
+    /// What the shots of others under the same ring say of it.
+    pub ring_of_others: Option<Spread>,
+    /// The constant error of the tracker; `None` for none.
+    pub constant_error: Option<ConstantErrorPrior>,
+    /// How far shooters aim from their best shot; `None` for a flat prior.
+    pub aim: Option<AimPrior>,
+}
+
+/// How far the aims of shooters lie from their best shot: scales of a t distribution with four
+/// degrees of freedom, in common for all values and places, so that a shooter who is far off in one
+/// may be so in the others.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AimPrior {
+    /// Of the speed, from the best one for the shooter's own angle, m/s.
+    pub speed_m_s: f64,
+    /// Of the angle, from the best one, rad.
+    pub pitch_rad: f64,
+    /// Of the direction, from the best one, rad.
+    pub polar_rad: f64,
+}
+
+impl AimPrior {
+    /// That of the population (assumed; `docs/fitting.md` has the sources).
+    pub const POPULATION: Self = Self {
+        speed_m_s: 0.08 * FOOT_M,
+        pitch_rad: 2.0 * DEGREE_RAD,
+        polar_rad: 0.4 * DEGREE_RAD,
+    };
+}
+
+/// The rings of gyms. One hoop was measured near 0.70; rule books let a ring absorb 35 to 50 % of a
+/// ball's energy, and estimates with two masses go down to 0.41. 95 % are from 0.46 to 0.84.
+pub const RINGS_OF_GYMS: StudentSpread = StudentSpread {
+    middle: 0.65,
+    scale: 0.07,
+};
+
+impl UnseenPrior {
+    /// Nothing but the flights: ring and tracker are right, any aim is as likely as any other.
+    pub const NONE: Self = Self {
+        ring: None,
+        ring_of_others: None,
+        constant_error: None,
+        aim: None,
     };
 }

@@ -3,8 +3,11 @@
 use super::draw_probabilities::{DrawProbabilities, WeightedShots};
 use super::interval::Interval;
 use super::measured_release::Values;
-use super::posterior::{Draw, Posterior};
+use super::posterior::{Draw, Posterior, SpinSource};
+use crate::math::normal_distribution::quantile;
 use crate::shooter::Profile;
+use rand::rngs::ChaCha12Rng;
+use rand::{RngExt, SeedableRng};
 
 /// What changed in one quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,6 +101,53 @@ pub fn compare_probabilities(
 ) -> SessionComparison {
     let [before, after] = probabilities;
     compare(&before.of_draws, &after.of_draws, shots)
+}
+
+/// How far the aims of a day lie from the shooter's own, in standard deviations of the shots
+/// (assumed: two sessions cannot tell it).
+pub const DAILY_FORM: f64 = 0.3;
+
+/// Two sessions of a shooter at a place each, as if one tracker had measured them under one ring:
+/// what no sensor sees is their mean in both, so that it does not count as a change. Form of the
+/// day is added to the aims of each. The ring that they have in common is returned.
+#[must_use]
+pub fn share_unseen(
+    [(before, place_before), (after, place_after)]: [(&mut Posterior, usize); 2],
+) -> Option<f64> {
+    let [one, other] = [before.typical(), after.typical()];
+    let mean = |a: f64, b: f64| 0.5 * (a + b);
+    let ring = one.ring_restitution.zip(other.ring_restitution);
+    let ring = ring.map(|(one, other)| mean(one, other));
+    let errors = (
+        &one.constant_errors[place_before],
+        &other.constant_errors[place_after],
+    );
+    let error: Values = std::array::from_fn(|i| mean(errors.0[i], errors.1[i]));
+    let is_measured = before.spin == SpinSource::Measured && after.spin == SpinSource::Measured;
+    let backspin = mean(one.means[place_before][3], other.means[place_after][3]);
+    for (number, (posterior, place)) in [(before, place_before), (after, place_after)]
+        .into_iter()
+        .enumerate()
+    {
+        let mut random = ChaCha12Rng::seed_from_u64(number as u64);
+        let values = posterior.spin.measured_values();
+        for draw in &mut posterior.draws {
+            let measured = draw.measured_mean(place);
+            let sds = draw.sds_at(place);
+            let mut aim: Values = std::array::from_fn(|i| measured[i] - error[i]);
+            for i in 0..values {
+                let uniform: f64 = random.random::<f64>().max(f64::MIN_POSITIVE);
+                aim[i] += DAILY_FORM * sds[i] * quantile(uniform);
+            }
+            if !is_measured {
+                aim[3] = backspin;
+            }
+            draw.means[place] = aim;
+            draw.ring_restitution = None;
+            draw.constant_errors[place] = Values::default();
+        }
+    }
+    ring
 }
 
 /// What the change of P between two sessions comes from. What each of two causes does depends on

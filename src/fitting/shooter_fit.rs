@@ -1,17 +1,25 @@
 //! Everything that is fitted to one shooter's shots.
 
 use super::advice::{USUAL_SHOTS, usual_probabilities};
+use super::autocorrelation::widen_means;
+use super::current_form::probability_at_the_end;
 use super::draw_probabilities::DrawProbabilities;
-use super::expected_makes::{ExpectedMakes, expected_makes};
+use super::expected_makes::{ExpectedMakes, expected_makes, makes_of_counts};
 use super::fit_checks::{FlightResiduals, ShapeTest, TestError, check_releases, notes, shape_test};
 use super::fit_note::FitNote;
 use super::fitted_profile::{fitted_profile, with_backspin_kept};
+use super::joint_posterior::{FlightsOf, with_unseen};
+use super::makes_alone::{CountsError, posterior_of_makes};
 use super::measured_release::{MeasuredRelease, Place, PlaceScatter, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
+use super::prior::{Spread, UnseenPrior};
 use super::session_trends::{SessionTrend, trends};
-use crate::model::Physics;
+use crate::model::{Physics, SolidId};
 use crate::shooter::{Profile, ProfileError};
+use rayon::prelude::*;
 
+/// Draws of the flights alone, of which those of the posterior are taken.
+const FLIGHT_DRAWS: usize = 4000;
 /// Makes farther from what is expected, in standard deviations, are worth a word.
 const FAR_MAKES: f64 = 3.0;
 /// See [`ExpectedMakes::calibration_z`].
@@ -30,10 +38,14 @@ pub struct ShooterFit {
     pub posterior: Posterior,
     /// Its middle.
     pub typical: Draw,
+    /// The restitution of the ring in the profiles, with three decimals; `None` where it was given.
+    pub ring_restitution: Option<f64>,
     /// The profile at each place.
     pub profiles: Vec<Profile>,
     /// P of the current shot at each place.
     pub probabilities: Vec<DrawProbabilities>,
+    /// At each place, P of the release as it is at the end of the session, where a value drifts.
+    pub at_the_end: Vec<Option<DrawProbabilities>>,
     /// Predicted against observed.
     pub makes: ExpectedMakes,
     /// How well tracked flights fit; `None` without any.
@@ -87,7 +99,85 @@ pub fn fit_shooter(
     test: &ShooterTest<'_>,
     physics: &Physics,
     options: &FitOptions,
+    unseen: &UnseenPrior,
 ) -> Result<ShooterFit, ShooterFitError> {
+    let mut fits = fit_shooters(&[(*test, *options, *unseen)], physics, &|| ());
+    fits.swap_remove(0)
+}
+
+/// Fits shooters who shot at one ring: what the makes of each say of it counts for the others.
+/// `done` is called after each.
+pub fn fit_shooters(
+    tests: &[(ShooterTest<'_>, FitOptions, UnseenPrior)],
+    physics: &Physics,
+    done: &(dyn Fn() + Sync),
+) -> Vec<Result<ShooterFit, ShooterFitError>> {
+    let flights: Vec<Result<Option<FlightsOf<'_>>, ShooterFitError>> = tests
+        .par_iter()
+        .map(|(test, options, unseen)| flights_of(test, physics, options, unseen))
+        .collect();
+    let ring_of = |number: usize| -> Option<Spread> {
+        let (test, options, unseen) = &tests[number];
+        let prior = unseen.ring?;
+        let flights = flights[number].as_ref().ok()?.as_ref();
+        let alone = posterior_of(test, physics, flights, options, unseen).ok()?;
+        let ring = alone.summary(|draw| draw.ring_restitution.unwrap_or(prior.middle));
+        prior.likelihood(ring.mean, ring.sd)
+    };
+    let rings: Vec<Option<Spread>> = match tests {
+        [_] => vec![None],
+        _ => (0..tests.len()).into_par_iter().map(ring_of).collect(),
+    };
+    let fit = |number: usize| {
+        let (test, options, unseen) = &tests[number];
+        let others = rings
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != number);
+        let unseen = UnseenPrior {
+            ring_of_others: together(others.filter_map(|(_, ring)| *ring)),
+            ..*unseen
+        };
+        let flights = flights[number].as_ref().map_err(Clone::clone)?;
+        let fit = finish(test, physics, flights.as_ref(), options, &unseen);
+        done();
+        fit
+    };
+    (0..tests.len()).into_par_iter().map(fit).collect()
+}
+
+/// What several normal likelihoods say together.
+fn together(all: impl Iterator<Item = Spread>) -> Option<Spread> {
+    let (mut precision, mut weighted) = (0.0, 0.0);
+    for one in all {
+        precision += 1.0 / (one.sd * one.sd);
+        weighted += one.mean / (one.sd * one.sd);
+    }
+    (precision > 0.0).then(|| Spread {
+        mean: weighted / precision,
+        sd: 1.0 / precision.sqrt(),
+    })
+}
+
+/// A physics with this restitution of the ring.
+fn with_ring(physics: &Physics, restitution: Option<f64>) -> Physics {
+    let mut physics = physics.clone();
+    if let Some(restitution) = restitution {
+        let set = physics.set_restitution_on(SolidId::Ring, restitution);
+        debug_assert!(set.is_ok(), "a ring of a gym");
+    }
+    physics
+}
+
+fn flights_of<'a>(
+    test: &ShooterTest<'a>,
+    physics: &Physics,
+    options: &FitOptions,
+    unseen: &UnseenPrior,
+) -> Result<Option<FlightsOf<'a>>, ShooterFitError> {
+    if options.spin == SpinSource::NothingMeasured {
+        return Ok(None);
+    }
     check_releases(
         physics,
         test.places,
@@ -95,12 +185,58 @@ pub fn fit_shooter(
         options.spin,
         test.speed_unit,
     )?;
-    let residuals = FlightResiduals::of(test.chi_squares);
-    if let Some(residuals) = residuals {
+    if let Some(residuals) = FlightResiduals::of(test.chi_squares) {
         residuals.check()?;
     }
-    let posterior = fit(test.shots, test.places.len(), options)?;
+    let more_draws = FitOptions {
+        draws: FLIGHT_DRAWS.max(options.draws),
+        ..*options
+    };
+    let mut posterior = fit(test.shots, test.places.len(), &more_draws)?;
+    widen_means(&mut posterior, (test.shots, test.sessions), options.seed);
+    Ok(Some(FlightsOf {
+        name: test.name,
+        physics: with_ring(physics, unseen.ring.map(|ring| ring.middle)),
+        places: test.places,
+        shots: test.shots,
+        posterior,
+    }))
+}
+
+/// The posterior of flights and makes, or of makes alone.
+fn posterior_of(
+    test: &ShooterTest<'_>,
+    physics: &Physics,
+    flights: Option<&FlightsOf<'_>>,
+    options: &FitOptions,
+    unseen: &UnseenPrior,
+) -> Result<Posterior, ShooterFitError> {
+    if let Some(flights) = flights {
+        return Ok(with_unseen(flights, unseen, options)?);
+    }
+    let physics = with_ring(physics, unseen.ring.map(|ring| ring.middle));
+    let shots = (test.places, test.shots);
+    let posterior = posterior_of_makes(test.name, shots, &physics, options, unseen);
+    posterior.map_err(|error| match error {
+        CountsError::Fit(error) => error.into(),
+        CountsError::Profile(error) => error.into(),
+    })
+}
+
+fn finish(
+    test: &ShooterTest<'_>,
+    physics: &Physics,
+    flights: Option<&FlightsOf<'_>>,
+    options: &FitOptions,
+    unseen: &UnseenPrior,
+) -> Result<ShooterFit, ShooterFitError> {
+    let residuals = FlightResiduals::of(test.chi_squares);
+    let posterior = posterior_of(test, physics, flights, options, unseen)?;
     let typical = posterior.typical();
+    let ring_restitution = typical
+        .ring_restitution
+        .map(|ring| (ring * 1000.0).round() / 1000.0);
+    let physics = &with_ring(physics, ring_restitution);
     let profiles = test
         .places
         .iter()
@@ -113,16 +249,30 @@ pub fn fit_shooter(
             }
         })
         .collect::<Result<Vec<_>, ProfileError>>()?;
-    let probabilities = (0..test.places.len())
+    let probabilities: Vec<DrawProbabilities> = (0..test.places.len())
         .map(|place| usual_probabilities(&profiles[place], &posterior, place, USUAL_SHOTS))
         .collect();
     let values = options.spin.measured_values();
-    let makes = expected_makes(&profiles, test.shots, &typical, values);
-    let shape = shape_test(test.shots, test.places.len());
+    let (makes, shape) = match options.spin {
+        SpinSource::NothingMeasured => {
+            let chance = |place: usize| probabilities[place].interval().mean;
+            (
+                makes_of_counts(test.shots, &typical, chance),
+                ShapeTest::NONE,
+            )
+        }
+        _ => (
+            expected_makes(&profiles, test.shots, &typical, values),
+            shape_test(test.shots, test.places.len()),
+        ),
+    };
     let sds: Vec<Values> = (0..typical.means.len())
         .map(|place| typical.sds_at(place))
         .collect();
     let trends = trends(test.shots, test.sessions, (&typical.means, &sds), values);
+    let at_the_end = (0..test.places.len())
+        .map(|place| probability_at_the_end(&profiles[place], &posterior, &trends, place))
+        .collect();
     let mut notes = notes(
         test.shots,
         (&shape, &trends),
@@ -151,7 +301,9 @@ pub fn fit_shooter(
         place_scatter: test.place_scatter.to_vec(),
         posterior,
         typical,
+        ring_restitution,
         profiles,
+        at_the_end,
         probabilities,
         makes,
         residuals,

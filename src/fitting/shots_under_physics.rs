@@ -71,11 +71,12 @@ impl<'a> FittedShots<'a> {
             .profile
             .with(|settings| settings.physics = physics.clone());
         let other = other.ok()?;
-        let draws = &self.posterior.draws;
+        let (draws, typical) = (&self.posterior.draws, self.posterior.typical());
         let probabilities = |change: Change| {
             let moved = draws.iter().map(|draw| {
-                let mut moved = draw.clone();
-                let changed = change.of_draw(draw, self.place);
+                // The ring is that of the other physics.
+                let mut moved = draw.clone().with_ring(None);
+                let changed = change.of_draw(draw, &typical, self.place);
                 moved.means[self.place] = self.release_under(&other, &changed)?;
                 moved.factors[self.place] = self.factor_under(&other, draw)?;
                 Some(moved)

@@ -1,6 +1,7 @@
 //! What is known of the errors of measurement.
 
 use super::measured_release::Covariance;
+use super::prior::ConstantErrorPrior;
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD};
 
 /// Standard deviations of the errors of one kind of measurement.
@@ -125,6 +126,17 @@ impl TrackerNoise {
             frame_correlation: number(correlation.strip_prefix("correlation"))?,
             ..Tracker::named("optical_25hz")?.noise
         })
+    }
+
+    /// What its constant error may be (assumed): as great as the error of one shot. That of tracks
+    /// is that of the landings that they lead to.
+    #[must_use]
+    pub fn constant_error(&self, has_releases: bool) -> ConstantErrorPrior {
+        if has_releases {
+            let [speed, pitch, polar, _] = self.release;
+            return ConstantErrorPrior::Release([speed, pitch, polar]);
+        }
+        ConstantErrorPrior::Landing(self.landing)
     }
 
     /// The covariance of a measured release.

@@ -135,6 +135,10 @@ impl Quantity {
 pub enum Label {
     /// Whether the shot went in.
     Made,
+    /// How many shots a row counts.
+    Attempts,
+    /// How many of them went in.
+    Makes,
     /// Who shot.
     Shooter,
     /// When.
@@ -145,8 +149,10 @@ pub enum Label {
     Shot,
 }
 
-const LABELS: [(&str, Label); 5] = [
+const LABELS: [(&str, Label); 7] = [
     ("made", Label::Made),
+    ("attempts", Label::Attempts),
+    ("makes", Label::Makes),
     ("shooter", Label::Shooter),
     ("session", Label::Session),
     ("place", Label::Place),

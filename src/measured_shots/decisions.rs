@@ -68,7 +68,9 @@ pub fn decide(
         return Ok(None);
     }
     refuse_places_as_one(table, columns, decisions)?;
-    decide_blanks(table, columns, decisions)?;
+    if columns.label(Label::Attempts).is_none() {
+        decide_blanks(table, columns, decisions)?;
+    }
     match columns.label(Label::Session) {
         Some(index) => sessions_by_day(table, (index, columns.name(index)), decisions),
         None => Ok(None),

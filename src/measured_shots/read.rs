@@ -210,13 +210,20 @@ fn shooter(
     let mut rejected = Vec::new();
     let raw = match reader.source {
         Source::Trajectories => tracked_shots(reader, rows, &mut rejected).map_err(of_shooter)?,
+        Source::Makes => {
+            let shots = reader.counted_shots(rows, &mut rejected);
+            too_many_absurd(rows.len(), &rejected).map_err(of_shooter)?;
+            shots
+        }
         Source::Releases | Source::Landings => {
             let shots = reader.row_shots(rows, &mut rejected);
             too_many_absurd(rows.len(), &rejected).map_err(of_shooter)?;
             shots
         }
     };
-    let spin = if reader.has_no_direction() {
+    let spin = if reader.source == Source::Makes {
+        SpinSource::NothingMeasured
+    } else if reader.has_no_direction() {
         SpinSource::AssumedWithDirection
     } else if reader.columns.quantity(Quantity::Backspin).is_some() {
         SpinSource::Measured
@@ -259,7 +266,9 @@ fn shooter(
         check_speed_unit(physics, places, &shooter.shots, unit)
             .map_err(|error| error.to_string())?;
     }
-    reject_shots(reader.simulator, &mut shooter);
+    if reader.source != Source::Makes {
+        reject_shots(reader.simulator, &mut shooter);
+    }
     shooter.place_names = place_names(reader, rows, &shooter);
     if reader.source == Source::Landings {
         shooter.differences = release_differences(reader, rows, &shooter.shots);

@@ -10,6 +10,8 @@ use crate::model::named_places::{place_named, place_names_in_words};
 use crate::shooter::Location;
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 
+/// Attempts in a row, at most.
+const MOST_ATTEMPTS: f64 = 10_000.0;
 /// A shot that is farther than this from the hoop's centre where it falls through its height is not
 /// aimed at it, m.
 pub(super) const FARTHEST_LANDING_M: f64 = 1.5;
@@ -232,6 +234,62 @@ impl RowReader<'_> {
             );
         }
         Ok((place, Raw::Release(values)))
+    }
+
+    /// The shots that rows count, or that they are, of which no more than the result is known.
+    pub(super) fn counted_shots(
+        &self,
+        rows: &[(u64, &[String])],
+        rejected: &mut Vec<(u64, String)>,
+    ) -> Vec<RawShot> {
+        let mut raw = Vec::new();
+        for &(row, cells) in rows {
+            match (self.place(cells), self.counted(cells)) {
+                (Ok(place), Ok((made, attempts))) => {
+                    raw.extend((0..attempts).map(|number| {
+                        RawShot {
+                            row,
+                            name: String::new(),
+                            session: self
+                                .label(cells, Label::Session)
+                                .unwrap_or_default()
+                                .to_owned(),
+                            made: Some(number < made),
+                            place,
+                            measured: Raw::Nothing,
+                        }
+                    }));
+                }
+                (Err(reason), _) | (_, Err(reason)) => rejected.push((row, reason)),
+            }
+        }
+        raw
+    }
+
+    /// The makes and the attempts of a row.
+    fn counted(&self, cells: &[String]) -> Result<(u32, u32), String> {
+        if self.columns.label(Label::Attempts).is_none() {
+            let made = parse_made(self.label(cells, Label::Made).unwrap_or_default())?;
+            return Ok((u32::from(made == Some(true)), u32::from(made.is_some())));
+        }
+        let count = |name: &str, label| -> Result<u32, String> {
+            let cell = self.label(cells, label).unwrap_or_default();
+            let number = cell.parse::<f64>().ok();
+            let number = number.filter(|n| n.fract() == 0.0 && (0.0..=MOST_ATTEMPTS).contains(n));
+            number.map(|number| number as u32).ok_or_else(|| {
+                let shown: String = cell.chars().take(20).collect();
+                format!("{name}: \"{shown}\" is no whole number from 0 to {MOST_ATTEMPTS}")
+            })
+        };
+        let makes = match self.columns.label(Label::Makes) {
+            Some(_) => count("makes", Label::Makes)?,
+            None => count("made", Label::Made)?,
+        };
+        let attempts = count("attempts", Label::Attempts)?;
+        match makes <= attempts {
+            true => Ok((makes, attempts)),
+            false => Err(format!("has {makes} makes of {attempts} attempts")),
+        }
     }
 
     /// The shots of a file with a row for each.

@@ -87,4 +87,6 @@ pub(super) enum Raw {
     Release(Values),
     Landing(Landing, f64),
     Flight(Box<FlightFit>, Vec<TrackedPoint>),
+    /// No more than its result.
+    Nothing,
 }

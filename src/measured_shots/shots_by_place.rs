@@ -41,6 +41,11 @@ pub(super) fn group_by_place(
         let place = shooter.places[group];
         let from = shot.place;
         let found = match shot.measured {
+            Raw::Nothing => Ok(AtPlace {
+                values: Values::default(),
+                noise: Covariance::zeros(),
+                own: None,
+            }),
             Raw::Release(values) => of_release(reader, (&from, &values), &place),
             Raw::Landing(landing, backspin) => {
                 of_landing(reader, (&from, &landing), &place, (&noise[group], backspin))

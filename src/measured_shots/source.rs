@@ -15,6 +15,8 @@ pub enum Source {
     Landings,
     /// Where the ball was, frame by frame.
     Trajectories,
+    /// No more than whether it went in.
+    Makes,
 }
 
 impl Source {
@@ -25,6 +27,7 @@ impl Source {
             Self::Releases => "releases",
             Self::Landings => "landings",
             Self::Trajectories => "trajectories",
+            Self::Makes => "makes",
         }
     }
 
@@ -33,7 +36,8 @@ impl Source {
     pub fn usual_tracker(self) -> &'static str {
         match self {
             Self::Releases => "lab",
-            Self::Landings => "noah",
+            // Of makes: what a sensor would add.
+            Self::Landings | Self::Makes => "noah",
             Self::Trajectories => "optical_25hz",
         }
     }
@@ -44,7 +48,7 @@ impl Source {
         match self {
             Self::Releases => &[Quantity::Speed, Quantity::Pitch, Quantity::Aim],
             Self::Landings => &[Quantity::EntryAngle, Quantity::Depth, Quantity::LeftRight],
-            Self::Trajectories => &[],
+            Self::Trajectories | Self::Makes => &[],
         }
     }
 
@@ -81,16 +85,38 @@ impl Source {
         {
             return Ok(Self::Releases);
         }
+        let is_of_flights = |target: &str| {
+            let known = Quantity::ALL
+                .into_iter()
+                .find(|quantity| quantity.name() == target);
+            known.is_some_and(is_of_flight)
+        };
+        let has_flights = Quantity::ALL
+            .into_iter()
+            .any(|known| is_of_flight(known) && has(known))
+            || proposal.maps.iter().any(|map| is_of_flights(map.target));
+        let label = |label| columns.label(label).is_some();
+        if !has_flights && (label(Label::Made) || label(Label::Makes) && label(Label::Attempts)) {
+            return Ok(Self::Makes);
+        }
         if let Some(missing) = one_missing(columns) {
             return Err(format!("{missing}{}", map_proposal(columns)));
         }
         Err(format!(
             "needs the columns of releases (speed, pitch and polar or aim), of landings (entry_angle, depth, left_right) or of \
-             trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s{}{}",
+             trajectories (shot, time, x, y, z), each with its unit, as in speed_ft_s, pitch_deg, depth_in, time_s; or makes alone (place, attempts, makes){}{}",
             some_missing(columns).unwrap_or_default(),
             map_proposal(columns)
         ))
     }
+}
+
+/// Whether a quantity says how a ball flew.
+fn is_of_flight(quantity: Quantity) -> bool {
+    !matches!(
+        quantity,
+        Quantity::Distance | Quantity::CourtAngle | Quantity::ReleaseHeight | Quantity::Backspin
+    )
 }
 
 /// What is missing where a file has all columns but one of a source.

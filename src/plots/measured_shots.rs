@@ -3,8 +3,8 @@
 use super::axes::Axes;
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::fitting::{
-    CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, Values, landing_of, nominal_of,
-    release_of_landing, session_names,
+    CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, SpinSource, Values, landing_of,
+    nominal_of, release_of_landing, session_names,
 };
 use crate::units::{DEGREE_RAD, INCH_M, UnitSystem};
 use rayon::prelude::*;
@@ -36,6 +36,10 @@ pub fn all(
     sessions: &[String],
     units: UnitSystem,
 ) -> Vec<Plot> {
+    // Of makes alone there is nothing else to draw.
+    if fit.posterior.spin == SpinSource::NothingMeasured {
+        return vec![intervals(fit, units)];
+    }
     let mut plots = Vec::new();
     for place in 0..fit.places.len() {
         plots.push(release_scatter(fit, place, shots, units));

@@ -1,6 +1,6 @@
 //! The words of the glossary: one name for each quantity, in every text.
 
-use crate::model::Preset;
+use crate::model::{PRESETS, Preset, SolidId};
 use crate::shooter::{Location, NominalVariable, Profile, ReleaseVariable, ShotKind};
 use crate::units::{UnitSystem, with_decimals};
 
@@ -110,13 +110,26 @@ pub fn list(words: &[String]) -> String {
     }
 }
 
-/// The physics by its name.
+/// The physics by its name; of a preset with another ring, as fits have it, with the ring.
 #[must_use]
-pub fn physics_name(profile: &Profile) -> &'static str {
-    match Preset::of(profile.physics()).map(|preset| preset.name) {
-        Some("paper") => "paper (no air, a ring of wire; not a real gym)",
-        Some(name) => name,
-        None => "the profile's own",
+pub fn physics_name(profile: &Profile) -> String {
+    let physics = profile.physics();
+    match Preset::of(physics).map(|preset| preset.name) {
+        Some("paper") => return "paper (no air, a ring of wire; not a real gym)".to_owned(),
+        Some(name) => return name.to_owned(),
+        None => {}
+    }
+    // A fitted ring has three decimals.
+    let ring = (1000.0 * physics.restitution_on(SolidId::Ring)).round() / 1000.0;
+    let with_own_ring = PRESETS.iter().find(|preset| {
+        let mut other = preset.physics();
+        other.set_restitution_on(SolidId::Ring, ring).is_ok() && other == *physics
+    });
+    match with_own_ring {
+        Some(preset) => {
+            format!("{}, ring restitution {ring:.2}", preset.name)
+        }
+        None => "the profile's own".to_owned(),
     }
 }
 

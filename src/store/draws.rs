@@ -37,6 +37,13 @@ fn columns(places: usize, units: UnitSystem) -> Vec<(String, f64)> {
         ("tail_weight".to_owned(), 1.0),
     ]);
     columns.extend(pairs().map(|(i, j)| (format!("corr_{}", pair_name(i, j)), 1.0)));
+    columns.push(("hoop_restitution".to_owned(), 1.0));
+    for place in 1..=places {
+        for (name, (unit, size)) in VALUE_NAMES.iter().zip(&of_value) {
+            let column = format!("{}{name}_reads_high_by_{unit}", of_place(place));
+            columns.push((column, *size));
+        }
+    }
     columns
 }
 
@@ -49,11 +56,12 @@ fn of_place(place: usize) -> String {
     }
 }
 
-/// The columns that are written only for readers: P of the current shot of each draw.
-fn probability_names(places: usize) -> Vec<String> {
-    (1..=places)
-        .map(|place| format!("{}probability", of_place(place)))
-        .collect()
+/// The columns that are written only for readers: P of the current shot of each draw, and its
+/// number as programs for draws want it (ArviZ: `chain`, `draw`).
+fn names_for_readers(places: usize) -> Vec<String> {
+    let probabilities = (1..=places).map(|place| format!("{}probability", of_place(place)));
+    let numbers = ["chain", "draw"].map(str::to_owned);
+    probabilities.chain(numbers).collect()
 }
 
 /// The bytes of the file. `probabilities` are those of the draws at each place.
@@ -70,8 +78,11 @@ pub fn draws_parquet(
     let described = columns
         .iter()
         .map(|(name, _)| name.clone())
-        .chain(probability_names(places))
-        .map(|name| column(&name, Physical::DOUBLE))
+        .chain(names_for_readers(places))
+        .map(|name| match name.as_str() {
+            "chain" | "draw" => column(&name, Physical::INT64),
+            _ => column(&name, Physical::DOUBLE),
+        })
         .collect::<parquet::errors::Result<Vec<_>>>()?;
     let mut sink = ParquetSink::new(Vec::new(), &described)?;
     for (k, draw) in posterior.draws.iter().enumerate() {
@@ -80,11 +91,14 @@ pub fn draws_parquet(
         values.extend(draw.speed_coefficients);
         values.push(draw.tail_weight);
         values.extend(pairs().map(|(i, j)| draw.correlation[(i, j)]));
+        values.push(draw.ring_restitution.unwrap_or(0.0));
+        values.extend(draw.constant_errors.iter().flatten());
         for (value, (_, size)) in values.iter_mut().zip(&columns) {
             *value /= size;
         }
         values.extend(probabilities.iter().map(|place| place.of_draws[k]));
-        let cells: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+        let mut cells: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+        cells.extend(["0".to_owned(), k.to_string()]);
         sink.push(cells.into())?;
     }
     sink.finish()
@@ -106,10 +120,9 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
         .filter(|name| name.contains("speed_mean_"))
         .count();
     let is_header = |columns: &[(String, f64)]| {
-        // The probabilities are for readers alone.
         let names = columns.iter().map(|(name, _)| name.clone());
         names
-            .chain(probability_names(places))
+            .chain(names_for_readers(places))
             .eq(header.iter().cloned())
     };
     let known = [UnitSystem::Imperial, UnitSystem::Metric].map(|units| columns(places, units));
@@ -161,7 +174,19 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
                     row.number
                 ));
             }
-            draws.push(draw.with_tail_weight(tail_weight).rounded());
+            let ring = Some(value(after + 14)).filter(|ring| *ring > 0.0);
+            if ring.is_some_and(|ring| !(0.0..=1.0).contains(&ring)) {
+                return Err(format!(
+                    "draw {}: hoop_restitution must be from 0 to 1",
+                    row.number
+                ));
+            }
+            let errors = |place| std::array::from_fn(|i| value(after + 15 + 4 * place + i));
+            let draw = draw
+                .with_tail_weight(tail_weight)
+                .with_ring(ring)
+                .with_constant_errors((0..places).map(errors).collect());
+            draws.push(draw.rounded());
         }
     }
     if draws.is_empty() {
@@ -175,5 +200,6 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
         prior_weights: [f64::NAN; 4],
         growth_terms: 0,
         shots,
+        unseen: None,
     })
 }

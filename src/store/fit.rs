@@ -94,6 +94,8 @@ pub(super) struct FitJson {
 struct Parameter {
     name: String,
     source: String,
+    low: f64,
+    high: f64,
 }
 
 #[derive(Debug, Deserialize)]
@@ -302,15 +304,23 @@ impl Fit {
 }
 
 impl FitJson {
+    /// The restitutions of the ring that the fit leaves possible; `None` where it was given.
+    pub(super) fn ring(&self) -> Option<(f64, f64)> {
+        let mut parameters = self.parameters.iter();
+        let ring = parameters.find(|parameter| parameter.name == "hoop_restitution")?;
+        Some((ring.low, ring.high))
+    }
+
     fn spin(&self) -> Option<SpinSource> {
         let mut parameters = self.parameters.iter();
         let spin = parameters.find(|parameter| parameter.name == "backspin_mean")?;
         let mut parameters = self.parameters.iter();
         let has_no_direction = parameters
             .any(|parameter| parameter.name == "polar_mean" && parameter.source == "assumed");
-        match has_no_direction {
-            true => Some(SpinSource::AssumedWithDirection),
-            false => SpinSource::named(&spin.source),
+        match (self.source.kind, has_no_direction) {
+            (Source::Makes, _) => Some(SpinSource::NothingMeasured),
+            (_, true) => Some(SpinSource::AssumedWithDirection),
+            (_, false) => SpinSource::named(&spin.source),
         }
     }
 }

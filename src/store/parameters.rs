@@ -16,7 +16,8 @@ pub struct Parameter {
     /// Its distribution, in that unit.
     #[serde(flatten)]
     pub interval: Interval,
-    /// `measured`, `from landings`, `from trajectories`, `given` or `assumed`.
+    /// `measured`, `from landings`, `from trajectories`, `from makes` (and its prior), `given` or
+    /// `assumed`.
     pub source: &'static str,
 }
 
@@ -56,6 +57,7 @@ pub(crate) fn mean_name(place: usize, value: &str) -> String {
 
 /// All parameters of a posterior: means (of further places with the number of the place), standard
 /// deviations, correlations, the tail weight (one over the degrees of freedom) where it was fitted,
+/// the ring and the tracker's constant error where they were,
 /// and the coefficients of the speed's standard deviation where there are several. `kind` is what
 /// was measured: `releases`, `landings` or `trajectories`. All are in SI units.
 #[must_use]
@@ -64,10 +66,15 @@ pub fn parameters(posterior: &Posterior, kind: &str) -> Vec<Parameter> {
     let release_source = match kind {
         "landings" => "from landings",
         "trajectories" => "from trajectories",
+        "makes" => "from makes",
         _ => "measured",
     };
     let of_value = |value: usize| ReleaseVariable::ALL[value].dimension();
-    let measured = posterior.spin.measured_values();
+    let is_of_makes = posterior.spin == SpinSource::NothingMeasured;
+    let measured = match is_of_makes {
+        true => 3,
+        false => posterior.spin.measured_values(),
+    };
     let source = |value: usize| {
         if value < measured.min(3) {
             release_source
@@ -115,6 +122,25 @@ pub fn parameters(posterior: &Posterior, kind: &str) -> Vec<Parameter> {
         add(name, Dimension::Number, release_source, &|draw| {
             draw.tail_weight
         });
+    }
+    if posterior.draws[0].ring_restitution.is_some() {
+        add(
+            "hoop_restitution".to_owned(),
+            Dimension::Number,
+            "from makes",
+            &|draw| draw.ring_restitution.unwrap_or_default(),
+        );
+    }
+    for (i, name) in VALUE_NAMES.iter().enumerate().take(3) {
+        let of_draw = |draw: &Draw| draw.constant_errors[0][i];
+        if posterior.draws.iter().any(|draw| of_draw(draw) != 0.0) {
+            add(
+                format!("{name}_reads_high_by"),
+                of_value(i),
+                "from makes",
+                &of_draw,
+            );
+        }
     }
     let coefficients = [
         ("c10", Dimension::Speed),

@@ -113,8 +113,8 @@ fn refuse_unlisted(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     Ok(Vec::new())
 }
 
-/// The restitutions of the ring that the makes tell, where the folder of the fits or a fit has what
-/// `--free hoop_restitution` found. `paths` are folders or profiles of fits.
+/// The restitutions of the ring that a fit leaves possible, or those that `--free hoop_restitution`
+/// found, in the folder of the fits or in a fit. `paths` are folders or profiles of fits.
 ///
 /// # Errors
 /// A file of them is damaged.
@@ -130,10 +130,11 @@ pub fn ring_told_by_makes(paths: &[PathBuf]) -> Result<Option<(f64, f64)>, Store
                 return Ok(Some(ring));
             }
         }
-        if folder.join(FIT_FILE).exists()
-            && let Some(ring) = ring_of(&fit::read_json(folder)?.content.free)
-        {
-            return Ok(Some(ring));
+        if folder.join(FIT_FILE).exists() {
+            let fit = fit::read_json(folder)?.content;
+            if let Some(ring) = ring_of(&fit.free).or_else(|| fit.ring()) {
+                return Ok(Some(ring));
+            }
         }
     }
     Ok(None)

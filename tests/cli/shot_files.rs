@@ -116,7 +116,8 @@ fn gives_the_clean_fit(name: &str, bytes: &[u8], options: &[&str]) {
     let (answer, out) = fit(&file, options);
     assert_eq!(answer.code, Some(0), "{name}: {answer:?}");
     let (p, _) = probability(&out);
-    assert!((p - clean()).abs() < 1e-3, "{name}: {p} for {}", clean());
+    // Numbers that were rounded in another unit turn single simulated shots.
+    assert!((p - clean()).abs() < 3e-3, "{name}: {p} for {}", clean());
 }
 
 /// A file of these bytes is refused with a message that has all of these parts.
@@ -300,12 +301,22 @@ fn val_twelve_dialects_give_the_fit_of_the_clean_file() {
         4 => String::new(),
         _ => word(s.made, ["1.0", "0.0"]),
     });
-    accepted("gaps.csv", gaps.as_bytes());
+    // Fewer results tell less of the ring: P is not the same, but near.
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("gaps.csv");
+    fs::write(&file, gaps).unwrap();
+    let options = [&AT_THE_LINE[..], &["--accept"]].concat();
+    let (answer, out) = fit(&file, &options);
+    assert_eq!(answer.code, Some(0), "{answer:?}");
+    let (p, _) = probability(&out);
+    assert!((p - clean()).abs() < 0.02, "{p} for {}", clean());
     let words = with_result("Shot Result", |_, s| {
         word(s.made, ["Made Shot", "Missed Shot"])
     });
     accepted("words.csv", words.as_bytes());
-    let places = with_result("Spot", |_, _| "Free Throw".to_owned());
+    let places = with_result("Spot,made", |_, s| {
+        format!("Free Throw,{}", u8::from(s.made))
+    });
     gives_the_clean_fit("places.csv", places.as_bytes(), &["--accept"]);
     accepted("cells.csv", with_units_in_cells().as_bytes());
     accepted("interface.json", json_of_an_interface().as_bytes());

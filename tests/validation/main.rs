@@ -8,6 +8,7 @@ mod common;
 
 mod fit_coverage;
 mod integrators;
+mod joint_coverage;
 mod nominal_tables;
 mod paper_figures;
 mod probability_methods;

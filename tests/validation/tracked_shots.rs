@@ -6,7 +6,8 @@
 
 use bankshot::dynamics::Simulator;
 use bankshot::fitting::{
-    FitOptions, ShooterTest, TrackedPoint, Tracker, fit_drag_coefficient, fit_flight, fit_shooter,
+    FitOptions, ShooterTest, TrackedPoint, Tracker, UnseenPrior, fit_drag_coefficient, fit_flight,
+    fit_shooter,
 };
 use bankshot::math::normal_distribution::quantile;
 use bankshot::measured_shots::columns::Columns;
@@ -248,7 +249,7 @@ fn probability(text: &str, has_place: bool) -> f64 {
         speed_unit: ("ft/s", FOOT_M),
         chi_squares: &shots.chi_squares,
     };
-    let fit = fit_shooter(&test, &physics, &FitOptions::default()).unwrap();
+    let fit = fit_shooter(&test, &physics, &FitOptions::default(), &UnseenPrior::NONE).unwrap();
     let shots_at = |place: usize| shots.shots.iter().filter(|s| s.place == place).count();
     let most = (0..shots.places.len())
         .max_by_key(|place| shots_at(*place))

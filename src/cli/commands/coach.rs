@@ -182,7 +182,7 @@ fn source(shots: &[PathBuf]) -> String {
         })
         .collect();
     format!(
-        "bankshot {}, from {}. The intervals leave out what another ring, ball or air would change, and any constant error of the sensor.",
+        "bankshot {}, from {}. The intervals leave out what another board, ball or air would change.",
         env!("CARGO_PKG_VERSION"),
         files.join(", ")
     )

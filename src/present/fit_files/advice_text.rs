@@ -106,7 +106,7 @@ impl PlayerAdvice<'_> {
         notes.extend(self.not_suggested());
         notes.extend(self.spin_in_words());
         notes.push(
-            "The intervals leave out what another ring, ball or air would change (`bankshot physics`).".to_owned(),
+            "The intervals leave out what another board, ball or air would change (`bankshot physics`).".to_owned(),
         );
         TextAnswer {
             answer: self.answer(),

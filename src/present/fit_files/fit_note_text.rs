@@ -101,7 +101,7 @@ pub fn fit_note_text(note: &FitNote) -> String {
             p_value(*p)
         ),
         FitNote::SerialCorrelation { of, p } => format!(
-            "the {} depends on that of the shot before ({}), so the intervals are too narrow",
+            "the {} depends on that of the shot before ({}), which makes the intervals wider",
             variable_name(*of),
             p_value(*p)
         ),

@@ -47,19 +47,28 @@ impl FitText<'_> {
                 WHAT_TO_CHECK.to_owned(),
             ];
         }
-        let mut answer = Vec::new();
+        let mut answer: Vec<String> = self.caution().into_iter().collect();
         let p = fit.probabilities[0].interval();
         let from = match fit.places.len() {
             1 => String::new(),
             _ => format!(" from {}", self.place_name(0)),
         };
         answer.push(format!(
-            "{} of 100 shots go in{from} (95 % interval {}), from {} measured shots.",
+            "{} of 100 shots go in{from} (95 % interval {}), from {} {} shots.",
             of_100(p.mean),
             interval_of_100(p.low, p.high),
-            fit.posterior.shots
+            fit.posterior.shots,
+            match self.source.kind {
+                Source::Makes => "counted",
+                _ => "measured",
+            }
         ));
-        if makes.labelled > 0 {
+        if self.source.kind == Source::Makes {
+            answer.push(format!(
+                "Counted: {} of {} went in. No flight was measured, so the rest of this fit is a shooter of the population who would make as many.",
+                makes.made, makes.labelled
+            ));
+        } else if makes.labelled > 0 {
             let without = match fit.posterior.shots - makes.labelled {
                 0 => String::new(),
                 n => format!(" ({n} shots have no result.)"),
@@ -70,6 +79,26 @@ impl FitText<'_> {
             ));
         }
         answer
+    }
+
+    /// What is wrong with the shots, for which no interval makes up.
+    fn caution(&self) -> Option<String> {
+        let fit = self.fit;
+        if let Some(now) = &fit.at_the_end[0] {
+            let now = now.interval();
+            return Some(format!(
+                "The shot drifted during the session: at its end {} of 100 go in (95 % interval {}). What follows is the whole session.",
+                of_100(now.mean),
+                interval_of_100(now.low, now.high)
+            ));
+        }
+        let reason = fit.notes.iter().find_map(|note| match note {
+            FitNote::NotNormal { .. } => Some("the shots are not normally distributed"),
+            FitNote::OtherNoise { .. } => Some("the tracker's noise is not what was stated"),
+            FitNote::TooSure { .. } => Some("the chances of single shots are overconfident"),
+            _ => None,
+        })?;
+        Some(format!("Take this fit with care: {reason}."))
     }
 
     /// A place in a sentence.
@@ -133,6 +162,7 @@ impl FitText<'_> {
                     SpinSource::Assumed | SpinSource::AssumedWithDirection,
                 ) => "assumed",
                 (ReleaseVariable::Backspin, SpinSource::Given) => "given",
+                (_, SpinSource::NothingMeasured) => "population",
                 _ => "",
             };
             table.add([
@@ -230,10 +260,13 @@ impl FitText<'_> {
                 " The data passed all {checks} checks: normal distribution, no drift, no shot influenced by the one before."
             ),
         };
-        notes.push(format!(
+        notes.push(match source.kind {
+            Source::Makes => "Makes alone do not tell angle, speed and direction apart: how the scatter divides is that of other players. A sensor would tell (`bankshot sample-size`).".to_owned(),
+            _ => format!(
             "Scatter: standard deviation from shot to shot, with the sensor's noise ({}, {}) removed.{passed}",
             source.tracker.0, source.tracker.1
-        ));
+        ),
+        });
         if fit.posterior.spin == SpinSource::AssumedWithDirection {
             notes.push(
                 "The direction was not measured: its aim and scatter are those of other players (assumed)."
@@ -241,11 +274,36 @@ impl FitText<'_> {
             );
         }
         notes.extend(warnings);
-        notes.push(
-            "The intervals leave out what another ring, ball or air would change (`bankshot physics`), and any constant error of the sensor."
-                .to_owned(),
-        );
+        notes.push(self.what_is_counted());
         notes
+    }
+
+    /// What the intervals rest on beside the shots.
+    fn what_is_counted(&self) -> String {
+        let posterior = &self.fit.posterior;
+        let mut counted = Vec::new();
+        if posterior.draws[0].ring_restitution.is_some() {
+            let ring = posterior.summary(|draw| draw.ring_restitution.unwrap_or_default());
+            let from = match self.fit.makes.labelled {
+                0 => "a guess: no results",
+                _ => "from the results",
+            };
+            counted.push(format!(
+                "the ring's bounce ({:.2}, {:.2} to {:.2}, {from})",
+                ring.mean, ring.low, ring.high
+            ));
+        }
+        if self.source.unseen.constant_error.is_some() {
+            counted.push("a constant error of the sensor".to_owned());
+        }
+        if !matches!(posterior.spin, SpinSource::Measured | SpinSource::Given) {
+            counted.push("an unmeasured backspin".to_owned());
+        }
+        let counted = match counted.is_empty() {
+            true => String::new(),
+            false => format!("The intervals count {}. ", list(&counted)),
+        };
+        format!("{counted}They leave out another board, ball or air (`bankshot physics`).")
     }
 
     fn details(&self) -> String {
@@ -284,8 +342,16 @@ impl FitText<'_> {
             posterior.r_hat,
             posterior.effective_sample_size
         ));
-        add(tests_text(fit));
-        text + &self.constant_errors()
+        if let Some(unseen) = posterior.unseen {
+            add(format!(
+                "What no sensor sees: effective sample size {:.0}, Pareto k {:.2}.",
+                unseen.effective_sample_size, unseen.pareto_k
+            ));
+        }
+        if self.source.kind != Source::Makes {
+            add(tests_text(fit));
+        }
+        text
     }
 
     /// What was measured, and how the release follows from it.
@@ -364,51 +430,6 @@ impl FitText<'_> {
             makes.log_loss,
             makes.losses_of_share[1]
         )
-    }
-
-    /// What a constant offset of the tracker would do, where releases were measured.
-    fn constant_errors(&self) -> String {
-        let errors = self.source.constant_errors(self.fit);
-        if errors.is_empty() {
-            return String::new();
-        }
-        let has_z = errors.iter().any(|error| error.made_z.is_some());
-        let mut text = paragraph(
-            "If the tracker had a constant offset of one noise standard deviation, the makes per 100 would be:",
-        );
-        let mut columns = vec![
-            ("offset", "", Side::Left),
-            ("too high", "makes", Side::Right),
-            ("too low", "makes", Side::Right),
-        ];
-        if has_z {
-            columns.extend([
-                ("too high", "z", Side::Right),
-                ("too low", "z", Side::Right),
-            ]);
-        }
-        let mut table = TextTable::new(&columns);
-        for pair in errors.chunks(2) {
-            let (unit, size) = value_units(self.units)[pair[0].value];
-            let decimals = if pair[0].value == 0 { 3 } else { 2 };
-            let name = variable_name(ReleaseVariable::ALL[pair[0].value]);
-            let mut cells = vec![format!(
-                "{name} {:.decimals$} {unit}",
-                pair[0].by.abs() / size
-            )];
-            cells.extend(pair.iter().map(|error| per_100(error.probability)));
-            if has_z {
-                let z = |z: Option<f64>| z.map_or("-".to_owned(), |z| format!("{z:+.1}"));
-                cells.extend(pair.iter().map(|error| z(error.made_z)));
-            }
-            table.add(cells);
-        }
-        text += &table.text();
-        if has_z {
-            text +=
-                "z compares the makes with that prediction; beyond 3 the offset is ruled out.\n";
-        }
-        text
     }
 }
 

@@ -226,7 +226,7 @@ impl Changes<'_> {
             ));
         }
         notes.push(
-            "The intervals leave out how a player varies from day to day, another ring, ball or air, and any constant error of the sensor."
+            "The intervals count form of the day: 0.3 of the scatter (assumed). Ring and sensor are taken to be the same in both sessions."
                 .to_owned(),
         );
         notes

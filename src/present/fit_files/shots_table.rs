@@ -1,6 +1,6 @@
 //! `shots.csv`: each measured shot, its release, its chance, and what is odd about it.
 
-use crate::fitting::{ShooterFit, VALUE_NAMES, landing_of};
+use crate::fitting::{ShooterFit, SpinSource, VALUE_NAMES, landing_of};
 use crate::store::parameters::value_units;
 use crate::units::{DEGREE_RAD, UnitSystem};
 use std::collections::BTreeMap;
@@ -32,6 +32,11 @@ pub fn shots_csv(
             shot.place + 1,
             quoted(name)
         );
+        if fit.posterior.spin == SpinSource::NothingMeasured {
+            let made = u8::from(shot.made == Some(true));
+            out += &format!("{}{:.3},,{made},,\n", ",".repeat(12), shot.chance);
+            continue;
+        }
         for (i, (_, size)) in of_value.iter().enumerate() {
             out += &format!(
                 ",{:.4},{:.4}",

@@ -7,12 +7,14 @@ use crate::cli::measured_shots_flags::{MeasuredFile, MeasuredShotsOptions};
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::print_remark;
 use crate::fitting::{
-    DrawProbabilities, FitNote, MeasuredRelease, Place, Posterior, session_names, values_at_height,
+    DrawProbabilities, FitNote, MeasuredRelease, Place, Posterior, session_names, share_unseen,
+    usual_probabilities, values_at_height,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
+use crate::model::SolidId;
 use crate::probability::Progress;
 use crate::shooter::Profile;
-use crate::store::fit::Fit;
+use crate::store::fit::{Fit, SHOTS};
 use crate::units::UnitSystem;
 use std::path::Path;
 
@@ -87,6 +89,26 @@ pub(super) fn read(
         .fit(shots, &file.physics)
         .map_err(|error| failure(&name, &error))?;
     Session::of(name, Fit::of(fit, shots, &file.tracker.0), place)
+}
+
+/// Ring, backspin and the tracker's constant error are those of both sessions: they are no change.
+pub(super) fn share_what_no_sensor_sees([before, after]: &mut [Session; 2]) -> Result<(), Failure> {
+    let places = [
+        (&mut before.posterior, before.place),
+        (&mut after.posterior, after.place),
+    ];
+    let ring = share_unseen(places);
+    for session in [before, after] {
+        if let Some(ring) = ring {
+            session.profile = session.profile.with(|settings| {
+                let set = settings.physics.set_restitution_on(SolidId::Ring, ring);
+                debug_assert!(set.is_ok(), "a ring of a gym");
+            })?;
+        }
+        session.probabilities =
+            usual_probabilities(&session.profile, &session.posterior, session.place, SHOTS);
+    }
+    Ok(())
 }
 
 /// Fits of one physics can be compared, and P of one place.

@@ -22,7 +22,10 @@ use serde_json::Value;
 use std::path::PathBuf;
 
 use changed_values::{causes, causes_to_draw, changes, planned, values_to_draw};
-use fitted_sessions::{Session, check_conditions, fit_by_session, read, to_one_release_height};
+use fitted_sessions::{
+    Session, check_conditions, fit_by_session, read, share_what_no_sensor_sees,
+    to_one_release_height,
+};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -78,6 +81,7 @@ pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
     }
     for sessions in &mut compared.pairs {
         let units = options.measured.units_or(sessions[0].units);
+        share_what_no_sensor_sees(sessions)?;
         to_one_release_height(sessions, units);
     }
     if !options.json {

@@ -5,7 +5,7 @@ use super::unmeasured_parameters::{UnmeasuredParameter, found_values};
 use crate::answers::fit::FitAnswer;
 use crate::answers::json::document;
 use crate::cli::failure::Failure;
-use crate::cli::measured_shots_flags::MeasuredFile;
+use crate::cli::measured_shots_flags::{MeasuredFile, with_ring};
 use crate::cli::plot_files;
 use crate::cli::run_folder::{self, RunKind};
 use crate::files::atomic_file;
@@ -46,7 +46,11 @@ pub(super) fn write(
         (SHOTS_FILE.to_owned(), rows),
     ];
     for place in 0..fit.places.len() {
-        let toml = fitted_profile_toml(fit, place, &source, &file.physics_toml, units);
+        let physics = match fit.ring_restitution {
+            Some(ring) => with_ring(&file.physics_toml, ring),
+            None => file.physics_toml.clone(),
+        };
+        let toml = fitted_profile_toml(fit, place, &source, &physics, units);
         contents.push((profile_file(place), toml.into_bytes()));
     }
     remove_further_places(folder, fit.places.len());

@@ -11,7 +11,7 @@ use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder;
 use crate::cli::terminal::{is_quiet, print_next, print_prose, print_remark, print_text};
-use crate::fitting::{Contradiction, Place, ShooterFit};
+use crate::fitting::{Contradiction, Place, ShooterFit, ShooterFitError};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
 use crate::present::fit_files::fit_note_text::fit_note_text;
@@ -50,7 +50,7 @@ pub(super) fn fit(file: &MeasuredFile, out: &Path, options: &FitOptions) -> Resu
     for warning in rows.iter().flat_map(|row| &row.warnings) {
         print_remark(warning);
     }
-    print_hints(file, &rows, out, options);
+    print_hints(file, out);
     match rows.iter().any(|row| row.result.is_err()) {
         true => Ok(code::INCOMPLETE),
         false => Ok(code::DONE),
@@ -64,16 +64,10 @@ fn fit_rows(
 ) -> Result<Vec<ShooterRow>, Failure> {
     let bars = ProgressBars::new();
     bars.begin("fitting shooters", file.shooters.len() as u64);
-    let rows = file
-        .shooters
-        .par_iter()
-        .zip(folders)
-        .map(|(shots, folder)| {
-            let row = fit_one(file, shots, folder, options);
-            bars.advance(1);
-            row
-        })
-        .collect();
+    let fits = file.fit_all(&file.shooters, &file.physics, &|| bars.advance(1));
+    let rows = file.shooters.par_iter().zip(folders).zip(fits);
+    let rows = rows.map(|((shots, folder), fit)| row_of(file, (shots, fit), folder, options));
+    let rows = rows.collect();
     bars.end();
     rows
 }
@@ -213,18 +207,12 @@ fn print_table(file: &MeasuredFile, rows: &[ShooterRow]) -> Result<(), Failure> 
 }
 
 /// Says what was written, and what to do next.
-fn print_hints(file: &MeasuredFile, rows: &[ShooterRow], out: &Path, options: &FitOptions) {
+fn print_hints(file: &MeasuredFile, out: &Path) {
     if is_quiet() {
         return;
     }
     print_unused(file);
     print_next(Some(out), &format!("bankshot advise {}", out.display()));
-    let mut fits = rows.iter().filter_map(|row| row.fit.as_ref());
-    if options.free.is_empty() && fits.any(|fit| fit.makes.labelled > 0) {
-        print_remark(
-            "Before `bankshot team --sweep`: add --free hoop_restitution to estimate the ring of this gym, on which bank or direct depends.",
-        );
-    }
 }
 
 /// What the shots of all shooters together say of the parameters of `--free`.
@@ -300,14 +288,14 @@ struct PlaceRow {
     cells: [String; 5],
 }
 
-fn fit_one(
+fn row_of(
     file: &MeasuredFile,
-    shots: &ShooterShots,
+    (shots, fit): (&ShooterShots, Result<ShooterFit, ShooterFitError>),
     folder: &Path,
     options: &FitOptions,
 ) -> Result<ShooterRow, Failure> {
     let name = file.name_of(shots);
-    let fit = match file.fit(shots, &file.physics) {
+    let fit = match fit {
         Ok(fit) => fit,
         Err(error) => {
             let place = ShooterPlace {

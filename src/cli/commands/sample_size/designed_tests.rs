@@ -57,7 +57,7 @@ fn simulate_of(
     design(&shot.profile, &shot.nominal, noise, &sizes, &bars).map_err(|error| Failure {
         code: match error {
             FitError::NotConverged { .. } => code::IMPRECISE,
-            FitError::NoScatter => code::USAGE,
+            FitError::NoScatter | FitError::NoShot { .. } => code::USAGE,
         },
         message: error.to_string(),
     })

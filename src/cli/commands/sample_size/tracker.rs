@@ -54,7 +54,7 @@ impl TrackerOfTest {
             Source::Releases => Ok(self.noise.release_covariance()),
             Source::Trajectories => tracked_flight_noise(simulator, &place, &values, &self.noise)
                 .map_err(|error| Failure::usage(format!("the current shot, as tracked: {error}"))),
-            Source::Landings => {
+            Source::Landings | Source::Makes => {
                 let noise = &self.noise.landing;
                 release_of_landing(simulator, &place, &landing, noise, values[3])
                     .map(|(_, covariance)| covariance)

@@ -1,0 +1,291 @@
+//! Flights and makes in one posterior, with what no sensor sees: the ring, the backspin, the
+//! constant error of the tracker, and how far shooters aim from their best shot.
+//!
+//! The flights alone give draws of aim and scatter under a flat prior of the aims ([`super::fit`]).
+//! The unknowns are sampled by importance ([`super::importance`]): a point of them has the weight
+//! of its prior, of the makes ([`super::makes_likelihood`]), and of the aims that it leaves, which
+//! the population holds to be near the best shot ([`super::best_aims`]). Then each point of the
+//! sample takes a draw of the flights, by the density of its aims. `docs/fitting.md` has the
+//! derivation.
+
+use super::best_aims::BestAims;
+use super::constant_error::Correction;
+use super::fitted_profile::fitted_profile;
+use super::importance::{
+    UnseenSample, WeightedPoints, effective_size, pareto_shape, probing_points, sample,
+    student_log_density, systematic,
+};
+use super::makes_likelihood::{MakesLikelihood, Unseen};
+use super::measured_release::{MeasuredRelease, Place, Values};
+use super::posterior::{Draw, FitOptions, Posterior, SpinSource};
+use super::prior::{AimPrior, UnseenPrior};
+use crate::model::Physics;
+use crate::shooter::{Profile, ProfileError};
+use nalgebra::Vector3;
+use rand::rngs::ChaCha12Rng;
+use rand::{RngExt, SeedableRng};
+
+/// Draws of the flights that the aims of a point are averaged over.
+const AVERAGED: usize = 1000;
+/// A draw of the sample takes one of every so many of the flights.
+const TURNS: usize = 4;
+/// Degrees of freedom of the aims about the best ones.
+const FREEDOM_OF_AIMS: f64 = 4.0;
+
+/// An unknown, by its place in a point.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Unknown {
+    Ring,
+    Backspin,
+    ConstantError(usize),
+}
+
+/// A shooter's shots, and what the flights say.
+#[derive(Clone)]
+pub(super) struct FlightsOf<'a> {
+    pub(super) name: &'a str,
+    /// With the usual ring, where it is not known.
+    pub(super) physics: Physics,
+    pub(super) places: &'a [Place],
+    pub(super) shots: &'a [MeasuredRelease],
+    /// More draws than are wanted.
+    pub(super) posterior: Posterior,
+}
+
+/// What a point stands for, and how it is weighed.
+struct Model<'a> {
+    unknowns: Vec<Unknown>,
+    prior: &'a UnseenPrior,
+    backspin_sd: f64,
+    /// Of each place, how the tracker's constant error changes the typical release.
+    corrections: Vec<Correction>,
+    makes: MakesLikelihood<'a>,
+    aims: Vec<Option<BestAims>>,
+    /// Values of a release whose aim is known by the flights.
+    aim_values: usize,
+}
+
+impl Model<'_> {
+    fn unseen(&self, point: &[f64]) -> Unseen {
+        let at = |unknown| {
+            let index = self.unknowns.iter().position(|other| *other == unknown);
+            index.map(|index| point[index])
+        };
+        let errors = Vector3::from_fn(|i, _| at(Unknown::ConstantError(i)).unwrap_or(0.0));
+        let ring = self.prior.ring.zip(at(Unknown::Ring));
+        Unseen {
+            ring: ring.map(|(ring, t)| ring.middle + ring.scale * t),
+            more_backspin: self.backspin_sd * at(Unknown::Backspin).unwrap_or(0.0),
+            constant_errors: errors,
+        }
+    }
+
+    fn log_prior(&self, point: &[f64], unseen: &Unseen) -> f64 {
+        let (low, high) = super::draw_probabilities::RING_RANGE;
+        if unseen
+            .ring
+            .is_some_and(|ring| !(low..=high).contains(&ring))
+        {
+            return f64::NEG_INFINITY;
+        }
+        let of_others = |ring: f64| {
+            self.prior.ring_of_others.map_or(0.0, |others| {
+                let z = (ring - others.mean) / others.sd;
+                -0.5 * z * z
+            })
+        };
+        let each = self.unknowns.iter().zip(point);
+        let each = each.map(|(unknown, &x)| match unknown {
+            Unknown::Backspin => -0.5 * x * x,
+            Unknown::Ring | Unknown::ConstantError(_) => student_log_density(x),
+        });
+        each.sum::<f64>() + unseen.ring.map_or(0.0, of_others)
+    }
+
+    /// The density of a draw's aims if the tracker errs so, but for a factor.
+    fn aims(&self, prior: &AimPrior, draw: &Draw, changes: &[Vector3<f64>]) -> f64 {
+        let scales = [prior.speed_m_s, prior.pitch_rad, prior.polar_rad];
+        let (mut square, mut dimension) = (0.0, 0.0);
+        for (place, best) in self.aims.iter().enumerate() {
+            let Some(best) = best else { continue };
+            let change = |i: usize| if i < 3 { changes[place][i] } else { 0.0 };
+            let aim = std::array::from_fn(|i| draw.means[place][i] + change(i));
+            let deviation = best.deviation(&aim);
+            for i in 0..self.aim_values {
+                square += (deviation[i] / scales[i]) * (deviation[i] / scales[i]);
+                dimension += 1.0;
+            }
+        }
+        let exponent = -0.5 * (FREEDOM_OF_AIMS + dimension);
+        libm::exp(exponent * libm::log1p(square / FREEDOM_OF_AIMS))
+    }
+
+    /// How the constant error changes the typical release of each place.
+    fn changes(&self, unseen: &Unseen) -> Vec<Vector3<f64>> {
+        let corrections = self.corrections.iter();
+        corrections
+            .map(|correction| correction.change(&unseen.constant_errors))
+            .collect()
+    }
+
+    /// A draw of the flights with what no sensor sees.
+    fn moved(&self, draw: &Draw, typical: &Draw, unseen: &Unseen) -> Draw {
+        let errors = &unseen.constant_errors;
+        let has_backspin = self.unknowns.contains(&Unknown::Backspin);
+        let places = draw.means.iter().zip(&typical.means).zip(&self.corrections);
+        let means: Vec<Values> = places
+            .map(|((mean, typical), correction)| {
+                let from_typical = Vector3::from_fn(|i, _| mean[i] - typical[i]);
+                let change = correction.change(errors) + correction.turn(errors) * from_typical;
+                let backspin = match has_backspin {
+                    true => (typical[3] + unseen.more_backspin).max(0.0),
+                    false => mean[3],
+                };
+                let value = |i: usize| typical[i] + change[i];
+                [value(0), value(1), value(2), backspin]
+            })
+            .collect();
+        let read_high = |(measured, mean): (&Values, &Values)| {
+            std::array::from_fn(|i| if i < 3 { measured[i] - mean[i] } else { 0.0 })
+        };
+        let constant_errors = draw.means.iter().zip(&means).map(read_high).collect();
+        draw.turned(&self.corrections[0].turn(errors), means)
+            .with_ring(unseen.ring)
+            .with_constant_errors(constant_errors)
+    }
+
+    fn mean_of_aims(&self, draws: &[Draw], unseen: &Unseen) -> f64 {
+        let Some(prior) = &self.prior.aim else {
+            return 1.0;
+        };
+        let changes = self.changes(unseen);
+        let step = draws.len().div_ceil(AVERAGED);
+        let some = draws.iter().step_by(step);
+        let count = some.len() as f64;
+        some.map(|draw| self.aims(prior, draw, &changes))
+            .sum::<f64>()
+            / count
+    }
+}
+
+/// The posterior of flights and makes together.
+///
+/// # Errors
+/// The fitted values make no profile.
+pub(super) fn with_unseen(
+    flights: &FlightsOf<'_>,
+    prior: &UnseenPrior,
+    options: &FitOptions,
+) -> Result<Posterior, ProfileError> {
+    let typical = flights.posterior.typical();
+    let profiles = flights
+        .places
+        .iter()
+        .map(|place| fitted_profile(flights.name, &flights.physics, &typical, place))
+        .collect::<Result<Vec<Profile>, ProfileError>>()?;
+    let mut model = model(flights, &profiles, &typical, prior, options);
+    // All over the prior.
+    let some = probing_points(model.unknowns.len(), options.seed);
+    let some: Vec<Unseen> = some.iter().map(|point| model.unseen(point)).collect();
+    model.makes.settle(&some);
+    let draws = &flights.posterior.draws;
+    let log_density = |point: &[f64]| {
+        let unseen = model.unseen(point);
+        let log_prior = model.log_prior(point, &unseen);
+        if log_prior == f64::NEG_INFINITY {
+            return log_prior;
+        }
+        let aims = model.mean_of_aims(draws, &unseen).max(f64::MIN_POSITIVE);
+        log_prior + model.makes.logarithm(&unseen) + libm::log(aims)
+    };
+    let sampled = match model.unknowns.len() {
+        1 => sample::<1>(options.seed, log_density),
+        2 => sample::<2>(options.seed, log_density),
+        3 => sample::<3>(options.seed, log_density),
+        4 => sample::<4>(options.seed, log_density),
+        5 => sample::<5>(options.seed, log_density),
+        _ => WeightedPoints {
+            points: vec![Vec::new()],
+            weights: vec![1.0],
+        },
+    };
+    let mut random = ChaCha12Rng::seed_from_u64(options.seed);
+    random.set_stream(u64::MAX - 2);
+    let first: f64 = random.random();
+    let chosen = systematic(&sampled.weights, options.draws, first);
+    let unseen_of = |index: usize| model.unseen(&sampled.points[index]);
+    let joint = chosen.into_iter().enumerate().map(|(number, index)| {
+        let unseen = unseen_of(index);
+        // Some of them in turn: all together choose no better.
+        let some = || draws.iter().skip(number % TURNS).step_by(TURNS);
+        let weights: Vec<f64> = match &prior.aim {
+            Some(prior) => {
+                let changes = model.changes(&unseen);
+                let density = |draw| model.aims(prior, draw, &changes);
+                some().map(density).collect()
+            }
+            None => vec![1.0; some().count()],
+        };
+        let place = systematic(&weights, 1, random.random())[0];
+        let draw = &draws[number % TURNS + TURNS * place];
+        model.moved(draw, &typical, &unseen).rounded()
+    });
+    let joint = joint.collect();
+    Ok(Posterior {
+        unseen: Some(UnseenSample {
+            effective_sample_size: effective_size(&sampled.weights),
+            pareto_k: pareto_shape(&sampled.weights),
+        }),
+        draws: joint,
+        ..flights.posterior.clone()
+    })
+}
+
+fn model<'a>(
+    flights: &'a FlightsOf<'_>,
+    profiles: &'a [Profile],
+    typical: &Draw,
+    prior: &'a UnseenPrior,
+    options: &FitOptions,
+) -> Model<'a> {
+    let mut unknowns = Vec::new();
+    if prior.ring.is_some() {
+        unknowns.push(Unknown::Ring);
+    }
+    let spin = flights.posterior.spin;
+    if !matches!(spin, SpinSource::Measured | SpinSource::Given) {
+        unknowns.push(Unknown::Backspin);
+    }
+    let of_place = |index: usize| {
+        let (simulator, place) = (profiles[index].simulator(), &flights.places[index]);
+        Correction::new(
+            simulator,
+            place,
+            &typical.means[index],
+            prior.constant_error,
+        )
+    };
+    if prior.constant_error.is_some() {
+        unknowns.extend((0..3).map(Unknown::ConstantError));
+    }
+    let measured = spin.measured_values();
+    let near = |place| BestAims::near(&profiles[place], typical, place);
+    Model {
+        unknowns,
+        prior,
+        backspin_sd: options.prior.backspin.sd,
+        corrections: (0..profiles.len()).map(of_place).collect(),
+        makes: MakesLikelihood::new(
+            (profiles, flights.places),
+            flights.shots,
+            (typical, measured),
+            prior.constant_error,
+            options.seed,
+        ),
+        aims: match prior.aim {
+            Some(_) => (0..profiles.len()).map(near).collect(),
+            None => Vec::new(),
+        },
+        aim_values: measured.min(3),
+    }
+}
