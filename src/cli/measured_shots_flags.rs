@@ -94,7 +94,7 @@ pub(crate) struct MeasuredShotsOptions {
     /// 'Ana=6.9 ft'.
     #[arg(long, value_name = "[NAME=]LENGTH")]
     pub(crate) release_height: Vec<String>,
-    /// Backspin, if it was not measured [default: 2.5 rev/s with a standard deviation of 0.25].
+    /// Backspin, if it was not measured [default: 2.25 rev/s with a standard deviation of 0.4].
     #[arg(long, value_name = "SPIN", allow_hyphen_values = true)]
     pub(crate) backspin: Option<String>,
     /// Restitution of this gym's ring, where it was measured [default: fitted; 0.65 without

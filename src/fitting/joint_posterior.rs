@@ -149,6 +149,7 @@ impl Model<'_> {
             std::array::from_fn(|i| if i < 3 { measured[i] - mean[i] } else { 0.0 })
         };
         let constant_errors = draw.means.iter().zip(&means).map(read_high).collect();
+        // One scatter for all places: they turn nearly alike.
         draw.turned(&self.corrections[0].turn(errors), means)
             .with_ring(unseen.ring)
             .with_constant_errors(constant_errors)

@@ -208,12 +208,12 @@ impl Draw {
             true => 1.0,
             false => covariance[(i, j)] / (sds[i] * sds[j]).max(f64::MIN_POSITIVE),
         });
-        let growth = if self.sds[0] > 0.0 {
+        let ratio = if self.sds[0] > 0.0 {
             sds[0] / self.sds[0]
         } else {
             1.0
         };
-        let coefficients = self.speed_coefficients.map(|c| c * growth);
+        let coefficients = self.speed_coefficients.map(|c| c * ratio);
         Self::new(means, sds, correlation, coefficients).with_tail_weight(self.tail_weight)
     }
 
@@ -389,8 +389,10 @@ pub enum FitError {
     /// The covariance of the measurements is not positive definite.
     #[error("the shots have no scatter that could be fitted: they are identical or lie on a line")]
     NoScatter,
-    /// No usual shot from a place goes in.
-    #[error("no usual shot from place {place} goes in; check its distance and the release height")]
+    /// No shot of an average player goes in from a place.
+    #[error(
+        "no shot of an average player goes in from place {place}; check its distance and the release height"
+    )]
     NoShot {
         /// The number of the place.
         place: usize,

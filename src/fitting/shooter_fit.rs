@@ -176,7 +176,10 @@ fn flights_of<'a>(
     unseen: &UnseenPrior,
 ) -> Result<Option<FlightsOf<'a>>, ShooterFitError> {
     if options.spin == SpinSource::NothingMeasured {
-        return Ok(None);
+        return match test.shots.is_empty() {
+            true => Err(TestError::NoShots.into()),
+            false => Ok(None),
+        };
     }
     check_releases(
         physics,

@@ -5,7 +5,8 @@ use super::page::Page;
 use super::page_data::Scene;
 use super::shot_in_words::ReportShot;
 use crate::answers::fit::FitSource;
-use crate::fitting::{ShooterFit, nominal_of};
+use crate::fitting::{ShooterFit, SpinSource, nominal_of};
+use crate::measured_shots::source::Source;
 use crate::model::league_courts::League;
 use crate::plots::shot_with_probability::PlottedShot;
 use crate::plots::svg::Plot;
@@ -59,10 +60,14 @@ pub fn fit_page(
         .collect(),
         plots,
         footer: format!(
-            "Measured in {}; tracker {} (its noise is {}), physics {}. bankshot {} ({}), profile {}.",
-            source.file,
-            source.tracker.0,
-            source.tracker.1,
+            "{}, physics {}. bankshot {} ({}), profile {}.",
+            match source.kind {
+                Source::Makes => format!("Counted in {}", source.file),
+                _ => format!(
+                    "Measured in {}; tracker {} (its noise is {})",
+                    source.file, source.tracker.0, source.tracker.1
+                ),
+            },
             source.physics,
             env!("CARGO_PKG_VERSION"),
             env!("BANKSHOT_COMMIT"),
@@ -73,7 +78,10 @@ pub fn fit_page(
 
 fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String {
     let makes = &fit.makes;
-    let seen = if makes.labelled > 0 {
+    let is_counted = source.kind == Source::Makes;
+    let seen = if is_counted {
+        format!(" {} of {} went in.", makes.made, makes.labelled)
+    } else if makes.labelled > 0 {
         format!(
             " {} of {} went in; {:.1} \u{b1} {:.1} were expected from these shots.",
             makes.made, makes.labelled, makes.expected, makes.expected_sd
@@ -102,7 +110,10 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
         "{}, estimated from {} {}.{seen}{}",
         chances.join("; "),
         fit.posterior.shots,
-        source.kind.name(),
+        match is_counted {
+            true => "counted shots",
+            false => source.kind.name(),
+        },
         warnings.concat()
     )
 }
@@ -111,7 +122,8 @@ fn answer(fit: &ShooterFit, source: &FitSource<'_>, units: UnitSystem) -> String
 /// for a bin.
 fn prediction_table(fit: &ShooterFit) -> Option<HtmlTable> {
     let makes = &fit.makes;
-    if makes.bins.is_empty() {
+    // Of counts alone the chances come from the results themselves.
+    if makes.bins.is_empty() || fit.posterior.spin == SpinSource::NothingMeasured {
         return None;
     }
     let [brier_of_share, log_loss_of_share] = makes.losses_of_share;
@@ -154,7 +166,10 @@ fn parameter_table(fit: &ShooterFit, kind: &str, units: UnitSystem) -> HtmlTable
     let columns = ["parameter", "unit", "mean", "2.5 %", "97.5 %", "source"];
     HtmlTable {
         caption: "What was fitted".to_owned(),
-        note: tests_text(fit),
+        note: match fit.posterior.spin {
+            SpinSource::NothingMeasured => String::new(),
+            _ => tests_text(fit),
+        },
         columns: columns.map(str::to_owned).to_vec(),
         rows: parameters(&fit.posterior, kind)
             .into_iter()

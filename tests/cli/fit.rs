@@ -825,6 +825,14 @@ fn contract_makes_alone_are_a_fit() {
     let best = best.exits(0).json();
     let p_of_best = best["direct"]["probability"].as_f64().unwrap();
     assert!((p_of_best - 0.72).abs() < 0.1, "{p_of_best}");
+    let none = write_file(
+        &folder,
+        "none.csv",
+        "place,attempts,makes\nfree throw,0,0\n",
+    );
+    fit(none.to_str().unwrap(), &folder.path().join("none"), &height)
+        .exits(2)
+        .says("has no usable shots");
     // A result in each row says the same.
     let mut rows = "place,made\n".to_owned();
     for number in 0..100 {

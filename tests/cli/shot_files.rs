@@ -116,6 +116,14 @@ fn gives_the_clean_fit(name: &str, bytes: &[u8], options: &[&str]) {
     let (answer, out) = fit(&file, options);
     assert_eq!(answer.code, Some(0), "{name}: {answer:?}");
     let (p, _) = probability(&out);
+    // Which shots went in is the same to the last one.
+    let made = |out: &Path| {
+        let text = fs::read_to_string(out.join("fit.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        json["observed"]["made"].as_u64().unwrap()
+    };
+    let all = shots().iter().filter(|shot| shot.made).count();
+    assert_eq!(made(&out), all as u64, "{name}");
     // Numbers that were rounded in another unit turn single simulated shots.
     assert!((p - clean()).abs() < 3e-3, "{name}: {p} for {}", clean());
 }

@@ -65,7 +65,7 @@ impl FitText<'_> {
         ));
         if self.source.kind == Source::Makes {
             answer.push(format!(
-                "Counted: {} of {} went in. No flight was measured, so the rest of this fit is a shooter of the population who would make as many.",
+                "Counted: {} of {} went in. No flight was measured: scatter and aim are those of an average player who makes as many.",
                 makes.made, makes.labelled
             ));
         } else if makes.labelled > 0 {
@@ -299,11 +299,11 @@ impl FitText<'_> {
         if !matches!(posterior.spin, SpinSource::Measured | SpinSource::Given) {
             counted.push("an unmeasured backspin".to_owned());
         }
-        let counted = match counted.is_empty() {
-            true => String::new(),
-            false => format!("The intervals count {}. ", list(&counted)),
-        };
-        format!("{counted}They leave out another board, ball or air (`bankshot physics`).")
+        const LEFT_OUT: &str = "leave out another board, ball or air (`bankshot physics`).";
+        match counted.is_empty() {
+            true => format!("The intervals {LEFT_OUT}"),
+            false => format!("The intervals count {}. They {LEFT_OUT}", list(&counted)),
+        }
     }
 
     fn details(&self) -> String {
@@ -332,7 +332,7 @@ impl FitText<'_> {
             ));
         }
         self.add_measured(&mut add);
-        if fit.makes.labelled > 0 {
+        if fit.makes.labelled > 0 && source.kind != Source::Makes {
             add(self.chances());
         }
         let [speed, pitch, polar, _] = posterior.prior_weights.map(|weight| 100.0 * weight);
