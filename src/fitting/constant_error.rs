@@ -4,6 +4,7 @@
 //! steeper by the same: the ball still came down where it was seen. So the error is taken off the
 //! landing, shot by shot.
 
+use super::draw_probabilities::lagrange;
 use super::landing::{jacobian, landing_of, release_of_landing};
 use super::measured_release::{Place, Values};
 use super::prior::ConstantErrorPrior;
@@ -18,13 +19,7 @@ const MOST: f64 = 5.0;
 
 /// The weight of each node in a value between them.
 fn weights(t: f64) -> [f64; NODES.len()] {
-    let t = t.clamp(-MOST, MOST);
-    std::array::from_fn(|k| {
-        let others = NODES.iter().enumerate().filter(|(other, _)| *other != k);
-        others
-            .map(|(_, other)| (t - other) / (NODES[k] - other))
-            .product()
-    })
+    lagrange(&NODES, t.clamp(-MOST, MOST))
 }
 
 /// How speed, pitch and polar angle of a measured release change when a constant error is taken

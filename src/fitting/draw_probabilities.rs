@@ -92,7 +92,7 @@ fn rings_of(profile: &Profile, draws: &[Draw]) -> Vec<f64> {
 }
 
 /// The weights of the values at `nodes` in that at `x` of the polynomial through them.
-fn lagrange(nodes: &[f64], x: f64) -> [f64; RINGS] {
+pub(super) fn lagrange<const N: usize>(nodes: &[f64], x: f64) -> [f64; N] {
     std::array::from_fn(|k| match nodes.get(k) {
         None => 0.0,
         Some(node) => {
@@ -347,7 +347,7 @@ impl WeightedShots {
             slopes,
             tail_weight: draw.tail_weight,
         };
-        let parts = match draw.ring_restitution {
+        let parts: [f64; RINGS] = match draw.ring_restitution {
             Some(ring) if self.rings.len() > 1 => lagrange(&self.rings, ring),
             // Of a sample for draws with rings, that in the middle.
             _ => std::array::from_fn(|k| f64::from(u8::from(k == self.rings.len() / 2))),

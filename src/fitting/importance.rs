@@ -7,10 +7,16 @@ use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Points of a stage; stages, and stages that are added while the weights are uneven.
-const STAGE: u32 = 256;
-const STAGES: usize = 3;
-const MORE_STAGES: usize = 8;
+/// How many points are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stages {
+    /// Points of a stage.
+    pub(super) points: u32,
+    /// Stages, always.
+    pub(super) count: usize,
+    /// Stages that are added while the weights are uneven.
+    pub(super) more: usize,
+}
 /// The first stage is so much wider than the prior.
 const FIRST_WIDENING: f64 = 1.5;
 /// A later one is so much wider than what it goes by.
@@ -78,18 +84,6 @@ impl<const D: usize> Proposal<D> {
     }
 }
 
-/// Points all over the prior.
-pub(super) fn probing_points(dimension: usize, seed: u64) -> Vec<Point> {
-    const PROBES: u32 = 32;
-    let scramble = Sobol::new().scrambled(ScrambleKey {
-        seed,
-        replicate: u64::MAX,
-    });
-    let value = |index, i| FIRST_WIDENING * student_quantile(scramble.point(index, i));
-    let point = |index| (0..dimension).map(|i| value(index, i)).collect();
-    (0..PROBES).map(point).collect()
-}
-
 /// The number of points that matter.
 pub(super) fn effective_size(weights: &[f64]) -> f64 {
     let sum: f64 = weights.iter().sum();
@@ -98,7 +92,7 @@ pub(super) fn effective_size(weights: &[f64]) -> f64 {
 
 /// Points of `D` unknowns weighted by a density, whose logarithm is given but for a constant.
 pub(super) fn sample<const D: usize>(
-    seed: u64,
+    (stages, seed): (Stages, u64),
     log_density: impl Fn(&[f64]) -> f64 + Sync,
 ) -> WeightedPoints {
     let sobol = Sobol::new();
@@ -107,21 +101,21 @@ pub(super) fn sample<const D: usize>(
         factor: SMatrix::identity() * FIRST_WIDENING,
     }];
     let (mut points, mut logarithms): (Vec<Point>, Vec<f64>) = (Vec::new(), Vec::new());
-    for stage in 0..STAGES + MORE_STAGES {
+    for stage in 0..stages.count + stages.more {
         let proposal = &proposals[stage];
         let key = ScrambleKey {
             seed,
             replicate: stage as u64,
         };
         let scramble = sobol.scrambled(key);
-        let drawn: Vec<Point> = (0..STAGE)
+        let drawn: Vec<Point> = (0..stages.points)
             .map(|index| proposal.point(|i| scramble.point(index, i)))
             .collect();
         logarithms.par_extend(drawn.par_iter().map(|point| log_density(point)));
         points.extend(drawn);
         let weights = weights(&points, &logarithms, &proposals);
         let is_even = effective_size(&weights) >= ENOUGH;
-        if stage + 1 >= STAGES && (is_even || stage + 1 == STAGES + MORE_STAGES) {
+        if stage + 1 >= stages.count && (is_even || stage + 1 == stages.count + stages.more) {
             return WeightedPoints { points, weights };
         }
         proposals.push(adapted(&points, weights));
@@ -267,7 +261,12 @@ mod tests {
             let square = |i: usize| ((x[i] - mean[i]) / sd[i]) * ((x[i] - mean[i]) / sd[i]);
             -0.5 * (0..3).map(square).sum::<f64>()
         };
-        let WeightedPoints { points, weights } = sample::<3>(1, density);
+        let stages = Stages {
+            points: 256,
+            count: 3,
+            more: 8,
+        };
+        let WeightedPoints { points, weights } = sample::<3>((stages, 1), density);
         assert!(effective_size(&weights) > 250.0);
         for i in 0..3 {
             let values = || points.iter().zip(&weights);

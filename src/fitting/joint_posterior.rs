@@ -8,14 +8,15 @@
 //! sample takes a draw of the flights, by the density of its aims. `docs/fitting.md` has the
 //! derivation.
 
+use super::advice::usual_probabilities;
 use super::best_aims::BestAims;
 use super::constant_error::Correction;
 use super::fitted_profile::fitted_profile;
 use super::importance::{
-    UnseenSample, WeightedPoints, effective_size, pareto_shape, probing_points, sample,
+    Stages, UnseenSample, WeightedPoints, effective_size, pareto_shape, sample,
     student_log_density, systematic,
 };
-use super::makes_likelihood::{MakesLikelihood, Unseen};
+use super::makes_likelihood::{MakesLikelihood, UnknownScales, Unseen};
 use super::measured_release::{MeasuredRelease, Place, Values};
 use super::posterior::{Draw, FitOptions, Posterior, SpinSource};
 use super::prior::{AimPrior, UnseenPrior};
@@ -24,9 +25,17 @@ use crate::shooter::{Profile, ProfileError};
 use nalgebra::Vector3;
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 
+/// Points of the unknowns. Their number does not depend on the data: one more stage would move P by
+/// its numerical error.
+const STAGES: Stages = Stages {
+    points: 1024,
+    count: 4,
+    more: 0,
+};
 /// Draws of the flights that the aims of a point are averaged over.
-const AVERAGED: usize = 1000;
+const AVERAGED: usize = 250;
 /// A draw of the sample takes one of every so many of the flights.
 const TURNS: usize = 4;
 /// Degrees of freedom of the aims about the best ones.
@@ -59,7 +68,7 @@ struct Model<'a> {
     backspin_sd: f64,
     /// Of each place, how the tracker's constant error changes the typical release.
     corrections: Vec<Correction>,
-    makes: MakesLikelihood<'a>,
+    makes: MakesLikelihood,
     aims: Vec<Option<BestAims>>,
     /// Values of a release whose aim is known by the flights.
     aim_values: usize,
@@ -169,6 +178,97 @@ impl Model<'_> {
     }
 }
 
+impl Model<'_> {
+    /// Draws of the unknowns and of the flights together. Both are put in the order of the makes that
+    /// they promise, and pairs are taken evenly over both (a lattice), so that P has next to no
+    /// noise from the choice.
+    fn joint_draws(
+        &self,
+        sampled: &WeightedPoints,
+        flights: &FlightsOf<'_>,
+        profiles: &[Profile],
+        options: &FitOptions,
+    ) -> Vec<Draw> {
+        let typical = flights.posterior.typical();
+        let promised = promised_makes(&flights.posterior, profiles);
+        let draws = in_order(&flights.posterior.draws, &promised);
+        let unseen: Vec<Unseen> = sampled
+            .points
+            .iter()
+            .map(|point| self.unseen(point))
+            .collect();
+        let expected: Vec<f64> = unseen
+            .par_iter()
+            .map(|unseen| self.makes.expected(unseen))
+            .collect();
+        let points: Vec<(&Unseen, f64)> =
+            unseen.iter().zip(sampled.weights.iter().copied()).collect();
+        let points = in_order(&points, &expected);
+        let weights: Vec<f64> = points.iter().map(|(_, weight)| *weight).collect();
+        let mut random = ChaCha12Rng::seed_from_u64(options.seed);
+        random.set_stream(u64::MAX - 2);
+        let (first, second): (f64, f64) = (random.random(), random.random());
+        let count = options.draws;
+        let chosen = systematic(&weights, count, first);
+        let stride = stride_over(count);
+        let draw = |number: usize| {
+            let position = number * stride % count;
+            let unseen = points[chosen[position]].0;
+            let along = (second + GOLDEN_RATIO * position as f64).fract();
+            // Some of the flights in turn: all together choose no better.
+            let some = || draws.iter().skip(number % TURNS).step_by(TURNS);
+            let weights: Vec<f64> = match &self.prior.aim {
+                Some(prior) => {
+                    let changes = self.changes(unseen);
+                    some()
+                        .map(|draw| self.aims(prior, draw, &changes))
+                        .collect()
+                }
+                None => vec![1.0; some().count()],
+            };
+            let place = systematic(&weights, 1, along)[0];
+            let draw = draws[number % TURNS + TURNS * place];
+            self.moved(draw, &typical, unseen).rounded()
+        };
+        (0..count).into_par_iter().map(draw).collect()
+    }
+}
+
+/// The fractional part of the golden ratio: its multiples are spread evenly.
+const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
+/// Shots of a sample that draws of flights are put in order by.
+const ORDER_SHOTS: usize = 4096;
+
+/// P of draws of the flights, over all places.
+fn promised_makes(flights: &Posterior, profiles: &[Profile]) -> Vec<f64> {
+    let mut sums = vec![0.0; flights.draws.len()];
+    for (place, profile) in profiles.iter().enumerate() {
+        let of_draws = usual_probabilities(profile, flights, place, ORDER_SHOTS).of_draws;
+        sums.iter_mut().zip(of_draws).for_each(|(sum, p)| *sum += p);
+    }
+    sums
+}
+
+/// The values in ascending order of their keys.
+fn in_order<'a, T>(values: &'a [T], keys: &[f64]) -> Vec<&'a T> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| keys[*a].total_cmp(&keys[*b]));
+    order.into_iter().map(|index| &values[index]).collect()
+}
+
+/// A step that visits each of so many positions once, neighbours far apart.
+fn stride_over(count: usize) -> usize {
+    let has_no_factor = |stride: &usize| {
+        let (mut a, mut b) = (*stride, count);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a == 1
+    };
+    let first = (GOLDEN_RATIO * count as f64) as usize;
+    (first.max(1)..).find(has_no_factor).unwrap_or(1)
+}
+
 /// The posterior of flights and makes together.
 ///
 /// # Errors
@@ -184,11 +284,7 @@ pub(super) fn with_unseen(
         .iter()
         .map(|place| fitted_profile(flights.name, &flights.physics, &typical, place))
         .collect::<Result<Vec<Profile>, ProfileError>>()?;
-    let mut model = model(flights, &profiles, &typical, prior, options);
-    // All over the prior.
-    let some = probing_points(model.unknowns.len(), options.seed);
-    let some: Vec<Unseen> = some.iter().map(|point| model.unseen(point)).collect();
-    model.makes.settle(&some);
+    let model = model(flights, &profiles, &typical, prior, options);
     let draws = &flights.posterior.draws;
     let log_density = |point: &[f64]| {
         let unseen = model.unseen(point);
@@ -200,38 +296,17 @@ pub(super) fn with_unseen(
         log_prior + model.makes.logarithm(&unseen) + libm::log(aims)
     };
     let sampled = match model.unknowns.len() {
-        1 => sample::<1>(options.seed, log_density),
-        2 => sample::<2>(options.seed, log_density),
-        3 => sample::<3>(options.seed, log_density),
-        4 => sample::<4>(options.seed, log_density),
-        5 => sample::<5>(options.seed, log_density),
+        1 => sample::<1>((STAGES, options.seed), log_density),
+        2 => sample::<2>((STAGES, options.seed), log_density),
+        3 => sample::<3>((STAGES, options.seed), log_density),
+        4 => sample::<4>((STAGES, options.seed), log_density),
+        5 => sample::<5>((STAGES, options.seed), log_density),
         _ => WeightedPoints {
             points: vec![Vec::new()],
             weights: vec![1.0],
         },
     };
-    let mut random = ChaCha12Rng::seed_from_u64(options.seed);
-    random.set_stream(u64::MAX - 2);
-    let first: f64 = random.random();
-    let chosen = systematic(&sampled.weights, options.draws, first);
-    let unseen_of = |index: usize| model.unseen(&sampled.points[index]);
-    let joint = chosen.into_iter().enumerate().map(|(number, index)| {
-        let unseen = unseen_of(index);
-        // Some of them in turn: all together choose no better.
-        let some = || draws.iter().skip(number % TURNS).step_by(TURNS);
-        let weights: Vec<f64> = match &prior.aim {
-            Some(prior) => {
-                let changes = model.changes(&unseen);
-                let density = |draw| model.aims(prior, draw, &changes);
-                some().map(density).collect()
-            }
-            None => vec![1.0; some().count()],
-        };
-        let place = systematic(&weights, 1, random.random())[0];
-        let draw = &draws[number % TURNS + TURNS * place];
-        model.moved(draw, &typical, &unseen).rounded()
-    });
-    let joint = joint.collect();
+    let joint = model.joint_draws(&sampled, flights, &profiles, options);
     Ok(Posterior {
         unseen: Some(UnseenSample {
             effective_sample_size: effective_size(&sampled.weights),
@@ -271,16 +346,23 @@ fn model<'a>(
     }
     let measured = spin.measured_values();
     let near = |place| BestAims::near(&profiles[place], typical, place);
+    let is_unknown = unknowns.contains(&Unknown::Backspin);
+    let backspin_sd = options.prior.backspin.sd;
+    let scales = UnknownScales {
+        ring: prior.ring,
+        backspin_sd: if is_unknown { backspin_sd } else { 0.0 },
+        constant_error: prior.constant_error,
+    };
     Model {
         unknowns,
         prior,
-        backspin_sd: options.prior.backspin.sd,
+        backspin_sd,
         corrections: (0..profiles.len()).map(of_place).collect(),
         makes: MakesLikelihood::new(
             (profiles, flights.places),
             flights.shots,
             (typical, measured),
-            prior.constant_error,
+            &scales,
             options.seed,
         ),
         aims: match prior.aim {

@@ -9,7 +9,7 @@ use super::best_aims::BestAims;
 use super::draw_probabilities::{RING_RANGE, under_ring};
 use super::fitted_profile::fitted_profile;
 use super::importance::{
-    UnseenSample, WeightedPoints, effective_size, pareto_shape, sample, student_log_density,
+    Stages, UnseenSample, WeightedPoints, effective_size, pareto_shape, sample, student_log_density,
 };
 use super::landing::{CENTRE_DEPTH_M, Landing, release_of_landing};
 use super::measured_release::{MeasuredRelease, Place, Values, nominal_of};
@@ -69,6 +69,11 @@ thread_local! {
     static WORKSPACE: RefCell<BatchWorkspace> = RefCell::default();
 }
 
+const STAGES: Stages = Stages {
+    points: 256,
+    count: 3,
+    more: 8,
+};
 /// Scatters, ring and backspin in a point.
 const UNKNOWNS: usize = 5;
 
@@ -131,7 +136,7 @@ pub(super) fn posterior_of_makes(
         unseen,
     };
     let WeightedPoints { points, weights } =
-        sample::<UNKNOWNS>(options.seed, |point| counts.log_density(point));
+        sample::<UNKNOWNS>((STAGES, options.seed), |point| counts.log_density(point));
     let mut random = ChaCha12Rng::seed_from_u64(options.seed);
     random.set_stream(u64::MAX - 3);
     let first: f64 = random.random();

@@ -125,7 +125,7 @@ fn gives_the_clean_fit(name: &str, bytes: &[u8], options: &[&str]) {
     let all = shots().iter().filter(|shot| shot.made).count();
     assert_eq!(made(&out), all as u64, "{name}");
     // Numbers that were rounded in another unit turn single simulated shots.
-    assert!((p - clean()).abs() < 3e-3, "{name}: {p} for {}", clean());
+    assert!((p - clean()).abs() < 1e-3, "{name}: {p} for {}", clean());
 }
 
 /// A file of these bytes is refused with a message that has all of these parts.
