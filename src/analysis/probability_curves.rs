@@ -1,14 +1,20 @@
 //! P along each variable of a nominal shot, the others fixed.
 
 use crate::math::evenly_spaced::Linspace;
-use crate::probability::{NominalProbabilities, Sampler, Silent, TABLE_RMS_ERROR};
+use crate::math::sobol::Scramble;
+use crate::probability::{Neighbourhood, Sampler, Silent};
 use crate::search_space::TablePlan;
 use crate::shooter::{Nominal, NominalVariable, Profile};
 use serde::{Deserialize, Serialize};
 
-/// Values of a curve that is sampled.
-const SAMPLED_VALUES: usize = 13;
-/// Shots of each of them.
+/// Values of a curve.
+const VALUES: usize = 17;
+/// Points of the sample, and how much greater its errors are than the shooter's. It tells P of
+/// shots within so many standard deviations.
+const POINTS: u32 = 32_768;
+const WIDENING: f64 = 1.6;
+const FARTHEST: f64 = 2.5;
+/// Shots of a value that the sample does not tell.
 const SAMPLES: u64 = 16384;
 
 /// P at one value of a variable.
@@ -32,43 +38,15 @@ pub struct ProbabilityCurve {
     pub points: Vec<CurvePoint>,
 }
 
-/// The lines of a window's table through the nominal shot nearest to the given one.
-pub(crate) fn from_table(table: &NominalProbabilities, nominal: &Nominal) -> Vec<ProbabilityCurve> {
-    let counts = table.counts();
-    let index = table.index_of(nominal);
-    NominalVariable::SEARCHABLE
-        .into_iter()
-        .filter_map(|variable| {
-            let axis = NominalVariable::TABLE_AXES
-                .iter()
-                .position(|&axis| axis == variable)?;
-            (counts[axis] > 1).then_some((variable, axis))
-        })
-        .map(|(variable, axis)| ProbabilityCurve {
-            variable,
-            points: (0..counts[axis])
-                .map(|i| {
-                    let mut at = index;
-                    at[axis] = i;
-                    let (probability, nominal) = table.at(at);
-                    CurvePoint {
-                        value: nominal.get(variable),
-                        probability,
-                        standard_error: TABLE_RMS_ERROR,
-                    }
-                })
-                .collect(),
-        })
-        .collect()
-}
-
-/// Curves by Sobol points, for errors that a table does not have.
-pub(crate) fn from_samples(
+/// Curves about a nominal shot, twice as far as a window about it. Of a variable with an error they
+/// are from one weighted sample, of another one each value has shots of its own.
+pub(crate) fn about(
     profile: &Profile,
-    sampler: &Sampler<'_>,
+    (sampler, scramble): (&Sampler<'_>, &Scramble),
     window: &TablePlan,
     nominal: &Nominal,
 ) -> Vec<ProbabilityCurve> {
+    let near = Neighbourhood::simulate(profile, nominal, (scramble, POINTS), WIDENING);
     let max_side_spin = profile.shooter().max_side_spin_rad_s;
     let search = profile.search();
     // Twice as far as the window, within what is searched.
@@ -93,15 +71,27 @@ pub(crate) fn from_samples(
         .map(|variable| (variable, range(variable)))
         .filter(|(_, (low, high))| low < high)
         .map(|(variable, (low, high))| {
-            let values = Linspace::new(low, high, SAMPLED_VALUES).values();
+            let values = Linspace::new(low, high, VALUES).values();
             let seed = profile.search().seed;
+            let sigma = profile
+                .shooter()
+                .dispersion
+                .sigma(variable.as_release_variable(), nominal);
+            let is_weighed = low >= nominal.get(variable) - FARTHEST * sigma
+                && high <= nominal.get(variable) + FARTHEST * sigma;
             let points = values.map(|value| {
                 let shot = nominal.with(variable, value);
-                let estimate = sampler.estimate_within(&shot, 0.0, SAMPLES, seed, &Silent);
+                let (probability, standard_error) = if is_weighed {
+                    let weighed = near.probability(&shot);
+                    (weighed.probability, weighed.standard_error)
+                } else {
+                    let estimate = sampler.estimate_within(&shot, 0.0, SAMPLES, seed, &Silent);
+                    (estimate.probability, estimate.standard_error)
+                };
                 CurvePoint {
                     value,
-                    probability: estimate.probability,
-                    standard_error: estimate.standard_error,
+                    probability,
+                    standard_error,
                 }
             });
             ProbabilityCurve {

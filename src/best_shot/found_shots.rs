@@ -49,11 +49,8 @@ pub struct BestShot {
     pub nominal: Nominal,
     /// Its probability.
     pub estimate: Estimate,
-    /// The largest P of this kind in the table of the window; `None` where errors are correlated or
-    /// the side spin is searched, which a table does not have.
-    pub table_probability: Option<f64>,
-    /// The plan of the window.
-    pub window: TablePlan,
+    /// P by the shots that the search found it with; `None` where it went by counts alone.
+    pub search_probability: Option<f64>,
     /// The outcome of the error-free shot.
     pub outcome: Outcome,
     /// P along each variable of the shot.

@@ -165,14 +165,14 @@ impl<'a> PatternSearch<'a> {
 
     /// The top of the parabola through a shot and two others, `reach` to each side, along one
     /// variable after the other: near an optimum it is closer than a climb comes, which compares
-    /// values that err. `values` are the numbers of made shots of some shots. Beside a limit the
+    /// values that err. `values` are P of some shots, or in its place. Beside a limit the
     /// three shots end there. Where the parabola has no top, its higher end is taken. A variable
     /// stays where the other kind is within reach.
     pub(super) fn top_of_parabolas(
         &self,
         start: &Start,
         reach: impl Fn(NominalVariable) -> f64,
-        values: impl Fn(&[Nominal]) -> Vec<u64>,
+        values: impl Fn(&[Nominal]) -> Vec<f64>,
     ) -> Start {
         let mut best = start.nominal;
         for &variable in &self.variables {
@@ -191,8 +191,8 @@ impl<'a> PatternSearch<'a> {
             {
                 continue;
             }
-            let made = values(&shots);
-            let [low, middle, high] = [0, 1, 2].map(|i| made[i] as f64);
+            let values = values(&shots);
+            let [low, middle, high] = [0, 1, 2].map(|i| values[i]);
             let curvature = low - 2.0 * middle + high;
             let part = match high - low {
                 rise if curvature < 0.0 => (-0.5 * rise / curvature).clamp(-1.0, 1.0),

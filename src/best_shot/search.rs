@@ -4,13 +4,12 @@
 //! From each of them a pattern search climbs on P itself, integrated with few Sobol points that are
 //! the same everywhere (common random numbers). (The table alone does not tell which start is best:
 //! it does not resolve the P of a very accurate shooter.) From the best optima, parabolas along
-//! each variable, through P of more points, lead to the top. About the highest top a finer table, a
-//! window, gives P of all nominal shots to about 0.001. While its best shot lies at the window's
-//! edge, the window moves on. A parabola along each axis finds the optimum between the points of
-//! the table. A table has four independent errors and one side spin: where errors are correlated,
-//! or the side spin is searched too, parabolas through P of still more points take the place of the
-//! windows. P of the winner is computed again with independent scrambles, so it is not the largest
-//! of many noisy values.
+//! each variable lead to the top, through P of all nominal shots nearby from one weighted sample of
+//! shots ([`Neighbourhood`]). About the highest top this is done again with more shots. While the
+//! top is far from the middle of the sample, the next sample is about the top. Weights tell nothing
+//! of a variable that has no error: where such a one is searched, P of each shot is counted. P of
+//! the winner is computed again with independent scrambles, so it is not the largest of many noisy
+//! values.
 
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
 use super::pattern_search::{PatternSearch, Start, first_step};
@@ -20,10 +19,10 @@ use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, SensitivityTopics};
 use crate::math::sobol::{Scramble, ScrambleKey};
 use crate::probability::{
-    Counts, Estimate, NominalProbabilities, NominalTable, Progress, Sampler, Silent,
+    Counts, Estimate, Neighbourhood, NominalProbabilities, NominalTable, Progress, Sampler, Silent,
 };
 use crate::search_space::{PlanError, TablePlan};
-use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
+use crate::shooter::{LEAST_WIDE_SPIN_RAD_S, Nominal, NominalVariable, Profile, ShotKind};
 use rayon::prelude::*;
 
 /// A climb has this part of the Sobol points of the parabolas through its optimum, and at least so
@@ -47,12 +46,20 @@ const SAME_SIDE_SPIN_RAD_S: f64 = 6.0;
 const LEAST_LOSS: f64 = 0.01;
 /// Tops are compared with this many times the Sobol points of the parabolas.
 const COMPARISON_FACTOR: u32 = 8;
-/// Greatest number of windows in a row.
-const MAX_WINDOWS: u32 = 4;
-/// Fraction of a window's half width over which the parabola about its best shot is taken.
-const PARABOLA_REACH: f64 = 0.3;
-/// Reach of a parabola where P comes from samples, which are less exact than a table.
-const SAMPLED_PARABOLA_REACH: f64 = 0.7;
+/// Samples of a neighbourhood have this many times the Sobol points of the parabolas: about each
+/// promising optimum, and about the highest top.
+const NEIGHBOURHOOD_FACTOR: u32 = 4;
+const LAST_FACTOR: u32 = 16;
+/// Their errors are so many times the shooter's.
+const WIDENING: f64 = 1.4;
+/// Greatest number of neighbourhoods in a row.
+const MOST_NEIGHBOURHOODS: u32 = 4;
+/// Reaches of the parabolas of one round after the other in standard deviations; and in half widths
+/// of a window, where P is counted.
+const PARABOLA_REACHES: [f64; 2] = [1.0, 0.5];
+const COUNTED_PARABOLA_REACH: f64 = 0.7;
+/// A sample tells P of shots within so many standard deviations of its middle.
+const NEIGHBOURHOOD: f64 = 1.5;
 
 /// Finds the best direct and the best bank shot of a profile, on the current rayon pool.
 ///
@@ -142,13 +149,11 @@ fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
     }
 }
 
-/// The refined optimum of a kind, and the window about it.
-struct Window {
-    plan: TablePlan,
+/// The refined optimum of a kind.
+struct Top {
     nominal: Nominal,
-    /// The largest P of the window's table, where there is one.
-    table_probability: Option<f64>,
-    curves: Vec<ProbabilityCurve>,
+    /// P by the sample that it was found with, if there was one.
+    probability: Option<f64>,
 }
 
 /// The optimum of a climb, after its number of made shots.
@@ -226,26 +231,20 @@ impl<'a> BestShotSearch<'a> {
         let Some(optimum) = optimum else {
             return Ok(Err(NoShot::Impossible(kind)));
         };
-        let search = self.profile.search();
-        let searches_side_spin = search.choice.includes(NominalVariable::SideSpin);
-        let tables_hold = self.profile.shooter().dispersion.is_of_eq_25() && !searches_side_spin;
-        let mut window = if tables_hold {
-            self.move_window(kind, optimum)?
-        } else {
-            self.parabolas_with_more_points(kind, optimum)?
-        };
+        let mut top = self.last_top(kind, optimum)?;
         let mut probable = None;
-        if !self.is_made(&window.nominal) {
+        if !self.is_made(&top.nominal) {
             // The most probable shot goes in only with errors: take the best one that needs none.
-            let table = self.table(&window.plan);
+            let table = self.table(&self.plan.window(self.profile, &top.nominal)?);
             if let Some((p, clean)) = self.best_clean(kind, &table) {
-                probable = Some(window.nominal);
-                window.table_probability = tables_hold.then_some(p);
-                window.nominal = clean;
-                window.curves = probability_curves::from_table(&table, &clean);
+                probable = Some(top.nominal);
+                top = Top {
+                    nominal: clean,
+                    probability: Some(p),
+                };
             }
         }
-        let (nominal, estimate) = self.straight_if_as_good(kind, &window.nominal);
+        let (nominal, estimate) = self.straight_if_as_good(kind, &top.nominal);
         let outcome = self
             .profile
             .simulator()
@@ -267,10 +266,9 @@ impl<'a> BestShotSearch<'a> {
         Ok(Ok(BestShot {
             nominal,
             estimate,
-            table_probability: window.table_probability,
-            window: window.plan,
+            search_probability: top.probability,
             outcome,
-            curves: window.curves,
+            curves: self.curves(&nominal)?,
             sensitivity: sensitivity::analyse(self.profile, &nominal, self.topics, self.progress),
             aim_past_centre_m: aim_past_centre_m(self.profile, &nominal),
             mass_outside: self.plan.mass_outside(self.profile, &nominal),
@@ -385,8 +383,7 @@ impl<'a> BestShotSearch<'a> {
         let nominals: Vec<Nominal> = starts
             .par_iter()
             .map(|start| {
-                let once = self.top_of_parabolas(start, first_step, points);
-                let top = self.top_of_parabolas(&once, first_step, points);
+                let top = self.top_near(start, NEIGHBOURHOOD_FACTOR * points);
                 self.progress.advance(1);
                 self.unless_worse(top.nominal, start.nominal, points)
             })
@@ -430,15 +427,72 @@ impl<'a> BestShotSearch<'a> {
         self.pattern_search().climb(starts, values, self.progress)
     }
 
-    /// The top of the parabolas along all variables. (It can move those of the variables before.)
-    fn top_of_parabolas(
-        &self,
-        start: &Start,
-        reach: impl Fn(NominalVariable) -> f64,
-        points: u32,
-    ) -> Start {
-        let values = |nominals: &[Nominal]| self.made(nominals, points);
-        self.pattern_search().top_of_parabolas(start, reach, values)
+    /// Whether every variable that is searched has an error: then the shots of a sample also tell P
+    /// of nominal shots beside its own.
+    fn has_all_errors(&self, nominal: &Nominal) -> bool {
+        let mut variables = self.profile.search().choice.iter();
+        variables.all(|variable| self.sigma(variable, nominal) > 0.0)
+    }
+
+    fn sigma(&self, variable: NominalVariable, nominal: &Nominal) -> f64 {
+        let dispersion = &self.profile.shooter().dispersion;
+        dispersion.sigma(variable.as_release_variable(), nominal)
+    }
+
+    /// How far apart shots are that a sample compares, as its standard deviation.
+    fn spread(&self, variable: NominalVariable, nominal: &Nominal) -> f64 {
+        let sigma = self.sigma(variable, nominal);
+        match variable {
+            NominalVariable::Backspin | NominalVariable::SideSpin => {
+                sigma.max(LEAST_WIDE_SPIN_RAD_S)
+            }
+            _ => sigma,
+        }
+    }
+
+    /// The top near a shot, by samples of so many points.
+    fn top_near(&self, start: &Start, points: u32) -> Top {
+        let search = self.pattern_search();
+        if !self.has_all_errors(&start.nominal) {
+            let counted = |nominals: &[Nominal]| {
+                let made = self.made(nominals, points / NEIGHBOURHOOD_FACTOR);
+                made.into_iter().map(|made| made as f64).collect()
+            };
+            let once = search.top_of_parabolas(start, first_step, counted);
+            return Top {
+                nominal: search.top_of_parabolas(&once, first_step, counted).nominal,
+                probability: None,
+            };
+        }
+        let mut top = *start;
+        let mut probability = 0.0;
+        for _ in 0..MOST_NEIGHBOURHOODS {
+            let centre = top.nominal;
+            let spread = |variable| self.spread(variable, &centre);
+            let sample = (&self.scramble, points);
+            let near = Neighbourhood::simulate(self.profile, &centre, sample, WIDENING);
+            let weighed = |nominals: &[Nominal]| {
+                let each = nominals.iter();
+                each.map(|nominal| near.probability(nominal).probability)
+                    .collect()
+            };
+            for part in PARABOLA_REACHES {
+                let reach = |variable| part * spread(variable);
+                top = search.top_of_parabolas(&top, reach, weighed);
+            }
+            probability = near.probability(&top.nominal).probability;
+            let is_near = |variable: NominalVariable| {
+                let moved = top.nominal.get(variable) - centre.get(variable);
+                moved.abs() < NEIGHBOURHOOD * spread(variable)
+            };
+            if self.profile.search().choice.iter().all(is_near) {
+                break;
+            }
+        }
+        Top {
+            nominal: top.nominal,
+            probability: Some(probability),
+        }
     }
 
     /// The numbers of made shots under the first points of the search's scramble.
@@ -452,101 +506,46 @@ impl<'a> BestShotSearch<'a> {
         PatternSearch::new(self.profile, &self.plan.bracket)
     }
 
-    /// The optimum near one that was found with fewer points, for errors that a table does not
-    /// have.
-    fn parabolas_with_more_points(
-        &self,
-        kind: ShotKind,
-        optimum: Nominal,
-    ) -> Result<Window, PlanError> {
-        let plan = self.plan.window(self.profile, &optimum)?;
-        let reach = |variable| {
-            let axis = plan.nominal.axis(variable);
-            SAMPLED_PARABOLA_REACH * 0.5 * (axis.high - axis.low)
-        };
-        let points = self.compared_points();
+    /// The top near the optimum that was found with fewer points.
+    fn last_top(&self, kind: ShotKind, optimum: Nominal) -> Result<Top, PlanError> {
         let start = Start {
             kind,
             nominal: optimum,
         };
-        let near = self.top_of_parabolas(&start, first_step, points);
-        let top = self.top_of_parabolas(&near, reach, points).nominal;
-        let nominal = self.unless_worse(top, optimum, points);
-        let plan = self.plan.window(self.profile, &nominal)?;
-        let curves = if self.topics.curves {
-            probability_curves::from_samples(self.profile, &self.sampler, &plan, &nominal)
-        } else {
-            Vec::new()
+        if self.has_all_errors(&optimum) {
+            return Ok(self.top_near(&start, LAST_FACTOR * self.points()));
+        }
+        let plan = self.plan.window(self.profile, &optimum)?;
+        let reach = |variable| {
+            let axis = plan.nominal.axis(variable);
+            COUNTED_PARABOLA_REACH * 0.5 * (axis.high - axis.low)
         };
-        Ok(Window {
-            plan,
-            nominal,
-            table_probability: None,
-            curves,
+        let points = self.compared_points();
+        let counted = |nominals: &[Nominal]| {
+            let made = self.made(nominals, points);
+            made.into_iter().map(|made| made as f64).collect()
+        };
+        let search = self.pattern_search();
+        let near = search.top_of_parabolas(&start, first_step, counted);
+        let top = search.top_of_parabolas(&near, reach, counted).nominal;
+        Ok(Top {
+            nominal: self.unless_worse(top, optimum, points),
+            probability: None,
         })
     }
 
-    /// Computes windows about a nominal shot until the best shot does not lie at the edge.
-    fn move_window(&self, kind: ShotKind, start: Nominal) -> Result<Window, PlanError> {
-        let mut window = Window {
-            plan: self.plan.window(self.profile, &start)?,
-            nominal: start,
-            table_probability: None,
-            curves: Vec::new(),
-        };
-        for _ in 0..MAX_WINDOWS {
-            let table = self.table(&window.plan);
-            let maxima = maxima_by_pitch(self.profile, &table);
-            let Some(&(p, maximum)) = separated(&maxima[kind.index()]).first() else {
-                break;
-            };
-            window.table_probability = Some(p);
-            window.nominal = self.between_points(kind, &table, &maximum);
-            window.curves = probability_curves::from_table(&table, &window.nominal);
-            let next = self.plan.window(self.profile, &window.nominal)?;
-            if !window.plan.nominal.is_at_edge(&maximum, &next.nominal) {
-                break;
-            }
-            window.plan = next;
+    /// P along each variable of a shot, if that is asked for.
+    fn curves(&self, nominal: &Nominal) -> Result<Vec<ProbabilityCurve>, PlanError> {
+        if !self.topics.curves {
+            return Ok(Vec::new());
         }
-        Ok(window)
-    }
-
-    /// The top of the parabola through a table's best shot and two others, along each axis. If the
-    /// parabola has no top between them, or leads to the other kind, the table's best shot itself.
-    fn between_points(
-        &self,
-        kind: ShotKind,
-        table: &NominalProbabilities,
-        best: &Nominal,
-    ) -> Nominal {
-        let mut nominal = *best;
-        let index = table.index_of(best);
-        let counts = table.counts();
-        for (axis, variable) in NominalVariable::TABLE_AXES.into_iter().enumerate() {
-            let reach = ((PARABOLA_REACH * 0.5 * counts[axis] as f64) as usize).max(1);
-            if index[axis] < reach || index[axis] + reach >= counts[axis] {
-                continue;
-            }
-            let at = |i: usize| {
-                let mut index = index;
-                index[axis] = i;
-                table.at(index)
-            };
-            let [low, middle, high] =
-                [index[axis] - reach, index[axis], index[axis] + reach].map(at);
-            let curvature = low.0 - 2.0 * middle.0 + high.0;
-            if curvature < 0.0 {
-                let part = (0.5 * (low.0 - high.0) / curvature).clamp(-1.0, 1.0);
-                let half_width = 0.5 * (high.1.get(variable) - low.1.get(variable));
-                *nominal.get_mut(variable) += part * half_width;
-            }
-        }
-        if ShotKind::of(self.profile, &nominal) == kind {
-            nominal
-        } else {
-            *best
-        }
+        let plan = self.plan.window(self.profile, nominal)?;
+        Ok(probability_curves::about(
+            self.profile,
+            (&self.sampler, &self.scramble),
+            &plan,
+            nominal,
+        ))
     }
 
     /// The limits that a nominal shot lies at.

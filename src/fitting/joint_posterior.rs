@@ -179,9 +179,9 @@ impl Model<'_> {
 }
 
 impl Model<'_> {
-    /// Draws of the unknowns and of the flights together. Both are put in the order of the makes that
-    /// they promise, and pairs are taken evenly over both (a lattice), so that P has next to no
-    /// noise from the choice.
+    /// Draws of the unknowns and of the flights together. Both are put in the order of the makes
+    /// that they promise, and pairs are taken evenly over both (a lattice), so that P has next to
+    /// no noise from the choice.
     fn joint_draws(
         &self,
         sampled: &WeightedPoints,

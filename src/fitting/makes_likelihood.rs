@@ -1,8 +1,8 @@
 //! How likely the made and missed shots are for a ring, a backspin and a constant error of the
 //! tracker.
 //!
-//! The chance that a measured shot goes in is the share of the releases that it may have been, given
-//! its measurement. For each place a table of simulated shots is made once, over speed and
+//! The chance that a measured shot goes in is the share of the releases that it may have been,
+//! given its measurement. For each place a table of simulated shots is made once, over speed and
 //! direction, at a few angles, backspins and rings, and smoothed by the uncertainty of a
 //! measurement. Each chance is then looked up, so that the likelihood is smooth in the unknowns and
 //! in the data.
@@ -487,8 +487,9 @@ mod tests {
     use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
     use nalgebra::{SMatrix, Vector4};
 
-    /// Authority: releases of each shot, simulated under the ring itself. Chances of shots from short
-    /// of the ring to the board agree within what the tables' cells leave open; the seed is fixed.
+    /// Authority: releases of each shot, simulated under the ring itself. Chances of shots from
+    /// short of the ring to the board agree within what the tables' cells leave open; the seed is
+    /// fixed.
     #[test]
     fn val_chances_are_those_of_simulated_releases() {
         let place = Place {

@@ -12,6 +12,7 @@ mod gaussian_cell_weights;
 pub mod grid_integration;
 mod made_shot_counts;
 pub mod monte_carlo;
+mod neighbourhood;
 mod nominal_probability_table;
 mod probability_and_error;
 mod progress;
@@ -19,6 +20,7 @@ mod shared_sample;
 mod sobol_integration;
 
 pub(crate) use made_shot_counts::Counts;
+pub(crate) use neighbourhood::Neighbourhood;
 pub use nominal_probability_table::{
     MAX_BATCH_BYTES, NominalProbabilities, NominalTable, TABLE_RMS_ERROR,
 };

@@ -15,10 +15,10 @@ use crate::shooter::{Nominal, Profile, ReleaseDistribution, ReleaseVariable};
 use rayon::prelude::*;
 
 /// Points of each scramble.
-const POINTS: u32 = 512;
+const POINTS: u32 = 256;
 /// Scrambles whose shots are simulated together: enough shots for the lanes, and few enough for the
 /// threads.
-const SCRAMBLES_PER_BATCH: usize = 16;
+const SCRAMBLES_PER_BATCH: usize = 32;
 /// Least effective number of shots, as a share of all, for which densities may be exchanged.
 const MIN_EFFECTIVE_SHARE: f64 = 0.5;
 

@@ -24,6 +24,7 @@ pub use nominal::{Nominal, NominalOverrides};
 pub use plausibility::{Implausible, implausible_values, nominal_values_not_fixed};
 pub use profile::{OutputSettings, Profile, ProfileError, ProfileSettings, Shooter};
 pub use release_distribution::ReleaseDistribution;
+pub(crate) use release_distribution::{LEAST_WIDE_SPIN_RAD_S, NormalsMap};
 pub use release_errors::ReleaseDispersion;
 pub use release_variable::{NominalVariable, ReleaseVariable};
 pub use search_settings::{Search, SearchChoice, SearchSettings, TableGrid};

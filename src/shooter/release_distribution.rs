@@ -12,6 +12,9 @@ use crate::model::BallState;
 
 const N: usize = ReleaseVariable::COUNT;
 
+/// What a spin is worth shows over much more than people's errors of it.
+pub(crate) const LEAST_WIDE_SPIN_RAD_S: f64 = 3.0;
+
 /// The normal distribution of the releases about one nominal shot.
 #[derive(Clone, Debug)]
 pub struct ReleaseDistribution {
@@ -59,14 +62,40 @@ impl ReleaseDistribution {
             .state(release.speed_m_s, release.backspin_rad_s)
     }
 
+    /// The same with errors so many times as great. Those of the spins are at least
+    /// [`LEAST_WIDE_SPIN_RAD_S`], where there are any.
+    pub(crate) fn widened(mut self, factor: f64) -> Self {
+        for variable in ReleaseVariable::ALL {
+            let sigma = &mut self.sigmas[variable.index()];
+            let least = match variable {
+                ReleaseVariable::Backspin | ReleaseVariable::SideSpin if *sigma > 0.0 => {
+                    LEAST_WIDE_SPIN_RAD_S
+                }
+                _ => 0.0,
+            };
+            *sigma = (*sigma * factor).max(least);
+        }
+        self
+    }
+
     /// Calls `use_state` with the state at the release of each point `from..to` of a scramble. The
     /// points are drawn in blocks: the normals of a block, variable by variable, are those of
     /// [`ReleaseDistribution::from_uniform`].
     pub(crate) fn for_each_state(
         &self,
         scramble: &Scramble,
-        (from, to): (u32, u32),
+        range: (u32, u32),
         mut use_state: impl FnMut(BallState),
+    ) {
+        self.for_each_state_and_normals(scramble, range, |state, _| use_state(state));
+    }
+
+    /// The same with the independent standard normals of each point.
+    pub(crate) fn for_each_state_and_normals(
+        &self,
+        scramble: &Scramble,
+        (from, to): (u32, u32),
+        mut use_state: impl FnMut(BallState, &[f64; N]),
     ) {
         const BLOCK: usize = 256;
         let mut points = [[0.0; N]; BLOCK];
@@ -95,7 +124,7 @@ impl ReleaseDistribution {
                 }
             }
             for point in points {
-                use_state(self.state(*point));
+                use_state(self.state(*point), point);
             }
         }
     }
@@ -136,6 +165,31 @@ impl ReleaseDistribution {
         scales * libm::exp(0.5 * (squares(independent) - squares(&own)))
     }
 
+    /// The independent standard normals here of the releases that `other` has for its own.
+    pub(crate) fn normals_from(&self, other: &Self) -> NormalsMap {
+        let (mine, others) = (values(&self.centre), values(&other.centre));
+        let here = |independent: &[f64; N]| {
+            let mut normals = other.correlation.apply(*independent);
+            for k in 0..N {
+                if self.sigmas[k] != other.sigmas[k] || mine[k] != others[k] {
+                    normals[k] =
+                        (others[k] + other.sigmas[k] * normals[k] - mine[k]) / self.sigmas[k];
+                }
+            }
+            self.correlation.independent_of(&normals)
+        };
+        let offsets = here(&[0.0; N]);
+        let mut rows = [[0.0; N]; N];
+        for j in 0..N {
+            let unit = std::array::from_fn(|k| f64::from(u8::from(k == j)));
+            let column = here(&unit);
+            for (i, row) in rows.iter_mut().enumerate() {
+                row[j] = column[i] - offsets[i];
+            }
+        }
+        NormalsMap { rows, offsets }
+    }
+
     /// The release for independent standard normals, in the order of [`ReleaseVariable::ALL`].
     #[must_use]
     pub fn from_normal(&self, independent: [f64; N]) -> Release {
@@ -155,6 +209,14 @@ impl ReleaseDistribution {
             height_above_hoop_m: centre.height_above_hoop_m + error(ReleaseVariable::Height),
         }
     }
+}
+
+/// The independent standard normals of a release of one distribution in another: `A z + b`.
+pub(crate) struct NormalsMap {
+    /// `A`.
+    pub(crate) rows: [[f64; N]; N],
+    /// `b`.
+    pub(crate) offsets: [f64; N],
 }
 
 /// The values of a release in the order of [`ReleaseVariable::ALL`].

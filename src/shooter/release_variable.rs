@@ -139,7 +139,7 @@ impl NominalVariable {
         self.as_release_variable().dimension()
     }
 
-    const fn as_release_variable(self) -> ReleaseVariable {
+    pub(crate) const fn as_release_variable(self) -> ReleaseVariable {
         match self {
             Self::Speed => ReleaseVariable::Speed,
             Self::Pitch => ReleaseVariable::Pitch,

@@ -166,7 +166,7 @@ columns! {
     SHARE_BOARD: RealColumn = "share_board", Real, None;
     SHARE_BOARD_AND_RING: RealColumn = "share_board_and_ring", Real, None;
     UNRESOLVED: IntegerColumn = "unresolved", Integer, None;
-    TABLE_PROBABILITY: RealColumn = "table_probability", Real, None;
+    SEARCH_PROBABILITY: RealColumn = "search_probability", Real, None;
     ERROR_FREE_KIND: TextColumn = "error_free_kind", Text, None;
     ENTRY_ANGLE: RealColumn = "entry_angle", Real, Angle;
     AIM_PAST_CENTRE: RealColumn = "aim_past_centre", Real, ShortLength;

@@ -142,8 +142,8 @@ impl ResultRow {
         ] {
             self.set_real(column, value);
         }
-        if let Some(p) = shot.table_probability {
-            self.set_real(columns::TABLE_PROBABILITY, p);
+        if let Some(p) = shot.search_probability {
+            self.set_real(columns::SEARCH_PROBABILITY, p);
         }
         self.set_integer(columns::SHOTS, estimate.shots);
         self.set_integer(columns::UNRESOLVED, estimate.unresolved);

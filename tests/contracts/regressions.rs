@@ -31,18 +31,18 @@ const PROBABILITIES: [u64; 3] = [
 /// Speed, pitch angle, polar angle, backspin and P: direct, bank.
 const BEST_SHOTS: [[u64; 5]; 2] = [
     [
-        0x401b_7ff6_ae82_378e,
-        0x3fef_7561_37fb_aa64,
-        0x3feb_f54e_81b4_e70b,
+        0x401b_8373_de29_96d1,
+        0x3fef_8f4e_ca36_5a7b,
+        0x3feb_efb2_4113_f205,
         0x4032_d97c_7f33_21d2,
-        0x3fe6_b980_0000_0000,
+        0x3fe6_bd00_0000_0000,
     ],
     [
-        0x401c_d270_5308_c3e1,
-        0x3fef_5994_56c1_9791,
-        0x3fe8_f692_a166_2047,
+        0x401c_ba48_6411_f0bd,
+        0x3fee_a7c9_4040_4dcf,
+        0x3fe8_f24b_a46b_bac4,
         0x4032_d97c_7f33_21d2,
-        0x3fe7_9180_0000_0000,
+        0x3fe7_a980_0000_0000,
     ],
 ];
 

@@ -110,7 +110,7 @@ fn prop_curves_pass_through_the_best_shot() {
             // The line passes through the table's nominal shot nearest to the best one, not through
             // the table's best.
             assert!(
-                (top - shot.table_probability.unwrap()).abs() < 0.005,
+                (top - shot.search_probability.unwrap()).abs() < 0.005,
                 "{curve:?}"
             );
             assert!(curve.points.is_sorted_by(|a, b| a.value < b.value));
@@ -151,7 +151,7 @@ fn prop_the_best_shot_is_not_below_its_own_table() {
         .with(|settings| settings.search.standard_error = Some(0.0007))
         .unwrap();
     for shot in find(&profile) {
-        let difference = shot.estimate.probability - shot.table_probability.unwrap();
+        let difference = shot.estimate.probability - shot.search_probability.unwrap();
         let error = shot.estimate.standard_error;
         println!("best minus table: {difference:+.5}, standard error {error:.5}");
         // Three times the rms error of the table, and 4.5 standard errors: a false alarm for fewer
@@ -177,6 +177,6 @@ fn regress_releases_beyond_the_greatest_nominal_speed_count() {
     assert!(direct.nominal.speed_m_s <= limit_m_s);
     let lost = free.estimate.probability - direct.estimate.probability;
     assert!(lost < 0.02, "{lost}");
-    let difference = direct.estimate.probability - direct.table_probability.unwrap();
+    let difference = direct.estimate.probability - direct.search_probability.unwrap();
     assert!(difference.abs() < 0.02, "{difference}");
 }
