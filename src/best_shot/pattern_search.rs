@@ -11,6 +11,9 @@ const MAX_TRIALS: u32 = 200;
 /// Two shots whose variables differ by less are the same but for rounding, SI units.
 const SAME_SHOT: f64 = 1e-9;
 
+/// Shots to each side that are tried beside the border to the other kind.
+const BORDER_STEPS: i32 = 8;
+
 /// The steps of a climb, as multiples of the first step of each variable.
 const SCALES: &[f64] = &[1.0, 0.5];
 
@@ -200,6 +203,36 @@ impl<'a> PatternSearch<'a> {
                 rise => rise.signum(),
             };
             best = at(centre + part * step);
+        }
+        Start {
+            nominal: best,
+            ..*start
+        }
+    }
+
+    /// The best of some shots of the kind along one variable after the other, where the other kind is
+    /// within reach: parabolas do not go there, and the best shot may lie at the border.
+    pub(super) fn best_beside_other_kind(
+        &self,
+        start: &Start,
+        reach: impl Fn(NominalVariable) -> f64,
+        values: impl Fn(&[Nominal]) -> Vec<f64>,
+    ) -> Start {
+        let mut best = start.nominal;
+        for &variable in &self.variables {
+            let step = reach(variable) / f64::from(BORDER_STEPS);
+            let at = |k: i32| self.moved(&best, variable, f64::from(k) * step);
+            let all = (-BORDER_STEPS..=BORDER_STEPS).map(at);
+            let shots: Vec<Nominal> = all
+                .filter(|shot| ShotKind::of(self.profile, shot) == start.kind)
+                .collect();
+            if shots.len() == 2 * BORDER_STEPS as usize + 1 {
+                continue;
+            }
+            let each = shots.iter().zip(values(&shots));
+            if let Some((shot, _)) = each.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                best = *shot;
+            }
         }
         Start {
             nominal: best,

@@ -479,6 +479,7 @@ impl<'a> BestShotSearch<'a> {
             for part in PARABOLA_REACHES {
                 let reach = |variable| part * spread(variable);
                 top = search.top_of_parabolas(&top, reach, weighed);
+                top = search.best_beside_other_kind(&top, reach, weighed);
             }
             probability = near.probability(&top.nominal).probability;
             let is_near = |variable: NominalVariable| {
