@@ -210,8 +210,8 @@ impl<'a> PatternSearch<'a> {
         }
     }
 
-    /// The best of some shots of the kind along one variable after the other, where the other kind is
-    /// within reach: parabolas do not go there, and the best shot may lie at the border.
+    /// The best of some shots of the kind along one variable after the other, where the other kind
+    /// is within reach: parabolas do not go there, and the best shot may lie at the border.
     pub(super) fn best_beside_other_kind(
         &self,
         start: &Start,
