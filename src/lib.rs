@@ -87,5 +87,8 @@ pub mod plots;
 #[cfg(feature = "app")]
 pub mod report;
 
+#[cfg(feature = "studio")]
+pub mod studio;
+
 #[cfg(feature = "app")]
 pub mod cli;

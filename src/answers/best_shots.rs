@@ -30,7 +30,7 @@
 use super::json::{Answer, Named, Provenance, si_name};
 use crate::analysis::bank_aim::closed_form_polar_rad;
 use crate::analysis::sensitivity::{Difference, Sensitivity};
-use crate::best_shot::{BestShot, BestShots, Limit, NotCleanShot};
+use crate::best_shot::{BestShot, BestShots, DraftShot, Limit, NotCleanShot};
 use crate::dynamics::OutcomeKind;
 use crate::shooter::{Profile, ReleaseVariable, ShotKind};
 use serde::Serialize;
@@ -52,6 +52,21 @@ impl From<Difference> for Gain {
             standard_error: difference.standard_error,
         }
     }
+}
+
+/// What a search knows before it refines the best shots.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BestShotsDraft {
+    /// The best shot of each kind so far.
+    pub shots: Vec<DraftShot>,
+    /// What made the answer.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+impl Answer for BestShotsDraft {
+    const NAME: &'static str = "best_shots_draft";
 }
 
 /// A more probable shot that misses when it has no errors.

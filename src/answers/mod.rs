@@ -19,6 +19,8 @@ pub mod sample_size;
 #[cfg(test)]
 mod schema;
 pub mod sessions;
+pub mod shot_file;
+pub mod swarm;
 pub mod sweep_status;
 pub mod table_rows;
 pub mod trace;

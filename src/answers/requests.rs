@@ -17,15 +17,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::best_shots::BestShotsAnswer;
+use super::best_shots::{BestShotsAnswer, BestShotsDraft};
 use super::checks::{CheckAnswer, Checked};
 use super::json::{Provenance, document, in_units};
 use super::nominal_shot::{FieldError, NominalRequest, ShotNote, notes_of_shot};
 use super::probability::Effort;
 use super::rebounds::{self, ReboundsAnswer};
+use super::swarm::SwarmAnswer;
 use super::trace::{TraceAnswer, points};
 use crate::analysis::rebounds::find_rebounds;
-use crate::best_shot::{self, BestShotError};
+use crate::best_shot::{self, BestShotError, DraftShot};
 use crate::config::{ConfigError, parse_profile};
 use crate::dynamics::StateError;
 use crate::probability::Progress;
@@ -47,6 +48,15 @@ pub struct ProfileRequest {
     /// The units of the answer; else those of the profile.
     #[serde(default)]
     pub units: Option<UnitSystem>,
+    /// The distance from the hoop's centre, such as `12 ft`; else that of the profile.
+    #[serde(default)]
+    pub distance: Option<String>,
+    /// The angle on the court; else that of the profile.
+    #[serde(default)]
+    pub angle: Option<String>,
+    /// The preset of the physics, such as `ncaa`; else the physics of the profile.
+    #[serde(default)]
+    pub physics: Option<String>,
 }
 
 /// A question about a profile.
@@ -85,6 +95,16 @@ pub enum Request {
         /// The shot.
         #[serde(default)]
         shot: NominalRequest,
+    },
+    /// The paths of some simulated shots, each with its own errors.
+    Swarm {
+        /// The profile.
+        profile: ProfileRequest,
+        /// The shot.
+        #[serde(default)]
+        shot: NominalRequest,
+        /// How many shots, at most [`MAX_SWARM`].
+        shots: usize,
     },
 }
 
@@ -132,9 +152,43 @@ pub enum RequestError {
 }
 
 impl ProfileRequest {
+    /// The text of the profile with the changes that are asked for.
+    ///
+    /// # Errors
+    /// The text is no TOML, or has another value where a table should be.
+    pub fn text(&self) -> Result<String, RequestError> {
+        let changes = [
+            ("location", "distance", &self.distance),
+            ("location", "angle", &self.angle),
+            ("physics", "preset", &self.physics),
+        ];
+        if changes.iter().all(|(.., value)| value.is_none()) {
+            return Ok(self.toml.clone());
+        }
+        // The text as it is must be right first, so that a message is about what the user wrote.
+        parse_profile(&self.toml, &self.origin)?;
+        let unreadable = |error: toml_edit::TomlError| FieldError {
+            field: "toml",
+            message: error.to_string(),
+        };
+        let mut document: toml_edit::DocumentMut =
+            (self.toml.parse()).map_err(|error| RequestError::Fields(vec![unreadable(error)]))?;
+        if self.physics.is_some() {
+            document.remove("physics");
+        }
+        for (table, key, value) in changes {
+            let Some(value) = value else { continue };
+            let item = document.entry(table).or_insert_with(toml_edit::table);
+            if let Some(table) = item.as_table_like_mut() {
+                table.insert(key, toml_edit::value(value.as_str()));
+            }
+        }
+        Ok(document.to_string())
+    }
+
     /// The profile, and what should be said of it.
     fn read(&self) -> Result<(Profile, Vec<Note>), RequestError> {
-        let mut profile = parse_profile(&self.toml, &self.origin)?;
+        let mut profile = parse_profile(&self.text()?, &self.origin)?;
         if let Some(units) = self.units {
             profile = profile.with(|settings| settings.output.units = units)?;
         }
@@ -152,21 +206,57 @@ impl Request {
     /// # Errors
     /// What is asked is wrong or not possible.
     pub fn answer(&self, progress: &dyn Progress) -> Result<Answered, RequestError> {
+        self.answer_with_drafts(progress, &|_| ())
+    }
+
+    /// The answer. Before it, `draft` gets what is known early: of [`Self::BestShots`] the kind,
+    /// the shot and P to 0.01 or so of each kind, in a fraction of the time; of
+    /// [`Self::Probability`] the whole answer to [`DRAFT_ERROR`], unless an effort was asked for.
+    ///
+    /// # Errors
+    /// What is asked is wrong or not possible.
+    pub fn answer_with_drafts(
+        &self,
+        progress: &dyn Progress,
+        draft: &(dyn Fn(Value) + Sync),
+    ) -> Result<Answered, RequestError> {
         match self {
             Self::Check { profile } => check(profile),
             Self::BestShots { profile } => {
                 let (profile, notes) = profile.read()?;
-                let best = best_shot::find(&profile, progress)?;
+                let units = profile.output().units;
+                let early = |shots: &[DraftShot]| {
+                    let answer = BestShotsDraft {
+                        shots: shots.to_vec(),
+                        provenance: Provenance::of(&profile),
+                    };
+                    draft(document(&answer, units));
+                };
+                let best = best_shot::find_with_draft(&profile, progress, &early)?;
                 let answer = BestShotsAnswer::new(&profile, &best);
-                let document = document(&answer, profile.output().units);
+                let document = document(&answer, units);
                 Ok(Answered { document, notes })
             }
+            Self::Swarm {
+                profile,
+                shot,
+                shots,
+            } => swarm(profile, shot, *shots),
             Self::Probability {
                 profile,
                 shot,
                 effort,
                 reach,
-            } => probability(profile, shot, effort, reach.as_deref(), progress),
+            } => {
+                if *effort == Effort::default() {
+                    let rough = Effort {
+                        target: Some(DRAFT_ERROR),
+                        ..Effort::default()
+                    };
+                    draft(probability(profile, shot, &rough, None, progress)?.document);
+                }
+                probability(profile, shot, effort, reach.as_deref(), progress)
+            }
             Self::Trace { profile, shot } => trace(profile, shot),
         }
     }
@@ -217,6 +307,33 @@ fn probability(
     }
     let document = document(&answer, profile.output().units);
     Ok(Answered { document, notes })
+}
+
+/// The standard error of the early answer about a shot.
+pub const DRAFT_ERROR: f64 = 0.005;
+
+/// Most shots of a swarm.
+pub const MAX_SWARM: usize = 200;
+
+fn swarm(
+    profile: &ProfileRequest,
+    shot: &NominalRequest,
+    shots: usize,
+) -> Result<Answered, RequestError> {
+    let (profile, _) = profile.read()?;
+    let nominal = shot.resolve(&profile).map_err(RequestError::Fields)?;
+    if !(1..=MAX_SWARM).contains(&shots) {
+        return Err(RequestError::Fields(vec![FieldError {
+            field: "shots",
+            message: format!("must be from 1 to {MAX_SWARM}"),
+        }]));
+    }
+    let answer = SwarmAnswer::simulate(&profile, &nominal, shots)?;
+    let document = document(&answer, profile.output().units);
+    Ok(Answered {
+        document,
+        notes: Vec::new(),
+    })
 }
 
 /// Spacing of the points of a path in flight, s.

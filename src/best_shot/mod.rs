@@ -15,7 +15,7 @@ pub use physics_comparison::{
     ChangeOfP, PhysicsChange, PhysicsComparison, PhysicsOf, PhysicsRow, PhysicsVariant, SameShot,
     SameShotProbability, compare_physics, likely_board_restitutions, physics_variants, together,
 };
-pub use search::{find, find_kinds};
+pub use search::{DraftShot, find, find_kinds, find_with_draft};
 pub use shot_table::{
     InterpolationCheck, MOST_HALVINGS, MOST_NODES, ShotTable, ShotTableError, ShotTableRequest,
     TableFinding, TableKind, TableShot,

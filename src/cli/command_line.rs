@@ -16,6 +16,8 @@ use super::commands::report::ReportOptions;
 use super::commands::sample_size::SampleSizeOptions;
 use super::commands::shot::ShotOptions;
 use super::commands::simulate::SimulateOptions;
+#[cfg(feature = "studio")]
+use super::commands::studio::StudioOptions;
 use super::commands::sweep::{MergeOptions, SweepOptions};
 use super::commands::sweep_status::{MissingOptions, StatusOptions, VerifyOptions};
 use super::commands::table::TableOptions;
@@ -67,7 +69,7 @@ pub(crate) struct Arguments {
 
 /// The commands by what people do with them, as the help of the program lists them.
 pub(crate) const GROUPS: [(&str, &[&str]); 7] = [
-    ("Start", &["new", "check"]),
+    ("Start", &["studio", "new", "check"]),
     ("Shots", &["best", "angles", "shot", "trace", "physics"]),
     (
         "Measured players",
@@ -148,6 +150,9 @@ pub(crate) enum Command {
     Merge(MergeOptions),
     /// Write one HTML page of a result, with tables, maps and a view of the shots.
     Report(ReportOptions),
+    /// Open a page in the browser: shots, players, the court, launchers.
+    #[cfg(feature = "studio")]
+    Studio(StudioOptions),
     /// Simulate one shot and list its events.
     Trace(TraceOptions),
     /// Print the JSON schema of profiles and sweeps, for editors of TOML.

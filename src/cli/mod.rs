@@ -26,6 +26,8 @@ mod value_parsers;
 use crate::probability::Progress;
 use clap::{CommandFactory, FromArgMatches};
 use command_line::{Arguments, Command};
+#[cfg(feature = "studio")]
+use commands::studio;
 use commands::{
     advise, angles, best, check, coach, compare, figures, fit, map, new, physics, plan, report,
     sample_size, shot, simulate, sweep, sweep_status, table, team, trace,
@@ -157,6 +159,8 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Missing(options) => sweep_status::missing(options),
         Command::Merge(options) => sweep::merge(options),
         Command::Report(options) => report::run(options),
+        #[cfg(feature = "studio")]
+        Command::Studio(options) => studio::run(options),
         Command::Figures { out } => figures::run(out),
         Command::Trace(options) => trace::run(options),
         Command::Schema => {

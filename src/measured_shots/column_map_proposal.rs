@@ -182,6 +182,8 @@ const SHORT_NAMES: [(&str, &str); 14] = [
 /// A column with what it may hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProposedMap {
+    /// The index of the column.
+    pub column: usize,
     /// The quantity or label.
     pub target: &'static str,
     /// What `--map` takes; `UNIT` stands where nothing says the unit.
@@ -382,6 +384,7 @@ impl<'a> Proposal<'a> {
                 && !letters_of(name).contains("release");
             let summary = columns.summary(index);
             maps.push(ProposedMap {
+                column: index,
                 target,
                 map,
                 is_complete,

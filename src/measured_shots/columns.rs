@@ -149,7 +149,8 @@ pub enum Label {
     Shot,
 }
 
-const LABELS: [(&str, Label); 7] = [
+/// The labels with their names in a file.
+pub const LABELS: [(&str, Label); 7] = [
     ("made", Label::Made),
     ("attempts", Label::Attempts),
     ("makes", Label::Makes),

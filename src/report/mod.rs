@@ -19,6 +19,6 @@ pub mod sweep_page;
 pub mod team_page;
 
 pub use html_table::HtmlTable;
-pub use page_data::Scene;
+pub use page_data::{Scene, court_record};
 pub use report_error::ReportError;
 pub use shot_in_words::ReportShot;

@@ -2,16 +2,15 @@
 
 use super::shot_in_words::ReportShot;
 use crate::answers::json::in_si;
+use crate::answers::swarm::path;
 use crate::dynamics::{Release, Simulator, StateError};
-use crate::math::vector::Vec3;
+use crate::model::Physics;
 use crate::model::league_courts::Court;
 use crate::units::{UnitSystem, rounded};
 use serde_json::{Value, json};
 
 /// Spacing of the points of a path, s.
 const INTERVAL_S: f64 = 0.04;
-/// Points closer in time than this are merged, s.
-const MIN_INTERVAL_S: f64 = 0.002;
 
 /// Where the shots of a page are taken.
 #[derive(Clone, Debug)]
@@ -46,7 +45,7 @@ impl Scene {
             .fold(0.0, f64::max);
         Ok(json!({
             "shots": records,
-            "court": self.court_record(),
+            "court": court_record(&self.court, self.simulator.physics()),
             "far_x_m": to_centimetre(far_x_m),
             "first_place": first_place,
         }))
@@ -70,55 +69,10 @@ impl Scene {
         Ok(record)
     }
 
-    fn court_record(&self) -> Value {
-        let physics = self.simulator.physics();
-        let mut record = serde_json::to_value(self.court).unwrap_or_default();
-        for (name, value) in [
-            ("three_break_x_m", self.court.three_break_x_m()),
-            ("hoop_height_m", physics.hoop_plane_height_m()),
-            ("board_distance_m", physics.board_distance_m),
-            ("board_width_m", physics.board_width_m),
-            ("board_height_m", physics.board_height_m),
-            ("board_centre_height_m", physics.board_centre_z_m()),
-            ("board_edge_radius_m", physics.board_edge.radius_m()),
-            ("ring_radius_m", physics.ring_radius_m),
-            ("bracket_width_m", physics.bracket_width_m),
-            ("ball_radius_m", physics.ball_radius_m),
-        ] {
-            record[name] = in_si(&rounded(value));
-        }
-        record
-    }
-
-    /// The path of the error-free shot: `[t, x, y, z]` to the millisecond and the centimetre, about
-    /// every [`INTERVAL_S`] and at each event.
+    /// The path of the error-free shot: `[t, x, y, z]`, about every [`INTERVAL_S`] and at each event.
     fn path(&self, shot: &ReportShot) -> Result<Value, StateError> {
         let trace = self.simulator.trace(&self.release(shot), INTERVAL_S)?;
-        let events = trace.events.iter();
-        let mut points: Vec<(f64, Vec3<f64>)> = events
-            .map(|event| (event.time_s, event.state.position_m))
-            .collect();
-        // In contact the trace has many more samples than the page needs.
-        let mut last_s = f64::NEG_INFINITY;
-        for sample in &trace.samples {
-            if sample.time_s - last_s >= 0.9 * INTERVAL_S {
-                points.push((sample.time_s, sample.state.position_m));
-                last_s = sample.time_s;
-            }
-        }
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points.dedup_by(|a, b| a.0 - b.0 < MIN_INTERVAL_S);
-        Ok(points
-            .into_iter()
-            .map(|(time_s, position)| {
-                json!([
-                    (1000.0 * time_s).round() / 1000.0,
-                    to_centimetre(position.x),
-                    to_centimetre(position.y),
-                    to_centimetre(position.z)
-                ])
-            })
-            .collect())
+        Ok(json!(path(&trace, INTERVAL_S)))
     }
 
     fn release(&self, shot: &ReportShot) -> Release {
@@ -140,4 +94,25 @@ impl Scene {
 /// A length rounded to the centimetre, m. Adding 0 turns a negative zero into zero.
 fn to_centimetre(length_m: f64) -> f64 {
     (100.0 * length_m).round() / 100.0 + 0.0
+}
+
+/// The lines of a court, and the hoop with its board and the ball, in metres.
+#[must_use]
+pub fn court_record(court: &Court, physics: &Physics) -> Value {
+    let mut record = serde_json::to_value(court).unwrap_or_default();
+    for (name, value) in [
+        ("three_break_x_m", court.three_break_x_m()),
+        ("hoop_height_m", physics.hoop_plane_height_m()),
+        ("board_distance_m", physics.board_distance_m),
+        ("board_width_m", physics.board_width_m),
+        ("board_height_m", physics.board_height_m),
+        ("board_centre_height_m", physics.board_centre_z_m()),
+        ("board_edge_radius_m", physics.board_edge.radius_m()),
+        ("ring_radius_m", physics.ring_radius_m),
+        ("bracket_width_m", physics.bracket_width_m),
+        ("ball_radius_m", physics.ball_radius_m),
+    ] {
+        record[name] = in_si(&rounded(value));
+    }
+    record
 }

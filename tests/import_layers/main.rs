@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The layers. Each may use those before it.
-const LAYERS: [&str; 20] = [
+const LAYERS: [&str; 21] = [
     "math",
     "units",
     "files",
@@ -26,6 +26,7 @@ const LAYERS: [&str; 20] = [
     "sweep",
     "plots",
     "report",
+    "studio",
     "cli",
 ];
 

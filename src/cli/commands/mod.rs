@@ -17,6 +17,8 @@ pub(super) mod report;
 pub(super) mod sample_size;
 pub(super) mod shot;
 pub(super) mod simulate;
+#[cfg(feature = "studio")]
+pub(super) mod studio;
 pub(super) mod sweep;
 pub(super) mod sweep_status;
 mod sweep_summary;
