@@ -14,6 +14,9 @@ use serde::Serialize;
 
 /// Classified shots.
 pub(super) const CLASSIFIED: u32 = 16384;
+/// Estimates of fewer shots are rough: a part of so many of them is classified.
+const FULL: u64 = 32_768;
+const PART_OF_ROUGH: u64 = 4;
 /// Shots that are simulated together.
 pub(super) const BATCH: usize = 2048;
 
@@ -42,12 +45,17 @@ pub struct MissBreakdown {
 }
 
 /// The first states of the Sobol points about a nominal shot.
-pub(super) fn first_states(profile: &Profile, nominal: &Nominal, seed: u64) -> Vec<BallState> {
+pub(super) fn first_states(
+    profile: &Profile,
+    nominal: &Nominal,
+    seed: u64,
+    count: u32,
+) -> Vec<BallState> {
     let sampler = Sampler::new(profile);
     let scramble = sampler.scramble(ScrambleKey { seed, replicate: 0 });
     let distribution = ReleaseDistribution::new(profile, nominal);
-    let mut starts = Vec::with_capacity(CLASSIFIED as usize);
-    distribution.for_each_state(&scramble, (0, CLASSIFIED), |state| starts.push(state));
+    let mut starts = Vec::with_capacity(count as usize);
+    distribution.for_each_state(&scramble, (0, count), |state| starts.push(state));
     starts
 }
 
@@ -59,7 +67,14 @@ pub fn classify_misses(
     estimate: &Estimate,
     seed: u64,
 ) -> MissBreakdown {
-    let starts = first_states(profile, nominal, seed);
+    // Of a rough estimate a part as well, so that they take no longer than it does.
+    let part = estimate.shots / PART_OF_ROUGH;
+    let count = if estimate.shots < FULL {
+        part.max(64) as u32
+    } else {
+        CLASSIFIED
+    };
+    let starts = first_states(profile, nominal, seed, count);
     let simulator = profile.simulator();
     // In lanes first: only misses need their path.
     let kinds: Vec<(OutcomeKind, f64)> = starts

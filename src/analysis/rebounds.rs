@@ -68,7 +68,7 @@ pub fn find_rebounds(
     seed: u64,
     reach_m: f64,
 ) -> Vec<Rebound> {
-    let starts = first_states(profile, nominal, seed);
+    let starts = first_states(profile, nominal, seed, CLASSIFIED);
     let heights = rebound_heights_m(profile, reach_m);
     let simulator = profile.simulator();
     // In lanes first: only misses need their path.

@@ -22,6 +22,7 @@ pub struct FieldError {
 
 /// A nominal shot as it is asked about: quantities with their units, such as `24.3 ft/s`. What is
 /// not given comes from the profile.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NominalRequest {

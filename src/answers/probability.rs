@@ -127,6 +127,7 @@ impl Method {
 }
 
 /// How P is computed, and how precisely.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Effort {

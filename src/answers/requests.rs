@@ -37,6 +37,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// A profile as it is asked about.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProfileRequest {
@@ -60,6 +61,7 @@ pub struct ProfileRequest {
 }
 
 /// A question about a profile.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "question", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Request {
@@ -211,7 +213,7 @@ impl Request {
 
     /// The answer. Before it, `draft` gets what is known early: of [`Self::BestShots`] the kind,
     /// the shot and P to 0.01 or so of each kind, in a fraction of the time; of
-    /// [`Self::Probability`] the whole answer to [`DRAFT_ERROR`], unless an effort was asked for.
+    /// [`Self::Probability`] the whole answer from [`DRAFT_SHOTS`], unless an effort was asked for.
     ///
     /// # Errors
     /// What is asked is wrong or not possible.
@@ -250,7 +252,7 @@ impl Request {
             } => {
                 if *effort == Effort::default() {
                     let rough = Effort {
-                        target: Some(DRAFT_ERROR),
+                        budget: Some(DRAFT_SHOTS),
                         ..Effort::default()
                     };
                     draft(probability(profile, shot, &rough, None, progress)?.document);
@@ -309,8 +311,8 @@ fn probability(
     Ok(Answered { document, notes })
 }
 
-/// The standard error of the early answer about a shot.
-pub const DRAFT_ERROR: f64 = 0.005;
+/// Simulated shots of the early answer about a shot: its standard error is 0.002 to 0.005.
+pub const DRAFT_SHOTS: u64 = 4096;
 
 /// Most shots of a swarm.
 pub const MAX_SWARM: usize = 200;

@@ -3,7 +3,7 @@
 use super::json::{Answer, in_results};
 use super::{
     advice, along_variable, best_shots, checks, fit, physics, probability, sample_size, sessions,
-    sweep_status, table_rows, trace,
+    shot_file, swarm, sweep_status, table_rows, trace,
 };
 use crate::store::sealed::FORMAT_VERSION;
 use crate::units::UnitSystem;
@@ -71,6 +71,9 @@ fn rename(schema: &mut Value, units: UnitSystem) {
 fn schema(units: UnitSystem) -> Value {
     let (mut all, mut defs) = (Vec::new(), Map::new());
     add::<best_shots::BestShotsAnswer>(&mut all, &mut defs, units);
+    add::<best_shots::BestShotsDraft>(&mut all, &mut defs, units);
+    add::<swarm::SwarmAnswer>(&mut all, &mut defs, units);
+    add::<shot_file::ShotFileAnswer>(&mut all, &mut defs, units);
     add::<probability::ProbabilityAnswer>(&mut all, &mut defs, units);
     add::<along_variable::AlongAnswer>(&mut all, &mut defs, units);
     add::<table_rows::PitchCurveAnswer>(&mut all, &mut defs, units);

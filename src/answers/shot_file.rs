@@ -289,7 +289,10 @@ impl ShotFileRequest {
             distance_m: (named.map(|place| place.distance_m))
                 .or(length("distance", &self.distance)?),
             court_angle_rad: named.map(|place| place.angle_rad),
-            release_heights_m: height.map(|height_m| (None, height_m)).into_iter().collect(),
+            release_heights_m: height
+                .map(|height_m| (None, height_m))
+                .into_iter()
+                .collect(),
             backspin_rad_s: None,
             noise: tracker.noise,
         };

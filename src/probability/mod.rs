@@ -25,6 +25,6 @@ pub use nominal_probability_table::{
     MAX_BATCH_BYTES, NominalProbabilities, NominalTable, TABLE_RMS_ERROR,
 };
 pub use probability_and_error::{Estimate, MadeShares};
-pub use progress::{Progress, Silent};
+pub use progress::{Progress, Pulse, Silent};
 pub(crate) use shared_sample::{MadeReleases, SharedSample};
 pub use sobol_integration::{MAX_SHOTS, MIN_SHOTS, REPLICATES, Sampler};

@@ -20,3 +20,18 @@ impl Progress for Silent {
     fn advance(&self, _units: u64) {}
     fn end(&self) {}
 }
+
+/// Passes on only that work goes on, without an amount: for parts of a stage whose own progress is
+/// counted elsewhere. A receiver that ends the work can do so here too.
+#[derive(Clone, Copy)]
+pub struct Pulse<'a>(pub &'a dyn Progress);
+
+impl Progress for Pulse<'_> {
+    fn begin(&self, _stage: &str, _total: u64) {
+        self.0.advance(0);
+    }
+    fn advance(&self, _units: u64) {
+        self.0.advance(0);
+    }
+    fn end(&self) {}
+}

@@ -62,7 +62,11 @@ fn token<'a>(headers: &'a HeaderMap, cookie_name: &str) -> Option<&'a str> {
 
 fn refuse(shared: &Shared, request: &Request) -> Option<Refusal> {
     let headers = request.headers();
-    let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
+    let text = |name| {
+        headers
+            .get(name)
+            .and_then(|value: &HeaderValue| value.to_str().ok())
+    };
     let Some(host) = text(header::HOST).filter(|host| is_own_host(host, shared)) else {
         return Some(Refusal::forbidden(
             "this name is not an address of the studio; use the address that the terminal shows",
@@ -74,12 +78,15 @@ fn refuse(shared: &Shared, request: &Request) -> Option<Refusal> {
         return Some(Refusal::forbidden("another page may not use the studio"));
     }
     let is_page = matches!(*request.method(), Method::GET | Method::HEAD)
-        && !["/api/", "/files/"].iter().any(|start| request.uri().path().starts_with(start));
+        && !["/api/", "/files/"]
+            .iter()
+            .any(|start| request.uri().path().starts_with(start));
     let site = headers.get("sec-fetch-site").map(HeaderValue::as_bytes);
     if !is_page && site.is_some_and(|site| !matches!(site, b"same-origin" | b"none")) {
         return Some(Refusal::forbidden("another page may not use the studio"));
     }
-    if is_page || token(headers, &shared.cookie_name()).is_some_and(|t| are_equal(t, &shared.token)) {
+    if is_page || token(headers, &shared.cookie_name()).is_some_and(|t| are_equal(t, &shared.token))
+    {
         return None;
     }
     Some(Refusal::forbidden(
@@ -105,13 +112,17 @@ pub(super) async fn guard(
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-store"),
     ] {
-        response.headers_mut().insert(name, HeaderValue::from_static(value));
+        response
+            .headers_mut()
+            .insert(name, HeaderValue::from_static(value));
     }
     for (name, value) in [
         ("cross-origin-opener-policy", "same-origin"),
         ("cross-origin-resource-policy", "same-origin"),
     ] {
-        response.headers_mut().insert(name, HeaderValue::from_static(value));
+        response
+            .headers_mut()
+            .insert(name, HeaderValue::from_static(value));
     }
     response
 }
@@ -132,7 +143,10 @@ pub(super) fn sign_in(shared: &Shared, query: &str) -> Result<Option<Response>, 
         shared.cookie_name(),
         shared.token
     );
-    let to = [(header::LOCATION, "/"), (header::SET_COOKIE, cookie.as_str())];
+    let to = [
+        (header::LOCATION, "/"),
+        (header::SET_COOKIE, cookie.as_str()),
+    ];
     Ok(Some((StatusCode::SEE_OTHER, to).into_response()))
 }
 
@@ -143,7 +157,12 @@ mod tests {
     #[test]
     fn contract_only_addresses_of_the_server_are_hosts() {
         let shared = Shared::for_test("127.0.0.1:4747");
-        for own in ["127.0.0.1:4747", "localhost:4747", "[::1]:4747", "LOCALHOST:4747"] {
+        for own in [
+            "127.0.0.1:4747",
+            "localhost:4747",
+            "[::1]:4747",
+            "LOCALHOST:4747",
+        ] {
             assert!(is_own_host(own, &shared), "{own}");
         }
         for other in [
@@ -162,7 +181,10 @@ mod tests {
     #[test]
     fn contract_the_token_is_read_from_its_cookie_alone() {
         let mut headers = HeaderMap::new();
-        headers.insert(header::COOKIE, "a=1; bankshot_4747=abc; bankshot_47=x".parse().unwrap());
+        headers.insert(
+            header::COOKIE,
+            "a=1; bankshot_4747=abc; bankshot_47=x".parse().unwrap(),
+        );
         assert_eq!(token(&headers, "bankshot_4747"), Some("abc"));
         assert_eq!(token(&headers, "bankshot_47"), Some("x"));
         assert_eq!(token(&headers, "bankshot_4"), None);

@@ -131,14 +131,20 @@ impl Content {
             fits: folders_with(&all, "fit.json"),
             sweeps: folders_with(&all, "configuration.json"),
             uploads: uploads.collect(),
-            files: all.iter().filter(|e| kind(&e.name).is_some()).cloned().collect(),
+            files: all
+                .iter()
+                .filter(|e| kind(&e.name).is_some())
+                .cloned()
+                .collect(),
         }
     }
 }
 
 fn kind(name: &str) -> Option<&'static str> {
     let (_, end) = name.rsplit_once('.')?;
-    let found = KINDS.iter().find(|(known, _)| end.eq_ignore_ascii_case(known));
+    let found = KINDS
+        .iter()
+        .find(|(known, _)| end.eq_ignore_ascii_case(known));
     found.map(|(_, kind)| *kind)
 }
 
@@ -148,21 +154,30 @@ pub(super) async fn content(State(shared): State<Arc<Shared>>) -> Json<Content> 
 
 /// The folder of a fit.
 pub(super) fn fit_folder(shared: &Shared, name: &str) -> Result<PathBuf, Refusal> {
-    let is_known = Content::of(&shared.folder).fits.iter().any(|known| known == name);
+    let is_known = Content::of(&shared.folder)
+        .fits
+        .iter()
+        .any(|known| known == name);
     let found = is_known.then(|| shared.folder.join(name));
     found.ok_or_else(|| Refusal::not_found(name))
 }
 
 /// The folder of a sweep.
 pub(super) fn sweep_folder(shared: &Shared, name: &str) -> Result<PathBuf, Refusal> {
-    let is_known = Content::of(&shared.folder).sweeps.iter().any(|known| known == name);
+    let is_known = Content::of(&shared.folder)
+        .sweeps
+        .iter()
+        .any(|known| known == name);
     let found = is_known.then(|| shared.folder.join(name));
     found.ok_or_else(|| Refusal::not_found(name))
 }
 
 /// A file of measured shots.
 pub(super) fn upload(folder: &Path, name: &str) -> Result<PathBuf, Refusal> {
-    let is_known = Content::of(folder).uploads.iter().any(|known| known == name);
+    let is_known = Content::of(folder)
+        .uploads
+        .iter()
+        .any(|known| known == name);
     let found = is_known.then(|| folder.join(UPLOADS).join(name));
     found.ok_or_else(|| Refusal::not_found(name))
 }
@@ -214,10 +229,21 @@ pub(super) async fn file(
 /// The flags of commands that read measured shots. Each value stands behind its own flag, so none
 /// can be taken for another flag; those that could name a file are refused.
 pub(super) fn shot_flags(request: &ShotFileRequest) -> Result<Vec<String>, Refusal> {
-    if let Some(map) = request.maps.iter().find(|map| map.trim_start().starts_with('@')) {
-        return Err(Refusal::field("maps", format!("'{map}': a map begins with a quantity")));
+    if let Some(map) = request
+        .maps
+        .iter()
+        .find(|map| map.trim_start().starts_with('@'))
+    {
+        return Err(Refusal::field(
+            "maps",
+            format!("'{map}': a map begins with a quantity"),
+        ));
     }
-    let mut flags: Vec<String> = request.maps.iter().map(|map| format!("--map={map}")).collect();
+    let mut flags: Vec<String> = request
+        .maps
+        .iter()
+        .map(|map| format!("--map={map}"))
+        .collect();
     let values = [
         ("at", &request.at),
         ("distance", &request.distance),

@@ -4,7 +4,7 @@
 //! does in a terminal. What it has finished is in the folder, whatever happens to the page or to
 //! the server.
 
-use super::folder::{Content, UPLOADS, check_new_name, shot_flags, upload};
+use super::folder::{Content, UPLOADS, check_new_name, fit_folder, shot_flags, upload};
 use super::questions::read_json;
 use super::refusal::Refusal;
 use super::results::ADVICE_FILE;
@@ -80,6 +80,11 @@ pub(super) enum JobRequest {
         #[serde(default)]
         shots: ShotFileRequest,
     },
+    /// What a fitted player should change.
+    Advise {
+        /// The folder of the fit.
+        name: String,
+    },
     /// The page and the posters of a team, over the places of the court.
     Team {
         /// The folder of the results.
@@ -107,7 +112,6 @@ pub(super) enum JobRequest {
         /// The folder of the results.
         name: String,
         /// The shooter.
-        #[cfg_attr(test, schemars(with = "serde_json::Value"))]
         profile: ProfileRequest,
         /// The spacing of the places, such as `3 ft`.
         step: String,
@@ -127,7 +131,6 @@ pub(super) enum JobRequest {
         /// The folder of the results.
         name: String,
         /// The launcher.
-        #[cfg_attr(test, schemars(with = "serde_json::Value"))]
         profile: ProfileRequest,
         /// Distances, such as `7 ft to 20 ft by 1 ft`.
         distances: String,
@@ -274,31 +277,32 @@ impl Inner {
             }
         };
         let mut finished = run(&arguments);
-        if let JobRequest::Players { .. } = request
-            && [0, 3].contains(&finished.exit_code)
-        {
-            let players = format!("{}/", request.folder());
-            let fits = Content::of(&self.folder).fits.into_iter();
-            for fit in fits.filter(|fit| fit.starts_with(&players)) {
-                let folder = self.folder.join(&fit);
-                let advice = run(&["advise".into(), text(&folder), "--json".into()]);
-                if advice.exit_code != 0 {
-                    finished.remarks += &advice.remarks;
-                    continue;
-                }
-                let file = folder.join(ADVICE_FILE);
-                if let Err(error) = atomic_file::write(&file, &advice.answer) {
-                    finished.remarks += &format!("{}: {error}\n", file.display());
+        let keep = |answer: &[u8], file: PathBuf| match atomic_file::write(&file, answer) {
+            Ok(()) => String::new(),
+            Err(error) => format!("{}: {error}\n", file.display()),
+        };
+        let folder = self.folder.join(request.folder());
+        match request {
+            _ if ![0, 3].contains(&finished.exit_code) => {}
+            JobRequest::Players { .. } => {
+                let players = format!("{}/", request.folder());
+                let fits = Content::of(&self.folder).fits.into_iter();
+                for fit in fits.filter(|fit| fit.starts_with(&players)) {
+                    let folder = self.folder.join(&fit);
+                    let advice = run(&["advise".into(), text(&folder), "--json".into()]);
+                    finished.remarks += &match advice.exit_code {
+                        0 => keep(&advice.answer, folder.join(ADVICE_FILE)),
+                        _ => advice.remarks,
+                    };
                 }
             }
-        }
-        if let JobRequest::Compare { .. } = request
-            && finished.exit_code == 0
-        {
-            let file = self.folder.join(request.folder()).join("sessions.txt");
-            if let Err(error) = atomic_file::write(&file, &finished.answer) {
-                finished.remarks += &format!("{}: {error}\n", file.display());
+            JobRequest::Advise { .. } => {
+                finished.remarks += &keep(&finished.answer, folder.join(ADVICE_FILE));
             }
+            JobRequest::Compare { .. } => {
+                finished.remarks += &keep(&finished.answer, folder.join("sessions.txt"));
+            }
+            _ => {}
         }
         finished
     }
@@ -328,6 +332,9 @@ impl JobRequest {
                 false => Err(Refusal::not_found(name)),
             };
         }
+        if let Self::Advise { name } = self {
+            return fit_folder(shared, name).map(drop);
+        }
         check_new_name("name", self.name())?;
         let text_of = |profile: &ProfileRequest| -> Result<(), Refusal> {
             let text = profile.text()?;
@@ -341,9 +348,16 @@ impl JobRequest {
                     return Err(Refusal::field("files", "must name a file at least"));
                 }
                 shot_flags(shots)?;
-                files.iter().try_for_each(|file| upload(&shared.folder, file).map(drop))
+                files
+                    .iter()
+                    .try_for_each(|file| upload(&shared.folder, file).map(drop))
             }
-            Self::Compare { file, shots, sessions, .. } => {
+            Self::Compare {
+                file,
+                shots,
+                sessions,
+                ..
+            } => {
                 if !matches!(sessions.len(), 0 | 2) {
                     return Err(Refusal::field("sessions", "must be two"));
                 }
@@ -367,13 +381,14 @@ impl JobRequest {
                 Ok(())
             }
             Self::Table { profile, .. } => text_of(profile),
-            Self::Continue { .. } => Ok(()),
+            Self::Continue { .. } | Self::Advise { .. } => Ok(()),
         }
     }
 
     fn name(&self) -> &str {
         match self {
             Self::Players { name, .. }
+            | Self::Advise { name }
             | Self::Team { name, .. }
             | Self::Compare { name, .. }
             | Self::Sweep { name, .. }
@@ -385,6 +400,8 @@ impl JobRequest {
     /// The folder of the results, from the folder of the studio.
     fn folder(&self) -> String {
         let parent = match self {
+            // The folder of the fit itself.
+            Self::Advise { name } => return name.clone(),
             Self::Players { .. } => "players",
             Self::Team { .. } => "teams",
             Self::Compare { .. } => "sessions",
@@ -402,14 +419,25 @@ impl JobRequest {
         let mut all: Vec<String> = Vec::new();
         match self {
             Self::Players { files, shots, .. } => {
-                let files = files.iter().map(|file| text(&base.join(UPLOADS).join(file)));
+                let files = files
+                    .iter()
+                    .map(|file| text(&base.join(UPLOADS).join(file)));
                 all.push("coach".into());
                 all.extend(files);
                 all.extend(["--no-court".into(), "--accept".into()]);
                 all.extend(shot_flags(shots).map_err(in_words)?);
                 all.push(format!("--output={}", text(&folder)));
             }
-            Self::Compare { file, sessions, shooter, shots, .. } => {
+            Self::Advise { .. } => {
+                all.extend(["advise".into(), text(&folder), "--json".into()]);
+            }
+            Self::Compare {
+                file,
+                sessions,
+                shooter,
+                shots,
+                ..
+            } => {
                 std::fs::create_dir_all(&folder)
                     .map_err(|error| format!("{}: {error}", folder.display()))?;
                 all.extend(["compare".into(), text(&base.join(UPLOADS).join(file))]);
@@ -434,7 +462,13 @@ impl JobRequest {
                 all.push(format!("--sweep={}", text(&sweep)));
                 all.push(format!("--output={}", text(&folder)));
             }
-            Self::Sweep { name, profile, step, inside_three, spin } => {
+            Self::Sweep {
+                name,
+                profile,
+                step,
+                inside_three,
+                spin,
+            } => {
                 let profile = profile.text().map_err(|error| error.to_string())?;
                 write(&folder.join("shooter.toml"), &profile)?;
                 let quoted = |text: &str| toml_edit::value(text).to_string();
@@ -457,7 +491,15 @@ impl JobRequest {
                 all.extend(["sweep".into(), within("sweep.toml")]);
                 all.push(format!("--output={}", within("results")));
             }
-            Self::Table { profile, distances, kind, pitch, backspin, draft, .. } => {
+            Self::Table {
+                profile,
+                distances,
+                kind,
+                pitch,
+                backspin,
+                draft,
+                ..
+            } => {
                 let profile = profile.text().map_err(|error| error.to_string())?;
                 write(&folder.join("launcher.toml"), &profile)?;
                 all.extend(["table".into(), within("launcher.toml")]);
@@ -469,7 +511,9 @@ impl JobRequest {
                     all.push("--draft".into());
                 }
                 let outputs = ["table.txt", "table.csv", "table.json", "ShotTable.java"];
-                let outputs = outputs.into_iter().chain(["shot_table.hpp", "shot_table.py"]);
+                let outputs = outputs
+                    .into_iter()
+                    .chain(["shot_table.hpp", "shot_table.py"]);
                 all.extend(outputs.map(|file| format!("--output={}", within(file))));
             }
         }
@@ -554,10 +598,17 @@ pub(super) async fn add(
     let mut list = inner.list();
     let is_open = |job: &&Job| matches!(job.stage, Stage::Waiting | Stage::Running);
     let folder = request.folder();
-    if list.jobs.iter().filter(is_open).any(|job| job.folder == folder) {
+    if list
+        .jobs
+        .iter()
+        .filter(is_open)
+        .any(|job| job.folder == folder)
+    {
         return Err(Refusal::new(
             StatusCode::CONFLICT,
-            format!("{folder}: a job already writes into this folder; wait for it, or choose another name"),
+            format!(
+                "{folder}: a job already writes into this folder; wait for it, or choose another name"
+            ),
         ));
     }
     if list.jobs.iter().filter(is_open).count() >= MAX_WAITING {
@@ -615,16 +666,20 @@ pub(super) async fn stop(
 pub(super) async fn events(State(shared): State<Arc<Shared>>) -> Response {
     let changes = shared.jobs.inner.changes.subscribe();
     let begin = (shared, changes, true);
-    let stream = futures_util::stream::unfold(begin, |(shared, mut changes, is_first)| async move {
-        if !is_first {
-            tokio::time::sleep(PAUSE).await;
-            // After a pause without change the line is sent again, so that a dead one is noticed.
-            let _ = tokio::time::timeout(HEARTBEAT, changes.changed()).await;
-        }
-        changes.mark_unchanged();
-        let jobs = serde_json::to_string(&shared.jobs.all()).unwrap_or_default();
-        Some((Ok::<_, Infallible>(format!("data: {jobs}\n\n")), (shared, changes, false)))
-    });
+    let stream =
+        futures_util::stream::unfold(begin, |(shared, mut changes, is_first)| async move {
+            if !is_first {
+                tokio::time::sleep(PAUSE).await;
+                // After a pause without change the line is sent again, so that a dead one is noticed.
+                let _ = tokio::time::timeout(HEARTBEAT, changes.changed()).await;
+            }
+            changes.mark_unchanged();
+            let jobs = serde_json::to_string(&shared.jobs.all()).unwrap_or_default();
+            Some((
+                Ok::<_, Infallible>(format!("data: {jobs}\n\n")),
+                (shared, changes, false),
+            ))
+        });
     let kind = [(header::CONTENT_TYPE, "text/event-stream")];
     (kind, Body::from_stream(stream)).into_response()
 }

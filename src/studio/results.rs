@@ -51,9 +51,8 @@ pub(super) async fn fit(
             format!("{name}: its fit.json is damaged; fit the player again"),
         )
     })?;
-    let profiles = (0..).map_while(|place| {
-        std::fs::read_to_string(folder.join(profile_file(place))).ok()
-    });
+    let profiles =
+        (0..).map_while(|place| std::fs::read_to_string(folder.join(profile_file(place))).ok());
     let profiles: Vec<String> = profiles.collect();
     Ok(Json(json!({
         "name": name,
@@ -114,7 +113,9 @@ fn spin_gain(jobs: &Jobs, rows: &BTreeMap<u64, ResultRow>, place: usize) -> Opti
         let probability = row.probability()?.value;
         Some((probability, row.real(columns::BEST_BACKSPIN_OVER_NONE)?))
     });
-    of_kinds.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, gain)| gain)
+    of_kinds
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, gain)| gain)
 }
 
 fn places(config: &SweepConfig, rows: &BTreeMap<u64, ResultRow>) -> Vec<PlaceResult> {

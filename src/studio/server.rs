@@ -81,7 +81,11 @@ fn random_token() -> io::Result<String> {
 fn bind(address: IpAddr, port: u16) -> io::Result<std::net::TcpListener> {
     /// Ports that are tried.
     const TRIED: u16 = 20;
-    let last = if port == 0 { 0 } else { port.saturating_add(TRIED - 1) };
+    let last = if port == 0 {
+        0
+    } else {
+        port.saturating_add(TRIED - 1)
+    };
     let mut refused = None;
     for port in port..=last {
         match std::net::TcpListener::bind((address, port)) {
@@ -123,7 +127,11 @@ impl Studio {
             IpAddr::V6(ip) => format!("[{ip}]"),
             IpAddr::V4(ip) => ip.to_string(),
         };
-        format!("http://{host}:{}/?token={}", address.port(), self.shared.token)
+        format!(
+            "http://{host}:{}/?token={}",
+            address.port(),
+            self.shared.token
+        )
     }
 
     /// Answers until the process ends.
@@ -163,7 +171,10 @@ fn routes(shared: Arc<Shared>) -> Router {
             "/api/uploads/{name}",
             put(uploads::receive).layer(DefaultBodyLimit::disable()),
         )
-        .layer(middleware::from_fn_with_state(Arc::clone(&shared), access::guard))
+        .layer(middleware::from_fn_with_state(
+            Arc::clone(&shared),
+            access::guard,
+        ))
         .with_state(shared)
 }
 

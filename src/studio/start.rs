@@ -18,9 +18,9 @@ pub(super) async fn start() -> Json<Value> {
             "hoop": court_record(&court, &preset.physics()),
         })
     });
-    let places = named_places(league).into_iter().map(|place| {
-        json!({ "name": place.name, "x_m": in_si(&place.x_m), "y_m": in_si(&place.y_m) })
-    });
+    let places = named_places(league).into_iter().map(
+        |place| json!({ "name": place.name, "x_m": in_si(&place.x_m), "y_m": in_si(&place.y_m) }),
+    );
     let default = PRESETS.iter().find(|preset| preset.name == DEFAULT_PRESET);
     let default = default.unwrap_or(&PRESETS[0]);
     Json(json!({

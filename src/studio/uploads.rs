@@ -17,10 +17,14 @@ use std::time::Duration;
 
 /// The largest file, bytes.
 const MAX_UPLOAD: usize = 64 << 20;
+/// Bytes that are read of a larger one.
+const MAX_READ: usize = 1 << 30;
 /// A client may pause for this long.
 const PAUSE: Duration = Duration::from_secs(20);
 /// The ends of names of files that hold measured shots.
-const ENDS: [&str; 9] = ["csv", "tsv", "txt", "parquet", "xlsx", "xlsm", "xls", "ods", "json"];
+const ENDS: [&str; 9] = [
+    "csv", "tsv", "txt", "parquet", "xlsx", "xlsm", "xls", "ods", "json",
+];
 
 fn too_large(name: &str) -> Refusal {
     let words = format!("{name}: is larger than 64 MiB; use bankshot fit in a terminal");
@@ -31,7 +35,6 @@ fn too_large(name: &str) -> Refusal {
 pub(super) async fn receive(
     State(shared): State<Arc<Shared>>,
     UrlPath(name): UrlPath<String>,
-    headers: axum::http::HeaderMap,
     body: Body,
 ) -> Result<Json<Value>, Refusal> {
     check_new_name("name", &name)?;
@@ -42,10 +45,6 @@ pub(super) async fn receive(
             "name",
             format!("{name}: must be a table of shots; its name ends in one of {ends}"),
         ));
-    }
-    let length = headers.get("content-length").and_then(|v| v.to_str().ok());
-    if length.and_then(|v| v.parse::<usize>().ok()).is_some_and(|n| n > MAX_UPLOAD) {
-        return Err(too_large(&name));
     }
     let folder = shared.folder.join(UPLOADS);
     let refuse = |error: std::io::Error| Refusal::io(&name, &error);
@@ -62,10 +61,16 @@ pub(super) async fn receive(
         let Some(block) = block else { break };
         let block: Bytes = block.map_err(|error| Refusal::bad(format!("{name}: {error}")))?;
         bytes += block.len();
-        if bytes > MAX_UPLOAD {
-            return Err(too_large(&name));
+        // What is too large is read and thrown away up to a limit: a client that is still sending
+        // would not see the answer.
+        match bytes {
+            0..=MAX_UPLOAD => file.write_all(&block).map_err(refuse)?,
+            _ if bytes > MAX_READ => break,
+            _ => {}
         }
-        file.write_all(&block).map_err(refuse)?;
+    }
+    if bytes > MAX_UPLOAD {
+        return Err(too_large(&name));
     }
     let path = folder.join(&name);
     file.persist(path).map_err(|error| refuse(error.error))?;

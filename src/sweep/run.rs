@@ -15,10 +15,10 @@ use super::sqlite_results::{ResultStore, ResultsError};
 use super::sweep_folder::SweepFolder;
 use super::sweep_toml::SweepConfig;
 use crate::best_shot::{self, BestShotError, NoShot};
-use crate::probability::{Progress, Silent};
+use crate::probability::{Progress, Pulse};
 use crate::search_space::PlanError;
 use rayon::ThreadPool;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -62,6 +62,9 @@ pub struct RunSummary {
     /// Jobs of the shard that failed, now or before.
     pub failed: usize,
 }
+
+/// Keeps the rows of a spot, which took so many seconds.
+type Save<'a> = dyn Fn(usize, &[ResultRow], f64) -> Result<(), ResultsError> + Sync + 'a;
 
 /// A run of a sweep's jobs.
 #[derive(Debug)]
@@ -193,8 +196,8 @@ impl<'a> SweepRun<'a> {
             .partition(|spot| self.alone.contains(spot));
         let threads = self.options.threads.max(1);
         let pool = &shared_pool(threads)?;
-        self.compute_spots(&alone, 1, pool, &save)?;
-        self.compute_spots(&others, threads, pool, &save)?;
+        self.compute_spots(&alone, 1, pool, (&save, progress))?;
+        self.compute_spots(&others, threads, pool, (&save, progress))?;
         progress.end();
         let failed_before = if self.options.retry_failed {
             0
@@ -221,7 +224,7 @@ impl<'a> SweepRun<'a> {
         spots: &[usize],
         at_once: usize,
         pool: &ThreadPool,
-        save: &(dyn Fn(usize, &[ResultRow], f64) -> Result<(), ResultsError> + Sync),
+        (save, progress): (&Save<'_>, &dyn Progress),
     ) -> Result<(), ResultsError> {
         let next = AtomicUsize::new(0);
         let stopped = AtomicBool::new(false);
@@ -240,7 +243,7 @@ impl<'a> SweepRun<'a> {
                 let began = Instant::now();
                 let begun = self.lock_store().begin_spot(spot);
                 let saved = begun.and_then(|()| {
-                    let rows = pool.install(|| self.compute_spot(spot));
+                    let rows = pool.install(|| self.compute_spot(spot, progress));
                     save(spot, &rows, began.elapsed().as_secs_f64())
                 });
                 if let Err(error) = saved {
@@ -248,23 +251,31 @@ impl<'a> SweepRun<'a> {
                 }
             }
         };
-        std::thread::scope(|scope| {
+        let ended = std::thread::scope(|scope| {
+            let mut workers = Vec::new();
             for _ in 0..at_once.min(spots.len()) {
-                if let Err(error) = std::thread::Builder::new().spawn_scoped(scope, work) {
-                    fail(no_threads(&error));
+                match std::thread::Builder::new().spawn_scoped(scope, work) {
+                    Ok(worker) => workers.push(worker),
+                    Err(error) => fail(no_threads(&error)),
                 }
             }
+            // All of them, so that the payload of the first is kept.
+            let ends: Vec<_> = workers.into_iter().map(|worker| worker.join()).collect();
+            ends.into_iter().find_map(Result::err)
         });
+        if let Some(payload) = ended {
+            resume_unwind(payload);
+        }
         let first_error = first_error.into_inner().unwrap_or_default();
         first_error.map_or(Ok(()), Err)
     }
 
     /// The rows of a spot's missing kinds.
-    fn compute_spot(&self, spot: usize) -> Vec<ResultRow> {
+    fn compute_spot(&self, spot: usize, progress: &dyn Progress) -> Vec<ResultRow> {
         let kinds = self.missing_kinds(spot);
         let result = catch_unwind(AssertUnwindSafe(|| {
             self.inject_fault(spot);
-            compute_jobs(self.config, self.jobs, spot, &kinds)
+            compute_jobs(self.config, self.jobs, spot, &kinds, progress)
         }));
         match result {
             Ok(Ok(rows)) => rows,
@@ -273,9 +284,12 @@ impl<'a> SweepRun<'a> {
                 let text = panic
                     .downcast_ref::<String>()
                     .map(String::as_str)
-                    .or_else(|| panic.downcast_ref::<&str>().copied())
-                    .unwrap_or("without a message");
-                self.failures(spot, &format!("panicked: {text}"))
+                    .or_else(|| panic.downcast_ref::<&str>().copied());
+                match text {
+                    Some(text) => self.failures(spot, &format!("panicked: {text}")),
+                    // No fault: the receiver of the progress ends the run.
+                    None => resume_unwind(panic),
+                }
             }
         }
     }
@@ -343,7 +357,7 @@ pub fn mean_spot_time_s(
         for _ in 0..threads.min(spots.len()) {
             scope.spawn(|| {
                 while let Some(&spot) = spots.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let rows = pool.install(|| compute_jobs(config, jobs, spot, &kinds));
+                    let rows = pool.install(|| compute_jobs(config, jobs, spot, &kinds, progress));
                     computed.fetch_add(usize::from(rows.is_ok()), Ordering::Relaxed);
                     progress.advance(1);
                     if began.elapsed() > budget {
@@ -368,6 +382,7 @@ pub fn compute_jobs(
     jobs: &Jobs,
     spot: usize,
     kinds: &[usize],
+    progress: &dyn Progress,
 ) -> Result<Vec<ResultRow>, String> {
     let court_spot = &jobs.spots[spot];
     let profile = config
@@ -376,7 +391,7 @@ pub fn compute_jobs(
         .map_err(|error| error.to_string())?;
     let wanted: Vec<_> = kinds.iter().map(|&kind| jobs.kinds[kind]).collect();
     let topics = config.compute.topics();
-    let shots = match best_shot::find_kinds(&profile, &wanted, topics, &Silent) {
+    let shots = match best_shot::find_kinds(&profile, &wanted, topics, &Pulse(progress)) {
         Ok((_, shots)) => shots,
         // Nothing can go in from there, which is a result.
         Err(BestShotError::Plan(PlanError::OutOfReach { .. })) => wanted

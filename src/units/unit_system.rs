@@ -5,6 +5,7 @@ use super::quantity::Dimension;
 use serde::{Deserialize, Serialize};
 
 /// Units of tables and files. Angles are in degrees and spins in rev/s in both.
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnitSystem {

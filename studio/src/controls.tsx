@@ -45,7 +45,7 @@ interface FieldProps {
   children: (id: string) => ComponentChildren;
 }
 
-export function Field({ label, error, help, children }: FieldProps) {
+function Field({ label, error, help, children }: FieldProps) {
   const id = useId();
   return (
     <div class={error ? "field wrong" : "field"}>
@@ -99,6 +99,14 @@ export function Choice({ label, value, options, error, onChange }: ChoiceProps) 
         </select>
       )}
     </Field>
+  );
+}
+
+export function Tick({ label, value, onChange }: { label: string; value: boolean; onChange: (value: boolean) => void }) {
+  return (
+    <label class="tick">
+      <input type="checkbox" checked={value} onChange={(event) => onChange(event.currentTarget.checked)} /> {label}
+    </label>
   );
 }
 

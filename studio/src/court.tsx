@@ -3,7 +3,7 @@
 import { useEffect, useState } from "preact/hooks";
 import type { Folder, Start } from "./api";
 import { Refused, get, post } from "./api";
-import { Choice, Field, TextField } from "./controls";
+import { Choice, Tick, TextField } from "./controls";
 import type { MapPlace } from "./court_map";
 import { CourtMap } from "./court_map";
 import { JobCard, isOpen, useJobs } from "./jobs";
@@ -302,12 +302,12 @@ function NewSweep({ folder, state, begun }: { folder: Folder | null; state: Shot
       <Choice
         label="a place every"
         value={step}
-        options={(feet ? ["5 ft", "3 ft", "2 ft", "1 ft"] : ["1.5 m", "1 m", "0.6 m", "0.3 m"]).concat(feet || step.endsWith("m") ? [] : [step]).map((one) => [one, one] as const)}
+        options={[...new Set([step, ...(feet ? ["5 ft", "3 ft", "2 ft", "1 ft"] : ["1.5 m", "1 m", "0.6 m", "0.3 m"])])].map((one) => [one, one] as const)}
         error={refused?.of("step")}
         onChange={setStep}
       />
-      <Field label="up to the three-point line only">{(id) => <input id={id} type="checkbox" checked={isInside} onChange={(event) => setInside(event.currentTarget.checked)} />}</Field>
-      <Field label="also the gain from spin">{(id) => <input id={id} type="checkbox" checked={spin} onChange={(event) => setSpin(event.currentTarget.checked)} />}</Field>
+      <Tick label="up to the three-point line only" value={isInside} onChange={setInside} />
+      <Tick label="also the gain from spin" value={spin} onChange={setSpin} />
       {refused && !refused.of("name") && !refused.of("step") && (
         <pre class="error" role="alert">
           {refused.message}

@@ -25,6 +25,7 @@ export function useJobEvents(): { jobs: Job[]; isLost: boolean } {
 
 const NAMES: Record<string, string> = {
   players: "Fit",
+  advise: "Advice",
   team: "Team page",
   compare: "Sessions",
   sweep: "Sweep",

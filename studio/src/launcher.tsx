@@ -5,7 +5,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Folder, Start } from "./api";
 import { Refused, fileAddress, get, post } from "./api";
-import { Choice, Field, TextField } from "./controls";
+import { Choice, Tick, TextField } from "./controls";
 import { JobCard, isOpen, useJobs } from "./jobs";
 import { colour, useTheme } from "./theme";
 import { per100, valueOf } from "./units";
@@ -119,7 +119,7 @@ export function LauncherPage({ start, folder }: { start: Start; folder: Folder |
           <TextField label="backspin" value={form.sdBackspin} error={error("shooter.errors.backspin")} onChange={set("sdBackspin")} />
         </div>
         <Choice label="ball and hoop" value={form.physics} options={start.physics.map((physics) => [physics.name, `${physics.name}: ${physics.description}`] as const)} onChange={set("physics")} />
-        <Field label="a first look, without checks between the distances">{(id) => <input id={id} type="checkbox" checked={isDraft} onChange={(event) => setDraft(event.currentTarget.checked)} />}</Field>
+        <Tick label="a first look, without checks between the distances" value={isDraft} onChange={setDraft} />
         {rest.length > 0 && (
           <pre class="error" role="alert">
             {rest.map((fault) => (fault.field ? `${fault.field}: ${fault.message}` : fault.message)).join("\n")}

@@ -75,17 +75,20 @@ interface Props {
   openShot: (player: string) => void;
 }
 
+const MAX_UPLOAD = 64 * 2 ** 20;
+
 const path = (name: string) => name.split("/").map(encodeURIComponent).join("/");
 
 export function PlayersPage({ folder, reload, places, openShot }: Props) {
   const [file, setFile] = useState("");
   const [problem, setProblem] = useState("");
   const [isOver, setOver] = useState(false);
-  const jobs = useJobs(["players", "team", "compare"]);
+  const jobs = useJobs(["players", "team", "compare", "advise"]);
   const take = async (files: FileList | null | undefined) => {
     setProblem("");
     for (const one of files ?? []) {
       try {
+        if (one.size > MAX_UPLOAD) throw new Error(`${one.name}: is larger than 64 MiB; use bankshot fit in a terminal`);
         setFile(await upload(one));
       } catch (error) {
         setProblem(error instanceof Error ? error.message : String(error));
@@ -372,6 +375,7 @@ function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: 
   const [chosen, setChosen] = useState<string[]>([]);
   const [shown, setShown] = useState("");
   const [problem, setProblem] = useState("");
+  const advising = useJobs(["advise"]).some(isOpen);
   const written = folder?.files.filter((file) => /(fit|advice)\.json$/.test(file.name)).map((file) => file.written_s) ?? [];
   const key = JSON.stringify([folder?.fits, written]);
   useEffect(() => {
@@ -385,14 +389,17 @@ function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: 
   }, [key]);
   if (fits.length === 0) return null;
   const choose = (name: string, isOn: boolean) => setChosen(isOn ? [...chosen, name] : chosen.filter((one) => one !== name));
-  const posters = async () => {
-    setProblem("");
+  const add = async (job: object) => {
     try {
-      const name = chosen.length === 1 ? chosen[0]!.split("/").at(-1)! : "team";
-      await post("/api/jobs", { job: "team", name, fits: chosen });
+      await post("/api/jobs", job);
+      setProblem("");
     } catch (error) {
       setProblem(error instanceof Error ? error.message : String(error));
     }
+  };
+  const posters = () => {
+    const name = chosen.length === 1 ? chosen[0]!.split("/").at(-1)! : "team";
+    return add({ job: "team", name, fits: chosen });
   };
   const fit = fits.find((fit) => fit.name === shown);
   return (
@@ -431,6 +438,11 @@ function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: 
                     <td>{advice && interval(advice.suggested_probability)}</td>
                     <td>{advice?.suggested_gain ? signed(advice.suggested_gain.mean) : advice ? "keep" : ""}</td>
                     <td>
+                      {!advice && (
+                        <button type="button" class="quiet" disabled={advising} onClick={() => void add({ job: "advise", name: one.name })}>
+                          Get advice
+                        </button>
+                      )}{" "}
                       <button type="button" class="quiet" onClick={() => setShown(one.name === shown ? "" : one.name)}>
                         {one.name === shown ? "Hide" : "Show"}
                       </button>{" "}

@@ -28,6 +28,17 @@ const arc = (x: number, radius: number, from: number, to: number, z: number): TH
     return new THREE.Vector3(x + radius * Math.cos(angle), radius * Math.sin(angle), z);
   });
 
+/** Milliseconds between pictures while software renders and numbers are computed. */
+const BUSY_PAUSE = 1000;
+
+function isSoftware(): boolean {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const info = probe?.getExtension("WEBGL_debug_renderer_info");
+  const name: unknown = info && probe?.getParameter(info.UNMASKED_RENDERER_WEBGL);
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return typeof name === "string" && /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
 export class CourtScene {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
@@ -46,6 +57,10 @@ export class CourtScene {
   private isPlaying = false;
   private rate = 1;
   private isDirty = true;
+  /** Without a graphics card pictures take the time of the cores that simulate. */
+  private readonly isSoftware: boolean;
+  private isBusy = false;
+  private drawn = 0;
   private observer: ResizeObserver;
   /** Frames drawn so far. */
   frames = 0;
@@ -55,8 +70,9 @@ export class CourtScene {
     private readonly canvas: HTMLCanvasElement,
     private colours: Colours,
   ) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.isSoftware = isSoftware();
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSoftware });
+    this.renderer.setPixelRatio(this.isSoftware ? 0.75 : Math.min(devicePixelRatio, 2));
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
@@ -251,6 +267,11 @@ export class CourtScene {
     this.touch();
   }
 
+  /** While numbers are computed, software rendering steps back. */
+  setBusy(isBusy: boolean) {
+    this.isBusy = isBusy;
+  }
+
   /** The time of the flight, as a share of the longest one. */
   seek(share: number) {
     this.time = share * this.longest;
@@ -315,8 +336,9 @@ export class CourtScene {
       this.place();
       this.onTime(Math.min(1, this.time / this.longest));
     }
-    if (this.isDirty) {
+    if (this.isDirty && !(this.isSoftware && this.isBusy && now - this.drawn < BUSY_PAUSE)) {
       this.isDirty = false;
+      this.drawn = now;
       this.renderer.render(this.scene, this.camera);
       this.frames++;
     }

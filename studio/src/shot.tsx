@@ -9,7 +9,7 @@ import type { SwarmShot } from "./scene";
 import { CourtScene } from "./scene";
 import type { ShotState } from "./state";
 import { inUnits, profileToml, shotFlags, shotRequest } from "./state";
-import { inSystem, per100, signed, text, unit, valueOf } from "./units";
+import { inSystem, per100, text, unit, valueOf } from "./units";
 import { sceneColours, useTheme } from "./theme";
 
 interface Probability {
@@ -49,6 +49,10 @@ const ENDS: [string, string[], "made" | "missed"][] = [
   ["other", ["over", "lodged", "airball", "unresolved"], "missed"],
 ];
 
+/** The shots of a rough number, and the rest of the controls after which a sharp one is asked. */
+const ROUGH = { budget: 4096 };
+const REST_MS = 100;
+
 const PLAY = [
   ["1", "real speed"],
   ["0.25", "slow motion"],
@@ -78,9 +82,11 @@ function profileRequest(state: ShotState, fit: Fit | null) {
 export function ShotPage({ state, start, folder, change, replace }: Props) {
   const [fit, setFit] = useState<Fit | null>(null);
   const [answer, setAnswer] = useState<Probability | null>(null);
-  const [isSharp, setSharp] = useState(false);
+  /** The question whose answer is sharp. */
+  const [sharpKey, setSharpKey] = useState("");
   const [notes, setNotes] = useState<string[]>([]);
   const [refused, setRefused] = useState<Refused | null>(null);
+  const [isSearching, setSearching] = useState(false);
   const [swarm, setSwarm] = useState<SwarmShot[]>([]);
   const question = useMemo(() => profileRequest(state, fit), [state, fit]);
   const system = state.units;
@@ -100,11 +106,11 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
 
   // One question is under way at a time. Changes that come before its first number wait, and only
   // the last of them is asked next.
-  const asking = useRef({ isBusy: false, next: null as object | null });
-  const send = (probability: object) => {
+  const asking = useRef({ isBusy: false, next: null as { question: object; key: string } | null });
+  const send = (probability: object, key: string) => {
     const now = asking.current;
     if (now.isBusy) {
-      now.next = probability;
+      now.next = { question: probability, key };
       return;
     }
     now.isBusy = true;
@@ -112,7 +118,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
       now.isBusy = false;
       const next = now.next;
       now.next = null;
-      if (next) send(next);
+      if (next) send(next.question, next.key);
     };
     let isFree = false;
     const once = () => {
@@ -123,36 +129,41 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
     };
     ask<Probability>(probability, (draft) => {
       setAnswer(draft);
-      setSharp(false);
       setRefused(null);
       once();
     }).then(
       (answered) => {
-        if (answered && now.next === null) {
+        if (answered && (now.next === null || key === "")) {
           setAnswer(answered.answer);
-          setNotes(answered.notes);
-          setSharp(true);
+          if (key !== "") setNotes(answered.notes);
+          setSharpKey(key);
           setRefused(null);
         }
         once();
       },
       (error: unknown) => {
-        if (error instanceof Refused) setRefused(error);
+        if (error instanceof Refused) {
+          setRefused(error);
+          setNotes([]);
+        }
         once();
       },
     );
   };
   const shot = shotRequest(state);
   const key = JSON.stringify([question, shot]);
+  const isSharp = sharpKey === key;
   useEffect(() => {
     if (question === null) return;
-    send({ question: "probability", profile: question, shot });
+    // A rough number while the controls move, and a sharp one when they rest.
+    send({ question: "probability", profile: question, shot, effort: ROUGH }, "");
     const timer = setTimeout(() => {
+      send({ question: "probability", profile: question, shot }, key);
       ask<{ shots: SwarmShot[] }>({ question: "swarm", profile: question, shot, shots: 60 }).then(
         (answered) => answered && setSwarm(answered.answer.shots),
         () => setSwarm([]),
       );
-    }, 120);
+    }, REST_MS);
     return () => clearTimeout(timer);
   }, [key]);
 
@@ -189,7 +200,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
         {slider("pitch", "angle", "deg", 25, 80, 0.1, "pitch")}
         {slider("aim", "direction (+ left)", "deg", -10, 10, 0.05, "aim")}
         {slider("backspin", "backspin", "rev/s", 0, 5, 0.05, "backspin")}
-        <BestShotCard state={state} question={question} answer={answer} isSharp={isSharp} change={change} />
+        <BestShotCard state={state} question={question} answer={answer} isSharp={isSharp} change={change} searching={setSearching} />
         <h2>Place</h2>
         <Choice
           label="place"
@@ -250,7 +261,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
             {ownFaults.map((fault) => (fault.field ? `${fault.field}: ${fault.message}` : fault.message)).join("\n")}
           </p>
         )}
-        <Court3d start={start} hoop={hoop} swarm={swarm} shooter={{ x, y, height: inMetres(state.height, system) }} />
+        <Court3d isBusy={(!isSharp && refused === null) || isSearching} start={start} hoop={hoop} swarm={swarm} shooter={{ x, y, height: inMetres(state.height, system) }} />
         {notes.length > 0 && (
           <ul class="notes">
             {notes.map((note) => (
@@ -330,7 +341,7 @@ function Answer({ answer, isSharp }: { answer: Probability | null; isSharp: bool
         <span class="big" data-testid="makes" data-value={answer?.probability ?? ""}>
           {answer ? per100(answer.probability, isSharp ? 1 : 0) : "\u2013"}
         </span>{" "}
-        of 100 go in
+        <span class="unbroken">of 100 go in</span>
       </p>
       <p class="faint">
         {answer
@@ -358,10 +369,11 @@ interface CardProps {
   answer: Probability | null;
   isSharp: boolean;
   change: (change: Partial<ShotState>) => void;
+  searching: (isBusy: boolean) => void;
 }
 
 /** The best direct and the best bank shot, and what the current shot loses. */
-function BestShotCard({ state, question, answer, isSharp, change }: CardProps) {
+function BestShotCard({ state, question, answer, isSharp, change, searching }: CardProps) {
   const [best, setBest] = useState<{ direct: Best | null; bank: Best | null; isDraft: boolean } | null>(null);
   const [isBusy, setBusy] = useState(false);
   const [problem, setProblem] = useState("");
@@ -375,6 +387,7 @@ function BestShotCard({ state, question, answer, isSharp, change }: CardProps) {
     if (question === null) return;
     asked.current = profile;
     setBusy(true);
+    searching(true);
     setProblem("");
     ask<BestShots, { shots: Best[] }>({ question: "best_shots", profile: question }, (draft) => {
       const of = (kind: string) => draft.shots.find((shot) => shot.kind === kind) ?? null;
@@ -384,7 +397,10 @@ function BestShotCard({ state, question, answer, isSharp, change }: CardProps) {
         (answered) => answered && setBest({ direct: answered.answer.direct, bank: answered.answer.bank, isDraft: false }),
         (error: unknown) => setProblem(error instanceof Error ? error.message : String(error)),
       )
-      .finally(() => setBusy(false));
+      .finally(() => {
+        setBusy(false);
+        searching(false);
+      });
   };
   const use = (shot: Best) => {
     const value = (name: string, decimals: number) => Number((valueOf(shot, name) ?? 0).toFixed(decimals));
@@ -428,7 +444,9 @@ function BestShotCard({ state, question, answer, isSharp, change }: CardProps) {
       )}
       {best && !best.isDraft && answer && isSharp && most > 0 && (
         <p>
-          The current shot makes {per100(answer.probability)} of 100: {signed(answer.probability - most)} per 100 against the best shot.
+          {most - answer.probability < 0.002
+            ? "The current shot is as good as the best shot."
+            : `The best shot makes ${per100(most - answer.probability)} per 100 more than the current shot.`}
         </p>
       )}
     </div>
@@ -440,9 +458,10 @@ interface SceneProps {
   hoop: Start["physics"][number]["hoop"];
   swarm: SwarmShot[];
   shooter: { x: number; y: number; height: number };
+  isBusy: boolean;
 }
 
-function Court3d({ start, hoop, swarm, shooter }: SceneProps) {
+function Court3d({ start, hoop, swarm, shooter, isBusy }: SceneProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const scene = useRef<CourtScene | null>(null);
   const [isPlaying, setPlaying] = useState(!matchMedia("(prefers-reduced-motion: reduce)").matches);
@@ -476,6 +495,7 @@ function Court3d({ start, hoop, swarm, shooter }: SceneProps) {
     scene.current?.look("side");
   }, [place]);
   useEffect(() => scene.current?.play(isPlaying, Number(rate)), [isPlaying, rate]);
+  useEffect(() => scene.current?.setBusy(isBusy), [isBusy]);
 
   const keys = (event: KeyboardEvent) => {
     const turns: Record<string, [number, number, number?]> = {

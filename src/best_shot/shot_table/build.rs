@@ -363,7 +363,7 @@ pub(crate) fn best_with_fixed(
     kind: ShotKind,
     fixed: &[(NominalVariable, f64)],
 ) -> Result<Result<TableShot, NoShot>, ShotTableError> {
-    Ok(best(&with_fixed(profile, fixed)?, kind)?)
+    Ok(best(&with_fixed(profile, fixed)?, kind, &Silent)?)
 }
 
 /// The profile with values that the search leaves as they are.

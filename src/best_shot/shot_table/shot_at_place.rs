@@ -7,7 +7,7 @@ use crate::best_shot::found_shots::{BestShotError, NoShot};
 use crate::best_shot::search::find_beside_other_kind;
 use crate::dynamics::{Event, EventKind, Outcome};
 use crate::model::SolidId;
-use crate::probability::{Estimate, Silent};
+use crate::probability::{Estimate, Progress, Pulse, Silent};
 use crate::search_space::PlanError;
 use crate::shooter::{Nominal, NominalVariable, Profile, ProfileError, ShotKind};
 
@@ -43,8 +43,9 @@ impl From<CheckError> for ShotTableError {
 pub(super) fn best(
     profile: &Profile,
     kind: ShotKind,
+    progress: &dyn Progress,
 ) -> Result<Result<TableShot, NoShot>, BestShotError> {
-    let (shot, other) = match find_beside_other_kind(profile, kind, &Silent) {
+    let (shot, other) = match find_beside_other_kind(profile, kind, &Pulse(progress)) {
         Ok(found) => found,
         Err(BestShotError::Plan(PlanError::OutOfReach { .. })) => {
             return Ok(Err(NoShot::Impossible(kind)));

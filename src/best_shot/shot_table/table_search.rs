@@ -119,7 +119,7 @@ impl<'a> TableSearch<'a> {
         }
         self.begin(stage, new.len());
         for &place in new {
-            let shot = best(&self.profile.moved_to(place)?, self.kind)?.ok();
+            let shot = best(&self.profile.moved_to(place)?, self.kind, self.progress)?.ok();
             (self.found)(&TableFinding::Shot {
                 kind: self.kind,
                 place,
@@ -162,7 +162,8 @@ impl<'a> TableSearch<'a> {
                         let shot = self.shot_at(&location);
                         BestKnown::Searched(shot.map(|shot| shot.probability))
                     } else if table.angles_rad.len() == 1 {
-                        let shot = best(&self.profile.moved_to(location)?, self.kind)?.ok();
+                        let shot =
+                            best(&self.profile.moved_to(location)?, self.kind, self.progress)?.ok();
                         BestKnown::Searched(shot.map(|shot| shot.probability))
                     } else {
                         BestKnown::Climbed(&around)

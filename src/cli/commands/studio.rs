@@ -63,6 +63,8 @@ pub(crate) fn run(options: &StudioOptions) -> Result<u8, Failure> {
     if !options.no_browser && open::that_detached(&url).is_err() {
         print_remark("no browser could be opened; open the link yourself");
     }
-    studio.serve().map_err(|error| Failure::io(&place, &error))?;
+    studio
+        .serve()
+        .map_err(|error| Failure::io(&place, &error))?;
     Ok(code::DONE)
 }

@@ -218,7 +218,7 @@ fn recompute(config: &SweepConfig, jobs: &Jobs, rows: &[&ResultRow]) -> Vec<u64>
     let mut differing = Vec::new();
     for row in rows {
         if let Some((spot, kind)) = jobs.spot_and_kind(row.job) {
-            let again = compute_jobs(config, jobs, spot, &[kind]);
+            let again = compute_jobs(config, jobs, spot, &[kind], &bars);
             if again.ok().as_deref() != Some(std::slice::from_ref(*row)) {
                 differing.push(row.job);
             }
