@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Writes THIRD-PARTY-NOTICES.md: every crate of Cargo.lock with its licence and the texts of its licence files.
+"""Writes THIRD-PARTY-NOTICES.md: every crate of Cargo.lock, and every package in the studio's page, with its licence
+and the texts of its licence files.
 
-Run it after a change of Cargo.lock:  python3 packaging/third_party_notices.py
+Run it after a change of Cargo.lock or studio/package.json:
+    npm ci --prefix studio && python3 packaging/third_party_notices.py
 `cargo test --test import_layers` checks that no crate is missing.
 """
 import json
@@ -27,6 +29,10 @@ def main():
         (package for package in metadata["packages"] if package["source"]),
         key=lambda package: (package["name"], package["version"]),
     )
+    page = json.loads((ROOT / "studio/package.json").read_text())["dependencies"]
+    for name in sorted(page):
+        manifest = ROOT / "studio/node_modules" / name / "package.json"
+        packages.append(json.loads(manifest.read_text()) | {"manifest_path": str(manifest)})
     texts = {}
     rows = []
     for package in packages:
@@ -44,10 +50,11 @@ def main():
     lines = [
         "# Third-party notices",
         "",
-        "bankshot is built with these crates. Those that only tests and builds use are listed too.",
+        "bankshot is built with these crates, and the studio's page with the packages at the end of the table. Crates that",
+        "only tests and builds use are listed too.",
         "The fonts in `assets/` have their licence beside them.",
         "",
-        "| crate | licence | texts |",
+        "| crate or package | licence | texts |",
         "|---|---|---|",
         *rows,
     ]

@@ -42,7 +42,7 @@ function isSoftware(): boolean {
 export class CourtScene {
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
-  private readonly camera = new THREE.PerspectiveCamera(38, 1, 0.05, 120);
+  private readonly camera = new THREE.PerspectiveCamera(38, 1, 0.25, 120);
   private readonly controls: OrbitControls;
   private readonly ground = new THREE.Group();
   private readonly swarm = new THREE.Group();
@@ -72,7 +72,7 @@ export class CourtScene {
   ) {
     this.isSoftware = isSoftware();
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSoftware });
-    this.renderer.setPixelRatio(this.isSoftware ? 0.75 : Math.min(devicePixelRatio, 2));
+    this.setRatio();
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
@@ -120,7 +120,7 @@ export class CourtScene {
       new THREE.PlaneGeometry(far - base + 1.6, 2 * wide + 1.6),
       new THREE.MeshLambertMaterial({ color: colours.floor }),
     );
-    plane.position.set((far + base) / 2, 0, floor - 0.004);
+    plane.position.set((far + base) / 2, 0, floor - 0.02);
     this.ground.add(plane);
     const lane = court.lane_half_width_m;
     const turn = Math.atan2(court.three_corner_y_m, court.three_break_x_m);
@@ -231,7 +231,7 @@ export class CourtScene {
     const along = new THREE.Vector3(x, y, 0).normalize();
     const middle = new THREE.Vector3(x, y, 0).multiplyScalar(0.42).setZ(0.15);
     if (from === "side") {
-      const away = across.multiplyScalar(reach * 1.62 + 1.4).add(along.multiplyScalar(0.9)).setZ(0.9);
+      const away = across.multiplyScalar(reach * 1.42 + 1.1).add(along.multiplyScalar(0.9)).setZ(0.9);
       this.camera.position.copy(middle).add(away);
       this.controls.target.copy(middle);
     } else if (from === "shooter") {
@@ -264,6 +264,8 @@ export class CourtScene {
   play(isPlaying: boolean, rate = this.rate) {
     this.isPlaying = isPlaying;
     this.rate = rate;
+    this.setRatio();
+    this.resize();
     this.touch();
   }
 
@@ -281,6 +283,12 @@ export class CourtScene {
   picture(): string {
     this.renderer.render(this.scene, this.camera);
     return this.canvas.toDataURL("image/png");
+  }
+
+  /** Without a graphics card moving pictures are coarse and still ones fine. */
+  private setRatio() {
+    const ratio = this.isPlaying ? 0.75 : 2;
+    this.renderer.setPixelRatio(this.isSoftware ? ratio : Math.min(devicePixelRatio, 2));
   }
 
   private touch() {

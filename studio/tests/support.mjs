@@ -58,6 +58,7 @@ export async function openPage(browser, studio, hash = "#/shot", options = {}) {
     const { protocol, origin } = new URL(request.url());
     if (!["data:", "blob:"].includes(protocol) && origin !== studio.base) page.foreign.push(request.url());
   });
+  if (process.env.DIST) for (const f of ["studio.js","studio.css"]) await page.route("**/"+f, (r) => r.fulfill({ path: join(ROOT, "studio/dist", f) }));
   await page.goto(studio.url);
   await page.waitForSelector("main > *");
   await page.goto(`${studio.base}/${hash}`);

@@ -304,6 +304,16 @@ fn contract_lines_of_comments_have_at_most_100_columns() {
     assert!(long.is_empty(), "{}", long.join("\n"));
 }
 
+/// The rows of the packages in the studio's page.
+fn page_packages(repository: &Path) -> Vec<String> {
+    let text = fs::read_to_string(repository.join("studio/package.json")).unwrap();
+    let package: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let packages = package["dependencies"].as_object().unwrap().iter();
+    packages
+        .map(|(name, version)| format!("| {name} {} |", version.as_str().unwrap()))
+        .collect()
+}
+
 #[test]
 fn contract_every_dependency_is_in_the_notices() {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -320,6 +330,7 @@ fn contract_every_dependency_is_in_the_notices() {
             let text = |key: &str| package[key].as_str().unwrap();
             format!("| {} {} |", text("name"), text("version"))
         })
+        .chain(page_packages(repository))
         .filter(|row| !notices.contains(row))
         .collect();
     assert!(
