@@ -10,7 +10,8 @@ use std::fmt::Write;
 
 const HTML: &str = include_str!("../../assets/report/page.html");
 const CSS: &str = include_str!("../../assets/report/page.css");
-const JS: &str = include_str!("../../assets/report/page.js");
+/// Built from `studio/src/report.ts`.
+const JS: &str = include_str!("../../studio/dist/report.js");
 /// Longest name in a title, in characters.
 const LONGEST_NAME: usize = 120;
 

@@ -5,15 +5,17 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import type { CourtLines, Hoop } from "./api";
 
-export interface SwarmShot {
-  made: boolean;
-  kind: string;
-  path: [number, number, number, number][];
+/** The path of a ball: seconds, and metres. */
+export type Path = [number, number, number, number][];
+
+/** A ball of the first colour or of the second. */
+export interface Ball {
+  isSecond: boolean;
+  path: Path;
 }
 
 export interface Colours {
-  made: string;
-  missed: string;
+  balls: [string, string];
   floor: string;
   line: string;
   background: string;
@@ -47,7 +49,7 @@ export class CourtScene {
   private readonly ground = new THREE.Group();
   private readonly swarm = new THREE.Group();
   private balls: THREE.InstancedMesh | null = null;
-  private shots: SwarmShot[] = [];
+  private shots: Ball[] = [];
   private longest = 1;
   private shooter = new THREE.Vector3(4.2, 0, -0.9);
   private hoop: Hoop | null = null;
@@ -69,9 +71,11 @@ export class CourtScene {
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private colours: Colours,
+    /** Whether the picture must stay for a printer. */
+    preserveDrawingBuffer = false,
   ) {
     this.isSoftware = isSoftware();
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSoftware });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !this.isSoftware, preserveDrawingBuffer });
     this.setRatio();
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -104,7 +108,7 @@ export class CourtScene {
   setColours(colours: Colours, court: CourtLines) {
     this.colours = colours;
     if (this.hoop) this.setCourt(court, this.hoop);
-    this.setSwarm(this.shots);
+    this.setBalls(this.shots);
   }
 
   setCourt(court: CourtLines, hoop: Hoop) {
@@ -190,31 +194,36 @@ export class CourtScene {
     return new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points), material);
   }
 
-  setSwarm(shots: SwarmShot[]) {
+  setBalls(shots: Ball[]) {
     this.shots = shots;
     this.clear(this.swarm);
     this.balls = null;
     this.longest = Math.max(0.5, ...shots.map((shot) => shot.path.at(-1)?.[0] ?? 0));
     if (shots.length === 0 || !this.hoop) return this.touch();
     // All paths of a kind are one geometry: few draw calls, so that software rendering keeps up.
-    for (const made of [false, true]) {
+    for (const isSecond of [true, false]) {
       const points: number[] = [];
-      for (const shot of shots.filter((shot) => shot.made === made)) {
+      for (const shot of shots.filter((shot) => shot.isSecond === isSecond)) {
         for (let i = 1; i < shot.path.length; i++) {
           points.push(...shot.path[i - 1]!.slice(1), ...shot.path[i]!.slice(1));
         }
       }
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
-      const colour = made ? this.colours.made : this.colours.missed;
-      const material = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: 0.32, depthWrite: false });
+      // Many paths are a cloud; a few are lines to look at.
+      const opacity = shots.length > 10 ? 0.32 : 0.95;
+      const material = new THREE.LineBasicMaterial({ color: this.colour(isSecond), transparent: true, opacity, depthWrite: false });
       this.swarm.add(new THREE.LineSegments(geometry, material));
     }
     const ball = new THREE.SphereGeometry(this.hoop.ball_radius_m, 20, 14);
     this.balls = new THREE.InstancedMesh(ball, new THREE.MeshLambertMaterial(), shots.length);
-    shots.forEach((shot, i) => this.balls!.setColorAt(i, new THREE.Color(shot.made ? this.colours.made : this.colours.missed)));
+    shots.forEach((shot, i) => this.balls!.setColorAt(i, this.colour(shot.isSecond)));
     this.swarm.add(this.balls);
     this.place();
+  }
+
+  private colour(isSecond: boolean): THREE.Color {
+    return new THREE.Color(this.colours.balls[isSecond ? 1 : 0]);
   }
 
   setShooter(x: number, y: number, heightAboveFloor: number) {

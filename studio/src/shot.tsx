@@ -5,7 +5,7 @@ import type { Folder, Start } from "./api";
 import { Refused, ask, get, post } from "./api";
 import { Choice, CopyButton, Slider } from "./controls";
 import { CourtMap } from "./court_map";
-import type { SwarmShot } from "./scene";
+import type { Path } from "./scene";
 import { CourtScene } from "./scene";
 import type { ShotState } from "./state";
 import { inUnits, profileToml, shotFlags, shotRequest } from "./state";
@@ -19,6 +19,11 @@ interface Probability {
   shots: number;
   shares: Record<string, number>;
   [key: string]: unknown;
+}
+
+interface SwarmShot {
+  made: boolean;
+  path: Path;
 }
 
 interface Fit {
@@ -488,7 +493,7 @@ function Court3d({ start, hoop, swarm, shooter, isBusy }: SceneProps) {
   }, []);
   useEffect(() => scene.current?.setCourt(start.court, hoop), [hoop]);
   useEffect(() => scene.current?.setColours(sceneColours(), start.court), [theme]);
-  useEffect(() => scene.current?.setSwarm(swarm), [swarm]);
+  useEffect(() => scene.current?.setBalls(swarm.map(({ made, path }) => ({ isSecond: !made, path }))), [swarm]);
   const place = `${shooter.x.toFixed(2)} ${shooter.y.toFixed(2)}`;
   useEffect(() => {
     scene.current?.setShooter(shooter.x, shooter.y, shooter.height);

@@ -38,8 +38,7 @@ export function useTheme(): number {
 export const colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 export const sceneColours = (): Colours => ({
-  made: colour("made"),
-  missed: colour("missed"),
+  balls: [colour("made"), colour("missed")],
   floor: colour("floor"),
   line: colour("court-line"),
   background: colour("sky"),

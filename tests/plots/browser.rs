@@ -40,7 +40,13 @@ pub(crate) fn visit(chromium: &str, page: &Path, width: u32) -> serde_json::Valu
     fs::write(&visited, format!("{body}<script>\n{AFTER}</script>{rest}")).unwrap();
     let folder = tempfile::TempDir::new().unwrap();
     let output = Command::new(chromium)
-        .args(["--headless", "--no-sandbox", "--disable-gpu"])
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--use-gl=angle",
+            "--use-angle=swiftshader",
+        ])
+        .arg("--enable-unsafe-swiftshader")
         .args(["--disable-quic", "--no-first-run", "--disable-sync"])
         .args([
             "--disable-background-networking",

@@ -5,6 +5,7 @@ use super::half_court::{HalfCourt, result_columns};
 use bankshot::plots::paper_figures;
 use bankshot::plots::sweep_bank_direct_map;
 use bankshot::plots::sweep_results::SweepResults;
+use bankshot::probability::Silent;
 use bankshot::sweep::job_list::Jobs;
 use bankshot::sweep::run::compute_jobs;
 use std::fs;
@@ -55,7 +56,7 @@ fn contract_the_half_court_results_of_the_docs_are_up_to_date() {
     assert_eq!(rows.len(), jobs.count());
     // One spot computed again, bit for bit.
     let spot = 303;
-    let computed = compute_jobs(&config, &jobs, spot, &[0, 1]).unwrap();
+    let computed = compute_jobs(&config, &jobs, spot, &[0, 1], &Silent).unwrap();
     assert_eq!(computed.len(), 2);
     for (kind, row) in computed.iter().enumerate() {
         let kept = &rows[&jobs.number(spot, kind)];
