@@ -19,7 +19,7 @@
 
 use super::best_shots::{BestShotsAnswer, BestShotsDraft};
 use super::checks::{CheckAnswer, Checked};
-use super::json::{Provenance, document, in_units};
+use super::json::{Provenance, document, in_si, in_units};
 use super::nominal_shot::{FieldError, NominalRequest, ShotNote, notes_of_shot};
 use super::probability::Effort;
 use super::rebounds::{self, ReboundsAnswer};
@@ -31,8 +31,11 @@ use crate::config::{ConfigError, parse_profile};
 use crate::dynamics::StateError;
 use crate::probability::Progress;
 use crate::search_space::{PlanError, TablePlan};
-use crate::shooter::{Profile, ProfileError, implausible_values, nominal_values_not_fixed};
-use crate::units::UnitSystem;
+use crate::shooter::{
+    NominalVariable, Profile, ProfileError, implausible_values, nominal_values_not_fixed,
+};
+use crate::store::fit::{Fit, SHOTS, shot_over_draws};
+use crate::units::{DEGREE_RAD, UnitSystem, rounded};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -159,12 +162,21 @@ impl ProfileRequest {
     /// # Errors
     /// The text is no TOML, or has another value where a table should be.
     pub fn text(&self) -> Result<String, RequestError> {
+        self.text_with(&NominalRequest::default())
+    }
+
+    /// The text with the changes that are asked for, and a shot in its table `[nominal]`.
+    ///
+    /// # Errors
+    /// As [`Self::text`], and a shot that is wrong.
+    pub fn text_with(&self, shot: &NominalRequest) -> Result<String, RequestError> {
         let changes = [
             ("location", "distance", &self.distance),
             ("location", "angle", &self.angle),
             ("physics", "preset", &self.physics),
         ];
-        if changes.iter().all(|(.., value)| value.is_none()) {
+        let is_unchanged = changes.iter().all(|(.., value)| value.is_none());
+        if is_unchanged && !shot.is_given() {
             return Ok(self.toml.clone());
         }
         // The text as it is must be right first, so that a message is about what the user wrote.
@@ -185,6 +197,29 @@ impl ProfileRequest {
                 table.insert(key, toml_edit::value(value.as_str()));
             }
         }
+        let text = document.to_string();
+        if !shot.is_given() {
+            return Ok(text);
+        }
+        if let Some(units) = self.units {
+            let output = document.entry("output").or_insert_with(toml_edit::table);
+            output["units"] = toml_edit::value(in_si(&units).as_str().unwrap_or_default());
+        }
+        // As it is written; the direction from the court's long axis, which a profile has.
+        let profile = parse_profile(&text, &self.origin)?;
+        let nominal = shot.resolve(&profile).map_err(RequestError::Fields)?;
+        let mut table = toml_edit::Table::new();
+        for variable in NominalVariable::ALL {
+            let value = match (variable, shot.given(variable)) {
+                (_, Some(given)) => given.to_owned(),
+                (NominalVariable::Polar, None) => {
+                    format!("{} deg", rounded(nominal.polar_rad / DEGREE_RAD))
+                }
+                _ => continue,
+            };
+            table.insert(variable.name(), toml_edit::value(value));
+        }
+        document.insert("nominal", toml_edit::Item::Table(table));
         Ok(document.to_string())
     }
 
@@ -208,17 +243,19 @@ impl Request {
     /// # Errors
     /// What is asked is wrong or not possible.
     pub fn answer(&self, progress: &dyn Progress) -> Result<Answered, RequestError> {
-        self.answer_with_drafts(progress, &|_| ())
+        self.answer_with_drafts(None, progress, &|_| ())
     }
 
     /// The answer. Before it, `draft` gets what is known early: of [`Self::BestShots`] the kind,
     /// the shot and P to 0.01 or so of each kind, in a fraction of the time; of
     /// [`Self::Probability`] the whole answer from [`DRAFT_SHOTS`], unless an effort was asked for.
+    /// With the fit that the profile is of, the probability of a shot has its uncertainty.
     ///
     /// # Errors
     /// What is asked is wrong or not possible.
     pub fn answer_with_drafts(
         &self,
+        fit: Option<&Fit>,
         progress: &dyn Progress,
         draft: &(dyn Fn(Value) + Sync),
     ) -> Result<Answered, RequestError> {
@@ -255,9 +292,9 @@ impl Request {
                         budget: Some(DRAFT_SHOTS),
                         ..Effort::default()
                     };
-                    draft(probability(profile, shot, &rough, None, progress)?.document);
+                    draft(probability(profile, shot, &rough, None, (None, progress))?.document);
                 }
-                probability(profile, shot, effort, reach.as_deref(), progress)
+                probability(profile, shot, effort, reach.as_deref(), (fit, progress))
             }
             Self::Trace { profile, shot } => trace(profile, shot),
         }
@@ -283,7 +320,7 @@ fn probability(
     shot: &NominalRequest,
     effort: &Effort,
     reach: Option<&str>,
-    progress: &dyn Progress,
+    (fit, progress): (Option<&Fit>, &dyn Progress),
 ) -> Result<Answered, RequestError> {
     let (profile, mut notes) = profile.read()?;
     let nominal = shot.resolve(&profile).map_err(RequestError::Fields)?;
@@ -299,7 +336,11 @@ fn probability(
             message,
         })
     })?;
-    let (mut answer, _) = effort.probability(&profile, &nominal, None, progress)?;
+    let has_only_backspin = nominal.side_spin_rad_s == 0.0 && nominal.rifle_spin_rad_s == 0.0;
+    let draws = fit
+        .filter(|_| has_only_backspin)
+        .map(|fit| shot_over_draws(&fit.posterior.draws, &profile, &nominal, SHOTS));
+    let (mut answer, _) = effort.probability(&profile, &nominal, draws.as_ref(), progress)?;
     if let Some(reach_m) = reach_m.filter(|_| !effort.method.is_grid()) {
         let found = find_rebounds(&profile, &nominal, answer.provenance.seed, reach_m);
         answer.rebounds = Some(ReboundsAnswer::new(&profile, &found, reach_m));

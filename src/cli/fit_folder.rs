@@ -6,11 +6,13 @@ use super::measured_shots_flags::MeasuredShotsOptions;
 use super::terminal::print_remark;
 use crate::best_shot::{BestShots, ShotAtPitch, TableShot};
 use crate::fitting::{
-    AngleOverDraws, Draw, DrawProbabilities, Values, WeightedShots, best_angles_of_draws, values_of,
+    AngleOverDraws, Draw, DrawProbabilities, Values, WeightedShots, best_angles_of_draws,
 };
 use crate::present::best_shot_text::KindsOverDraws;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
-use crate::store::fit::{FIT_FILE, Fit, SHOTS, folder_of_profile};
+use crate::store::fit::{
+    FIT_FILE, Fit, SHOTS, folder_of_profile, shot_over_draws as shot_over_draws_of,
+};
 use crate::store::shooters::fits_within;
 use std::path::Path;
 
@@ -82,12 +84,7 @@ pub(crate) fn probability_over_draws(
     if nominal.rifle_spin_rad_s != 0.0 || nominal.side_spin_rad_s != 0.0 {
         return Err(Failure::usage(NO_OTHER_SPIN));
     }
-    let values = values_of(nominal);
-    // The scatter of the speed is that at this speed.
-    let here: Vec<Draw> = draws.iter().map(|draw| draw.aimed_at(values)).collect();
-    let seed = profile.search().seed;
-    let sample = WeightedShots::simulate(profile, (&here, 0), &[values], shots, seed);
-    Ok(sample.probabilities(&here, |_| values, |draw| draw.factor_at(0)))
+    Ok(shot_over_draws_of(draws, profile, nominal, shots))
 }
 
 /// The fit that a profile was written by: that of its folder. `None` if there is none.

@@ -160,6 +160,9 @@ pub const LABELS: [(&str, Label); 7] = [
     ("shot", Label::Shot),
 ];
 
+/// The target of a map that leaves a column out.
+pub const UNUSED: &str = "unused";
+
 /// A column with its meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuantityColumn {
@@ -223,6 +226,8 @@ impl QuantityColumn {
 pub struct Columns {
     quantities: Vec<(Quantity, QuantityColumn)>,
     labels: Vec<(Label, usize)>,
+    /// Columns that a map leaves out.
+    left_out: Vec<usize>,
     /// The names of the columns, as in the file.
     names: Vec<String>,
     /// What the cells say of each column; empty where only names are known.
@@ -291,7 +296,7 @@ impl Columns {
     /// The columns of a header. `maps` are of the form `speed_ft_s=ReleaseSpeed:mph`: the quantity,
     /// the name of the column, and its unit where that is not the suffix of the quantity. A minus
     /// before the name turns the sign round, a number after the unit is added:
-    /// `depth=PastCentre:in+9`.
+    /// `depth=PastCentre:in+9`. `unused=COLUMN` leaves a column out.
     ///
     /// # Errors
     /// A map that cannot be followed, or a quantity given twice.
@@ -427,6 +432,11 @@ impl Columns {
                 (index, Some(unit).filter(|unit| !unit.is_empty()))
             }
         };
+        if target.trim() == UNUSED {
+            is_mapped[index] = true;
+            self.left_out.push(index);
+            return Ok(());
+        }
         let unit = unit.or_else(|| {
             let quantity = Quantity::ALL
                 .into_iter()
@@ -543,7 +553,7 @@ impl Columns {
                 || self.labels.iter().any(|(_, label)| *label == index)
         };
         (0..self.names.len())
-            .filter(|&index| !is_used(index))
+            .filter(|&index| !is_used(index) && !self.left_out.contains(&index))
             .collect()
     }
 }
@@ -555,6 +565,16 @@ mod tests {
 
     fn header(names: &[&str]) -> Vec<String> {
         names.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    #[test]
+    fn contract_a_map_leaves_a_column_out() {
+        let names = header(&["depth_in", "entry_angle_deg"]);
+        let columns = Columns::new(&names, &["unused=depth_in".to_owned()]).unwrap();
+        assert_eq!(columns.quantity(Quantity::Depth), None);
+        assert!(columns.quantity(Quantity::EntryAngle).is_some());
+        assert!(columns.unused().is_empty(), "it is not proposed again");
+        assert!(Columns::new(&names, &["unused=none".to_owned()]).is_err());
     }
 
     #[test]

@@ -5,12 +5,13 @@ use super::free_parameters::FreeParameter;
 use super::sealed::Sealed;
 use crate::config::parse_profile;
 use crate::fitting::{
-    Contradiction, DrawProbabilities, FitNote, Interval, KnownRelease, Place, Posterior,
-    ShooterFit, SpinSource, VALUE_NAMES, Values, fitted_profile, usual_probabilities,
+    Contradiction, Draw, DrawProbabilities, FitNote, Interval, KnownRelease, Place, Posterior,
+    ShooterFit, SpinSource, VALUE_NAMES, Values, WeightedShots, fitted_profile,
+    usual_probabilities, values_of,
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::measured_shots::source::Source;
-use crate::shooter::{Location, NominalVariable, Profile, ProfileError};
+use crate::shooter::{Location, Nominal, NominalVariable, Profile, ProfileError};
 use crate::store::draws::read_draws;
 use crate::store::parameters::value_units;
 use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD, UnitSystem};
@@ -50,6 +51,22 @@ pub fn folder_of_profile(file: &Path) -> Option<&Path> {
     let is_of_fit = name == "profile.toml" || name.starts_with("profile_place_");
     let folder = file.parent().filter(|_| is_of_fit)?;
     folder.join(FIT_FILE).is_file().then_some(folder)
+}
+
+/// P of a nominal shot with backspin alone, from the profile's location, over draws of the scatter.
+#[must_use]
+pub fn shot_over_draws(
+    draws: &[Draw],
+    profile: &Profile,
+    nominal: &Nominal,
+    shots: usize,
+) -> DrawProbabilities {
+    let values = values_of(nominal);
+    // The scatter of the speed is that at this speed.
+    let here: Vec<Draw> = draws.iter().map(|draw| draw.aimed_at(values)).collect();
+    let seed = profile.search().seed;
+    let sample = WeightedShots::simulate(profile, (&here, 0), &[values], shots, seed);
+    sample.probabilities(&here, |_| values, |draw| draw.factor_at(0))
 }
 
 /// A fitted shooter.

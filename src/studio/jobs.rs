@@ -76,6 +76,12 @@ pub(super) enum JobRequest {
         name: String,
         /// The uploaded files.
         files: Vec<String>,
+        /// The sessions that are fitted; all, if none is named.
+        #[serde(default)]
+        sessions: Vec<String>,
+        /// Whether older results of this name are replaced.
+        #[serde(default)]
+        replace: bool,
         /// What they do not say by themselves.
         #[serde(default)]
         shots: ShotFileRequest,
@@ -145,6 +151,9 @@ pub(super) enum JobRequest {
         /// A first look without checks between the places.
         #[serde(default)]
         draft: bool,
+        /// Whether an older table of this name is replaced.
+        #[serde(default)]
+        replace: bool,
     },
 }
 
@@ -285,6 +294,12 @@ impl Inner {
         match request {
             _ if ![0, 3].contains(&finished.exit_code) => {}
             JobRequest::Players { .. } => {
+                let moved = replace(&self.folder.join(request.staging()), &folder);
+                if let Err(error) = moved {
+                    finished.exit_code = 74;
+                    finished.remarks += &format!("{}: {error}\n", folder.display());
+                    return finished;
+                }
                 let players = format!("{}/", request.folder());
                 let fits = Content::of(&self.folder).fits.into_iter();
                 for fit in fits.filter(|fit| fit.starts_with(&players)) {
@@ -306,6 +321,14 @@ impl Inner {
         }
         finished
     }
+}
+
+/// Moves a folder to a place where an older one may be.
+fn replace(new: &Path, old: &Path) -> std::io::Result<()> {
+    if old.exists() {
+        std::fs::remove_dir_all(old)?;
+    }
+    std::fs::rename(new, old)
 }
 
 fn text(path: &Path) -> String {
@@ -336,6 +359,15 @@ impl JobRequest {
             return fit_folder(shared, name).map(drop);
         }
         check_new_name("name", self.name())?;
+        if !self.replaces() && shared.folder.join(self.folder()).exists() {
+            return Err(Refusal::new(
+                StatusCode::CONFLICT,
+                format!(
+                    "there are results named {} already; choose another name",
+                    self.name()
+                ),
+            ));
+        }
         let text_of = |profile: &ProfileRequest| -> Result<(), Refusal> {
             let text = profile.text()?;
             crate::config::parse_profile(&text, "the profile")
@@ -385,6 +417,16 @@ impl JobRequest {
         }
     }
 
+    /// Whether older results of the name may be there.
+    fn replaces(&self) -> bool {
+        match self {
+            Self::Players { replace, .. } | Self::Table { replace, .. } => *replace,
+            Self::Sweep { .. } => false,
+            Self::Compare { .. } | Self::Team { .. } | Self::Continue { .. } => true,
+            Self::Advise { .. } => true,
+        }
+    }
+
     fn name(&self) -> &str {
         match self {
             Self::Players { name, .. }
@@ -411,6 +453,11 @@ impl JobRequest {
         format!("{parent}/{}", self.name())
     }
 
+    /// Where the fits of players are written before they replace older ones: a hidden folder.
+    fn staging(&self) -> String {
+        format!("players/.{}.new", self.name())
+    }
+
     /// What to type.
     fn arguments(&self, base: &Path) -> Result<Vec<String>, String> {
         let folder = base.join(self.folder());
@@ -418,15 +465,27 @@ impl JobRequest {
         let in_words = |refusal: Refusal| refusal.to_string();
         let mut all: Vec<String> = Vec::new();
         match self {
-            Self::Players { files, shots, .. } => {
+            Self::Players {
+                files,
+                sessions,
+                shots,
+                ..
+            } => {
+                // Older results stay until the new ones are whole.
+                let staging = base.join(self.staging());
+                if staging.exists() {
+                    std::fs::remove_dir_all(&staging)
+                        .map_err(|error| format!("{}: {error}", staging.display()))?;
+                }
                 let files = files
                     .iter()
                     .map(|file| text(&base.join(UPLOADS).join(file)));
                 all.push("coach".into());
                 all.extend(files);
                 all.extend(["--no-court".into(), "--accept".into()]);
+                all.extend(sessions.iter().map(|name| format!("--session={name}")));
                 all.extend(shot_flags(shots).map_err(in_words)?);
-                all.push(format!("--output={}", text(&folder)));
+                all.push(format!("--output={}", text(&staging)));
             }
             Self::Advise { .. } => {
                 all.extend(["advise".into(), text(&folder), "--json".into()]);

@@ -2,9 +2,10 @@
 
 use super::folder::Content;
 use super::jobs::{Job, JobRequest};
+use super::questions::ProfileText;
 use super::refusal::Refusal;
 use super::results::SweepState;
-use crate::answers::requests::{ProfileRequest, Request};
+use crate::answers::requests::Request;
 use crate::answers::shot_file::{ShotFileAnswer, ShotFileRequest};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
@@ -55,7 +56,7 @@ fn document() -> Value {
             method: "post",
             path: "/api/profile",
             summary: "The text of a profile with other values",
-            body: Some(of::<ProfileRequest>(&mut generator)),
+            body: Some(of::<ProfileText>(&mut generator)),
             answer: json_of(
                 json!({ "type": "object", "properties": { "toml": { "type": "string" } } }),
             ),

@@ -1,14 +1,18 @@
 //! Questions that are answered at once. A page's newer question of a kind ends the older one.
 
+use super::folder::fit_folder;
 use super::refusal::{Fault, Refusal};
 use super::server::Shared;
+use crate::answers::nominal_shot::NominalRequest;
 use crate::answers::requests::{Answered, ProfileRequest, Request, RequestError};
 use crate::present::shot_note_text::note_text;
 use crate::probability::Progress;
+use crate::store::fit::Fit;
 use axum::body::{Body, Bytes};
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::convert::Infallible;
@@ -124,6 +128,15 @@ pub(super) async fn answer(
     body: Bytes,
 ) -> Result<Response, Refusal> {
     let request: Request = read_json(&body)?;
+    // The fit that the profile is of, by its name in the folder.
+    let fit = match headers.get("x-fit").and_then(|value| value.to_str().ok()) {
+        None => None,
+        Some(name) => {
+            let name = percent_decoded(name);
+            let folder = fit_folder(&shared, &name)?;
+            Some(Fit::read(&folder).map_err(|error| Refusal::bad(error.to_string()))?)
+        }
+    };
     let page = headers.get("x-page").and_then(|value| value.to_str().ok());
     let page = page.filter(|page| page.len() <= 64);
     let is_old = shared.questions.begin(page, &request);
@@ -138,7 +151,7 @@ pub(super) async fn answer(
     let (lines, mut received) = unbounded_channel::<Line>();
     tokio::task::spawn_blocking(move || {
         let _place = place;
-        compute(&request, is_old, &lines);
+        compute((&request, fit.as_ref()), is_old, &lines);
     });
     // What is wrong is known before the first line.
     let first = received.recv().await.unwrap_or_else(stopped)?;
@@ -150,7 +163,11 @@ fn stopped() -> Line {
     Ok(json!({ "stopped": true }))
 }
 
-fn compute(request: &Request, is_old: Arc<AtomicBool>, lines: &UnboundedSender<Line>) {
+fn compute(
+    (request, fit): (&Request, Option<&Fit>),
+    is_old: Arc<AtomicBool>,
+    lines: &UnboundedSender<Line>,
+) {
     let progress = EndIfOld {
         is_old,
         lines: lines.clone(),
@@ -159,7 +176,7 @@ fn compute(request: &Request, is_old: Arc<AtomicBool>, lines: &UnboundedSender<L
     let send = |line: Line| drop(lines.send(line));
     let computed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         progress.check();
-        request.answer_with_drafts(&progress, &|draft| send(Ok(json!({ "draft": draft }))))
+        request.answer_with_drafts(fit, &progress, &|draft| send(Ok(json!({ "draft": draft }))))
     }));
     send(match computed {
         Ok(Ok(Answered { document, notes })) => {
@@ -193,8 +210,43 @@ fn stream(first: Value, received: UnboundedReceiver<Line>) -> Response {
     (kind, Body::from_stream(lines)).into_response()
 }
 
+/// A text whose characters may be written as `%` and two digits: headers have no others.
+fn percent_decoded(text: &str) -> String {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, tail)) = rest.split_first() {
+        let code = (first == b'%')
+            .then(|| std::str::from_utf8(tail.get(..2)?).ok())
+            .flatten();
+        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &tail[2..];
+            }
+            None => {
+                bytes.push(first);
+                rest = tail;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// A profile whose text is wanted.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProfileText {
+    /// The profile, and what is changed.
+    profile: ProfileRequest,
+    /// The shot that goes into its table `[nominal]`.
+    #[serde(default)]
+    shot: NominalRequest,
+}
+
 /// The text of a profile with the values that are asked for.
 pub(super) async fn profile(body: Bytes) -> Result<axum::Json<Value>, Refusal> {
-    let request: ProfileRequest = read_json(&body)?;
-    Ok(axum::Json(json!({ "toml": request.text()? })))
+    let request: ProfileText = read_json(&body)?;
+    let toml = request.profile.text_with(&request.shot)?;
+    Ok(axum::Json(json!({ "toml": toml })))
 }

@@ -77,8 +77,9 @@ export interface Answered<T> {
 }
 
 /** Asks a question. `draft` gets what is known early. `null` if a newer question ended this one. */
-export async function ask<T, D = T>(question: object, draft: (draft: D) => void = () => {}): Promise<Answered<T> | null> {
-  const headers = { "content-type": "application/json", "x-page": PAGE };
+export async function ask<T, D = T>(question: object, draft: (draft: D) => void = () => {}, fit = ""): Promise<Answered<T> | null> {
+  const headers: Record<string, string> = { "content-type": "application/json", "x-page": PAGE };
+  if (fit !== "") headers["x-fit"] = encodeURIComponent(fit);
   const response = await send("/api/answer", { method: "POST", headers, body: JSON.stringify(question) });
   const reader = response.body!.pipeThrough(new TextDecoderStream()).getReader();
   let rest = "";
@@ -163,6 +164,13 @@ export interface Job {
   answer: string;
   remarks: string;
   folder: string;
+}
+
+/** The name of a fit for people: the player first. */
+export function shortName(name: string): string {
+  const parts = name.split("/");
+  const from = parts.length > 2 ? parts[1] : parts[0];
+  return parts.length > 1 ? `${parts.at(-1)} (${from})` : name;
 }
 
 /** The address of a file of the folder. */

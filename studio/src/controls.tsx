@@ -1,7 +1,7 @@
 // The controls that all pages share.
 
 import type { ComponentChildren } from "preact";
-import { useId } from "preact/hooks";
+import { useId, useState } from "preact/hooks";
 
 interface SliderProps {
   label: string;
@@ -17,21 +17,25 @@ interface SliderProps {
 /** A slider with the number beside it, for the mouse and for exact values. */
 export function Slider({ label, unit, value, min, max, step, error, onChange }: SliderProps) {
   const id = useId();
+  const [isEmpty, setEmpty] = useState(false);
   const change = (text: string) => {
     const number = Number(text);
-    if (text !== "" && Number.isFinite(number)) onChange(number);
+    const isNumber = text !== "" && Number.isFinite(number);
+    setEmpty(!isNumber);
+    if (isNumber) onChange(number);
   };
+  const problem = isEmpty ? "type a number; until then the last one counts" : error;
   return (
-    <div class={error ? "slider wrong" : "slider"}>
+    <div class={problem ? "slider wrong" : "slider"}>
       <label for={id}>{label}</label>
       <input id={id} type="range" min={min} max={max} step={step} value={value} onInput={(event) => change(event.currentTarget.value)} />
       <span class="number">
         <input type="number" aria-label={`${label}, ${unit}`} step={step} value={value} onInput={(event) => change(event.currentTarget.value)} />
         <span class="unit">{unit}</span>
       </span>
-      {error && (
+      {problem && (
         <p class="error" role="alert">
-          {error}
+          {problem}
         </p>
       )}
     </div>

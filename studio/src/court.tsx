@@ -2,7 +2,7 @@
 
 import { useEffect, useState } from "preact/hooks";
 import type { Folder, Start } from "./api";
-import { Refused, get, post } from "./api";
+import { Refused, get, post, shortName } from "./api";
 import { Choice, Tick, TextField } from "./controls";
 import type { MapPlace } from "./court_map";
 import { CourtMap } from "./court_map";
@@ -186,6 +186,7 @@ export function CourtPage({ start, folder, state, openPlace, reload }: Props) {
             )}
             {sweep.remarks.length > 0 && <pre class="remarks">{sweep.remarks.join("\n")}</pre>}
             <CourtMap court={start.court} places={places} step={step} chosen={at ? { x: at.x_m, y: at.y_m } : undefined} label={`map: ${SHOWN.find(([key]) => key === shown)![1]}`} onChoose={choose} />
+            {values.length === 0 && shown === "spin" && sweep.done > 0 && <p>This sweep did not compute the gain from spin: start one with the tick beside it.</p>}
             {values.length > 0 && (
               <div class="scale" aria-hidden="true">
                 <span>{isDifference ? signed(low) : per100(low, 0)}</span>
@@ -298,7 +299,10 @@ function NewSweep({ folder, state, begun }: { folder: Folder | null; state: Shot
     <>
       <h2>New sweep</h2>
       <TextField label="name" value={name} error={refused?.of("name")} onChange={setName} />
-      <Choice label="shooter" value={player} options={[["", "the numbers of the Shot page"], ...(folder?.fits ?? []).map((one) => [one, one] as const)]} onChange={setPlayer} />
+      <Choice label="shooter" value={player} options={[["", "the numbers of the Shot page"], ...(folder?.fits ?? []).map((one) => [one, shortName(one)] as const)]} onChange={(one) => {
+          setPlayer(one);
+          setName(one === "" ? "half court" : `half court ${one.split("/").at(-1)}`);
+        }} />
       <Choice
         label="a place every"
         value={step}

@@ -3,24 +3,30 @@
 import { createContext } from "preact";
 import { useContext, useEffect, useState } from "preact/hooks";
 import type { Job } from "./api";
-import { remove } from "./api";
+import { get, remove } from "./api";
 
 export const JobsContext = createContext<Job[]>([]);
 
 /** The jobs as the server sends them; the connection is taken up again by itself. */
-export function useJobEvents(): { jobs: Job[]; isLost: boolean } {
+export function useJobEvents(): { jobs: Job[]; lost: string } {
   const [jobs, setJobs] = useState<Job[]>([]);
-  const [isLost, setLost] = useState(false);
+  const [lost, setLost] = useState("");
   useEffect(() => {
     const source = new EventSource("/api/events");
     source.onmessage = (event) => {
-      setLost(false);
+      setLost("");
       setJobs(JSON.parse(event.data as string) as Job[]);
     };
-    source.onerror = () => setLost(true);
+    source.onerror = () => {
+      // Why: the studio has ended, or this page is of an earlier start.
+      get("/api/jobs").then(
+        () => setLost(""),
+        (error: unknown) => setLost(error instanceof Error ? error.message : String(error)),
+      );
+    };
     return () => source.close();
   }, []);
-  return { jobs, isLost };
+  return { jobs, lost };
 }
 
 const NAMES: Record<string, string> = {

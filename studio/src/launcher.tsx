@@ -61,7 +61,8 @@ export function LauncherPage({ start, folder }: { start: Start; folder: Folder |
   const set = (field: keyof Form) => (value: string) => setForm({ ...form, [field]: value });
   const error = (...fields: string[]) => fields.map((field) => refused?.of(field)).find((message) => message !== undefined);
   const known = ["name", "distances", "shooter.release_height", "shooter.errors.speed", "shooter.errors.pitch", "shooter.errors.polar", "shooter.errors.backspin", "shooter.max_backspin", "search.pitch_min", "search.pitch_max", "search.speed_max"];
-  const begin = async () => {
+  const [isTaken, setTaken] = useState(false);
+  const begin = async (replace: boolean) => {
     try {
       const optional = (value: string) => (value.trim() === "" ? undefined : value);
       await post("/api/jobs", {
@@ -73,11 +74,16 @@ export function LauncherPage({ start, folder }: { start: Start; folder: Folder |
         pitch: optional(form.pitch),
         backspin: optional(form.backspin),
         draft: isDraft,
+        replace,
       });
       setRefused(null);
+      setTaken(false);
       setShown("");
     } catch (error) {
-      if (error instanceof Refused) setRefused(error);
+      if (error instanceof Refused) {
+        setRefused(error);
+        setTaken(error.status === 409);
+      }
     }
   };
   const tables = (folder?.files ?? []).map((file) => file.name.match(/^(launchers\/[^/]+)\/table\.json$/)?.[1]).filter((name) => name !== undefined);
@@ -125,9 +131,14 @@ export function LauncherPage({ start, folder }: { start: Start; folder: Folder |
             {rest.map((fault) => (fault.field ? `${fault.field}: ${fault.message}` : fault.message)).join("\n")}
           </pre>
         )}
-        <button type="button" class="main" disabled={jobs.some(isOpen)} onClick={() => void begin()}>
+        <button type="button" class="main" disabled={jobs.some(isOpen)} onClick={() => void begin(false)}>
           Make the table
         </button>
+        {isTaken && (
+          <button type="button" onClick={() => void begin(true)}>
+            Replace the old table
+          </button>
+        )}
       </section>
       <div class="view">
         {jobs.slice(0, 2).map((job) => (
@@ -161,6 +172,7 @@ function TablePanel({ name, files }: { name: string; files: string[] }) {
   return (
     <section class="panel" aria-label="table">
       <h2>{name.replace("launchers/", "")}</h2>
+      {files.includes(`${name}/table.txt`) && <TableText name={name} />}
       <p class="links">
         {sources.map(([file, words]) => (
           <a key={file} href={fileAddress(`${name}/${file}`)} download={file}>
@@ -202,6 +214,23 @@ function TablePanel({ name, files }: { name: string; files: string[] }) {
         </table>
       </div>
     </section>
+  );
+}
+
+/** The table as the terminal prints it, with its remarks. */
+function TableText({ name }: { name: string }) {
+  const [text, setText] = useState("");
+  useEffect(() => {
+    fetch(fileAddress(`${name}/table.txt`)).then(
+      async (response) => setText(response.ok ? await response.text() : ""),
+      () => setText(""),
+    );
+  }, [name]);
+  return text === "" ? null : (
+    <details>
+      <summary>Remarks, and the table as text</summary>
+      <pre class="text">{text}</pre>
+    </details>
   );
 }
 

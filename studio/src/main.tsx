@@ -11,11 +11,12 @@ import { JobsContext, isOpen, useJobEvents } from "./jobs";
 import { LauncherPage } from "./launcher";
 import { PlayersPage } from "./players";
 import { ShotPage } from "./shot";
-import type { ShotState } from "./state";
-import { fromAddress, inUnits, toAddress } from "./state";
+import type { Fit, ShotState } from "./state";
+import { fromAddress, playersShot, toAddress } from "./state";
 import "./studio.css";
 import type { Theme } from "./theme";
 import { setTheme, storedTheme } from "./theme";
+import { inSystem } from "./units";
 
 const PAGES = [
   ["shot", "Shot"],
@@ -38,7 +39,7 @@ function App() {
   const [folder, setFolder] = useState<Folder | null>(null);
   const [problem, setProblem] = useState("");
   const [theme, choose] = useState<Theme>(storedTheme);
-  const { jobs, isLost } = useJobEvents();
+  const { jobs, lost } = useJobEvents();
 
   useEffect(() => {
     const changed = () => setAddress(address());
@@ -68,16 +69,15 @@ function App() {
   };
   const change = (change: Partial<ShotState>) => go("shot", { ...state, ...change }, false);
   const openPlace = (x: number, y: number, shot: Nominal | null) => {
-    const metric = inUnits(state, "metric");
     const angle = (Math.atan2(y, x) * 180) / Math.PI;
-    const next = { ...metric, distance: Number(Math.hypot(x, y).toFixed(3)), angle: Number(angle.toFixed(2)) };
+    const next = { ...state, distance: Number(inSystem(Math.hypot(x, y), "length", state.units).toFixed(4)), angle: Number(angle.toFixed(2)) };
     if (shot) {
-      next.speed = Number(shot.speed_m_s.toFixed(3));
+      next.speed = Number(inSystem(shot.speed_m_s, "speed", state.units).toFixed(3));
       next.pitch = Number(((shot.pitch_rad * 180) / Math.PI).toFixed(1));
       next.aim = Number(((shot.polar_rad * 180) / Math.PI - angle).toFixed(2));
       next.backspin = Number((shot.backspin_rad_s / (2 * Math.PI)).toFixed(2));
     }
-    go("shot", inUnits(next, state.units), true);
+    go("shot", next, true);
   };
   const working = jobs.filter(isOpen).length;
   return (
@@ -118,9 +118,9 @@ function App() {
           </select>
         </label>
       </header>
-      {isLost && problem === "" && (
+      {lost !== "" && problem === "" && (
         <p class="banner" role="alert">
-          The studio does not answer. If it has ended, start it again in the terminal: bankshot studio
+          {lost}
         </p>
       )}
       {problem !== "" && (
@@ -136,7 +136,7 @@ function App() {
       <main id="main" tabIndex={-1}>
         {start && page === "shot" && <ShotPage state={state} start={start} folder={folder} change={change} replace={(next) => go("shot", next, false)} />}
         {start && page === "players" && (
-          <PlayersPage folder={folder} reload={reload} places={start.places.map((place) => place.name)} openShot={(player) => go("shot", { ...state, player, fitPlace: 0 }, true)} />
+          <PlayersPage folder={folder} reload={reload} places={start.places.map((place) => place.name)} openShot={(fit: Fit) => go("shot", playersShot(state, fit, 0), true)} />
         )}
         {start && page === "court" && <CourtPage start={start} folder={folder} state={state} openPlace={openPlace} reload={reload} />}
         {start && page === "launcher" && <LauncherPage start={start} folder={folder} />}

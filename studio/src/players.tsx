@@ -5,6 +5,7 @@ import type { Folder, Job } from "./api";
 import { Refused, fileAddress, get, post, upload } from "./api";
 import { Choice, TextField } from "./controls";
 import { JobCard, isOpen, useJobs } from "./jobs";
+import type { Fit as ShotFit } from "./state";
 import { per100, signed, valueOf } from "./units";
 
 interface Column {
@@ -62,9 +63,7 @@ interface Advice {
   [key: string]: unknown;
 }
 
-interface Fit {
-  name: string;
-  fit: { shooter: string };
+interface Fit extends ShotFit {
   advice: Advice[];
 }
 
@@ -72,7 +71,7 @@ interface Props {
   folder: Folder | null;
   reload: () => void;
   places: string[];
-  openShot: (player: string) => void;
+  openShot: (fit: Fit) => void;
 }
 
 const MAX_UPLOAD = 64 * 2 ** 20;
@@ -133,7 +132,7 @@ export function PlayersPage({ folder, reload, places, openShot }: Props) {
         )}
       </section>
       {file !== "" && <ShotFilePanel key={file} file={file} places={places} />}
-      {jobs.slice(0, 4).map((job) => (
+      {jobs.slice(0, 2).map((job) => (
         <JobResult key={job.id} job={job} />
       ))}
       <Fits folder={folder} openShot={openShot} />
@@ -181,6 +180,9 @@ function ShotFilePanel({ file, places }: { file: string; places: string[] }) {
   const [refused, setRefused] = useState<Refused | null>(null);
   const [name, setName] = useState(file.replace(/\.[^.]*$/, ""));
   const [sessions, setSessions] = useState<[string, string]>(["", ""]);
+  const [only, setOnly] = useState("");
+  const [shooter, setShooter] = useState("");
+  const [taken, setTaken] = useState<object | null>(null);
   const jobs = useJobs(["players", "compare"]);
 
   const request = { ...says, maps: Object.entries(changes).map(([column, { target, unit }]) => `${target}=${column}${unit === "" ? "" : `:${unit}`}`) };
@@ -208,8 +210,12 @@ function ShotFilePanel({ file, places }: { file: string; places: string[] }) {
     try {
       await post<Job>("/api/jobs", job);
       setRefused(null);
+      setTaken(null);
     } catch (error) {
-      if (error instanceof Refused) setRefused(error);
+      if (error instanceof Refused) {
+        setRefused(error);
+        setTaken(error.status === 409 ? job : null);
+      }
     }
   };
   const isBusy = jobs.some(isOpen);
@@ -222,9 +228,9 @@ function ShotFilePanel({ file, places }: { file: string; places: string[] }) {
       {content && (
         <>
           <p>
-            {content.rows.toLocaleString("en")} {content.row_name}s
+            {content.rows.toLocaleString("en")} {content.rows === 1 ? content.row_name : `${content.row_name}s`}
             {content.players.length > 0 &&
-              `, ${content.players.map((player) => `${player.name || "one player"}: ${player.shots} shots${player.made > 0 ? `, ${player.made} in` : ""}`).join("; ")}`}
+              `, ${content.players.map((player) => `${player.name || "one player"}: ${player.shots} shots${player.made > 0 ? `, ${player.made} went in` : ""}`).join("; ")}`}
             .
           </p>
           {content.found.length > 0 && <p class="faint">Found: {content.found.join(", ")}.</p>}
@@ -253,13 +259,14 @@ function ShotFilePanel({ file, places }: { file: string; places: string[] }) {
           label="dates such as 03/04/2026"
           value={says.dates ?? ""}
           options={[
-            ["", "are not in the file"],
+            ["", "as the file has them"],
             ["dmy", "day first"],
             ["mdy", "month first"],
           ]}
           onChange={(value) => say("dates", value)}
         />
         <TextField label="text of a make, if it is unusual" placeholder="1" value={says.made ?? ""} onChange={(value) => say("made", value)} />
+        {all.length > 1 && <Choice label="fit the shots of" value={only} options={[["", "all sessions"], ...all.map((one) => [one, one] as const)]} onChange={setOnly} />}
         <TextField label="name of the results" value={name} error={refused?.of("name")} onChange={setName} />
       </div>
       {refused && !refused.of("name") && (
@@ -268,18 +275,24 @@ function ShotFilePanel({ file, places }: { file: string; places: string[] }) {
         </pre>
       )}
       <div class="buttons">
-        <button type="button" class="main" disabled={!isReady || isBusy} onClick={() => void start({ job: "players", name, files: [file], shots: request })}>
+        <button type="button" class="main" disabled={!isReady || isBusy} onClick={() => void start({ job: "players", name, files: [file], sessions: only === "" ? [] : [only], shots: request })}>
           Fit {content && content.players.length > 1 ? `${content.players.length} players` : "the player"}
         </button>
+        {taken && (
+          <button type="button" onClick={() => void start({ ...taken, replace: true })}>
+            Replace the old results
+          </button>
+        )}
       </div>
       {all.length > 1 && (
         <div class="fields">
+          {content && content.players.length > 1 && <Choice label="of the player" value={shooter} options={[["", "choose"], ...content.players.map((player) => [player.name, player.name] as const)]} onChange={setShooter} />}
           <Choice label="compare session" value={sessions[0]} options={[["", "choose"], ...all.map((one) => [one, one] as const)]} onChange={(one) => setSessions([one, sessions[1]])} />
           <Choice label="with session" value={sessions[1]} options={[["", "choose"], ...all.map((one) => [one, one] as const)]} onChange={(one) => setSessions([sessions[0], one])} />
           <button
             type="button"
-            disabled={isBusy || sessions.includes("") || sessions[0] === sessions[1]}
-            onClick={() => void start({ job: "compare", name: `${name} sessions`, file, sessions, shots: request })}
+            disabled={isBusy || sessions.includes("") || sessions[0] === sessions[1] || (content !== null && content.players.length > 1 && shooter === "")}
+            onClick={() => void start({ job: "compare", name: `${name} ${shooter} sessions`.replace(/ +/g, " "), file, sessions, shots: request, ...(shooter === "" ? {} : { shooter }) })}
           >
             Compare sessions
           </button>
@@ -300,7 +313,7 @@ function ShotTable({ content, changes, setChanges }: TableProps) {
   const units = (target: string) => content.targets.find((one) => one.name === target)?.units ?? [];
   const set = (column: Column, target: string, unit: string) => {
     const next = { ...changes };
-    if (target === "") delete next[column.name];
+    if (target === "") next[column.name] = { target: "unused", unit: "" };
     else next[column.name] = { target, unit: units(target).includes(unit) ? unit : (units(target)[0] ?? "") };
     setChanges(next);
   };
@@ -313,7 +326,7 @@ function ShotTable({ content, changes, setChanges }: TableProps) {
             <th scope="col">{content.row_name}</th>
             {content.columns.map((column) => {
               const changed = changes[column.name];
-              const target = changed?.target ?? column.target ?? "";
+              const target = (changed?.target === "unused" ? "" : changed?.target) ?? column.target ?? "";
               const unit = changed?.unit ?? column.unit ?? "";
               return (
                 <th scope="col" key={column.name} class={target === "" ? "unused" : column.is_stated ? "stated" : "proposed"}>
@@ -370,7 +383,7 @@ function ShotTable({ content, changes, setChanges }: TableProps) {
   );
 }
 
-function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: string) => void }) {
+function Fits({ folder, openShot }: { folder: Folder | null; openShot: (fit: Fit) => void }) {
   const [fits, setFits] = useState<Fit[]>([]);
   const [chosen, setChosen] = useState<string[]>([]);
   const [shown, setShown] = useState("");
@@ -436,7 +449,7 @@ function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: 
                     <td>{advice && advice.observed.shots > 0 ? `${advice.observed.made} of ${advice.observed.shots}` : ""}</td>
                     <td>{advice && interval(advice.current_probability)}</td>
                     <td>{advice && interval(advice.suggested_probability)}</td>
-                    <td>{advice?.suggested_gain ? signed(advice.suggested_gain.mean) : advice ? "keep" : ""}</td>
+                    <td>{advice ? (advice.makes_contradict ? "makes do not fit" : isSuggested(advice) ? signed(advice.suggested_gain!.mean) : "keep") : ""}</td>
                     <td>
                       {!advice && (
                         <button type="button" class="quiet" disabled={advising} onClick={() => void add({ job: "advise", name: one.name })}>
@@ -446,7 +459,7 @@ function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: 
                       <button type="button" class="quiet" onClick={() => setShown(one.name === shown ? "" : one.name)}>
                         {one.name === shown ? "Hide" : "Show"}
                       </button>{" "}
-                      <button type="button" class="quiet" onClick={() => openShot(one.name)}>
+                      <button type="button" class="quiet" onClick={() => openShot(one)}>
                         Shot page
                       </button>
                     </td>
@@ -473,6 +486,9 @@ function Fits({ folder, openShot }: { folder: Folder | null; openShot: (player: 
 }
 
 const interval = (one: Interval) => `${per100(one.mean, 0)} (${per100(one.low, 0)} to ${per100(one.high, 0)})`;
+
+/** Whether the data support a change. */
+const isSuggested = (advice: Advice) => advice.suggested !== null && advice.suggested_gain !== null && advice.suggested_gain.mean >= 0.0005;
 
 /** How much a value changes, in a coach's words. */
 function change(current: number | undefined, suggested: number | undefined, more: string, less: string, unit: string, decimals = 1): string | null {
@@ -526,33 +542,45 @@ function AdviceText({ advice, isOnly }: { advice: Advice; isOnly: boolean }) {
     change(...of("depth"), "deeper", "shorter", unitOf("depth")),
     change(...of("left_right"), "further right", "further left", unitOf("left_right")),
   ].filter((one) => one !== null);
-  const lab = advice.suggested && change(valueOf(advice.current, "pitch"), valueOf(advice.suggested, "pitch"), "higher release angle", "lower release angle", "deg");
+  const release = (name: string, more: string, less: string, decimals: number) => {
+    const key = Object.keys(advice.current).find((key) => key.startsWith(`${name}_`)) ?? name;
+    const unit = key.slice(name.length + 1).replace("_", "/");
+    return advice.suggested ? change(valueOf(advice.current, name), valueOf(advice.suggested, name), more, less, unit, decimals) : null;
+  };
+  const lab = [
+    release("speed", "faster", "slower", 2),
+    release("pitch", "higher release angle", "lower release angle", 1),
+    release("polar", "further left", "further right", 1),
+    release("backspin", "more backspin", "less backspin", 1),
+  ].filter((one) => one !== null);
+  const what = [...changes, ...(changes.length === 0 ? lab : [])].join(", ");
   const train = [...advice.training].sort((a, b) => b.mean - a.mean)[0];
   const bank = advice.bank_or_direct;
   return (
     <div class="advice">
       {!isOnly && <h3>{advice.place || "one place"}</h3>}
       <p class="answer-line">
-        {advice.suggested_gain && advice.suggested
-          ? `Suggested: ${changes.join(", ")}. That adds ${signed(advice.suggested_gain.mean)} per 100 (95 % interval ${signed(advice.suggested_gain.low)} to ${signed(advice.suggested_gain.high)}).`
+        {advice.makes_contradict
+          ? `No advice yet: ${advice.observed.made} of ${advice.observed.shots} went in, and the measured shots do not predict that. Check the tracker's zero, the ring, the release height and the place.`
+          : isSuggested(advice) && advice.suggested_gain && what !== ""
+          ? `Suggested: ${what}. That adds ${signed(advice.suggested_gain.mean)} per 100 (95 % interval ${signed(advice.suggested_gain.low)} to ${signed(advice.suggested_gain.high)}).`
           : "Keep the current shot: the data support no change."}
       </p>
       <ul>
         <li>
           {per100(advice.current_probability.mean, 0)} of 100 go in with the current shot (95 % interval {per100(advice.current_probability.low, 0)} to {per100(advice.current_probability.high, 0)}).
         </li>
-        {lab && <li>At the release: {lab}.</li>}
-        {train && (
+        {isSuggested(advice) && lab.length > 0 && <li>At the release: {lab.join(", ")}.</li>}
+        {train && !advice.makes_contradict && (
           <li>
-            Train the {train.less_scatter_of === "aim" ? "direction" : train.less_scatter_of === "pitch" ? "angle" : train.less_scatter_of}: 10 % less scatter there adds {signed(train.mean)} per 100.
+            Train the {train.less_scatter_of === "aim" ? "direction" : train.less_scatter_of === "pitch" ? "angle" : train.less_scatter_of}: 10 % less scatter there adds {per100(train.mean)} per 100.
           </li>
         )}
-        {bank && (
+        {bank && !advice.makes_contradict && (
           <li>
             Direct {per100(bank.direct.mean, 0)}, bank {per100(bank.bank.mean, 0)} of 100 with the best shots: bank is better with a probability of {(100 * bank.bank_is_better).toFixed(0)} %.
           </li>
         )}
-        {advice.makes_contradict && <li class="warning">The counted makes do not fit these numbers. Check the tracker, the ring and the place.</li>}
       </ul>
     </div>
   );

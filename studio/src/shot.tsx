@@ -2,13 +2,13 @@
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Folder, Start } from "./api";
-import { Refused, ask, get, post } from "./api";
+import { Refused, ask, get, post, shortName } from "./api";
 import { Choice, CopyButton, Slider } from "./controls";
 import { CourtMap } from "./court_map";
 import type { Path } from "./scene";
 import { CourtScene } from "./scene";
-import type { ShotState } from "./state";
-import { inUnits, profileToml, shotFlags, shotRequest } from "./state";
+import type { Fit, ShotState } from "./state";
+import { inUnits, playersShot, profileToml, shotFlags, shotRequest } from "./state";
 import { inSystem, per100, text, unit, valueOf } from "./units";
 import { sceneColours, useTheme } from "./theme";
 
@@ -18,18 +18,14 @@ interface Probability {
   interval_95: [number, number];
   shots: number;
   shares: Record<string, number>;
+  /** With the uncertainty of a fit. */
+  over_draws?: { mean: number; low: number; high: number };
   [key: string]: unknown;
 }
 
 interface SwarmShot {
   made: boolean;
   path: Path;
-}
-
-interface Fit {
-  name: string;
-  fit: { shooter: string; parameters: { name: string; unit: string; mean: number }[] };
-  profiles: string[];
 }
 
 type Best = Record<string, unknown> & { probability: number; kind?: string };
@@ -51,7 +47,9 @@ const ENDS: [string, string[], "made" | "missed"][] = [
   ["left", ["left"], "missed"],
   ["right", ["right"], "missed"],
   ["in and out", ["in_and_out"], "missed"],
-  ["other", ["over", "lodged", "airball", "unresolved"], "missed"],
+  ["air ball", ["airball"], "missed"],
+  ["over the board", ["over"], "missed"],
+  ["stuck", ["lodged", "unresolved"], "missed"],
 ];
 
 /** The shots of a rough number, and the rest of the controls after which a sharp one is asked. */
@@ -136,7 +134,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
       setAnswer(draft);
       setRefused(null);
       once();
-    }).then(
+    }, key === "" ? "" : state.player).then(
       (answered) => {
         if (answered && (now.next === null || key === "")) {
           setAnswer(answered.answer);
@@ -149,6 +147,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
       (error: unknown) => {
         if (error instanceof Refused) {
           setRefused(error);
+          setAnswer(null);
           setNotes([]);
         }
         once();
@@ -192,7 +191,14 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
     />
   );
   const feet = system === "imperial";
-  const players: [string, string][] = (folder?.fits ?? []).map((name) => [name, name]);
+  const players: [string, string][] = (folder?.fits ?? []).map((name) => [name, shortName(name)]);
+  const choosePlayer = (player: string) => {
+    if (player === "") return change({ player: "", fitPlace: 0 });
+    get<Fit>(`/api/fits/${player.split("/").map(encodeURIComponent).join("/")}`).then(
+      (found) => replace(playersShot(state, found, 0)),
+      (error: unknown) => error instanceof Refused && setRefused(error),
+    );
+  };
   const place = start.places.find((place) => Math.hypot(place.x_m - x, place.y_m - y) < 0.08);
   const hoop = (start.physics.find((physics) => physics.name === state.physics) ?? start.physics[0]!).hoop;
   const ownFaults = refused?.faults.filter((fault) => fault.field === null || !["speed", "pitch", "aim", "backspin", "side_spin"].includes(fault.field)) ?? [];
@@ -205,6 +211,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
         {slider("pitch", "angle", "deg", 25, 80, 0.1, "pitch")}
         {slider("aim", "direction (+ left)", "deg", -10, 10, 0.05, "aim")}
         {slider("backspin", "backspin", "rev/s", 0, 5, 0.05, "backspin")}
+        {slider("side", "side spin", "rev/s", -3, 3, 0.05, "side_spin")}
         <BestShotCard state={state} question={question} answer={answer} isSharp={isSharp} change={change} searching={setSearching} />
         <h2>Place</h2>
         <Choice
@@ -224,7 +231,7 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
           label="numbers of"
           value={state.player}
           options={[["", "the controls below"], ...players]}
-          onChange={(player) => change({ player, fitPlace: 0 })}
+          onChange={choosePlayer}
         />
         {state.player === "" ? (
           <>
@@ -242,15 +249,14 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
             />
           </>
         ) : (
-          fit && <FittedPlayer fit={fit} state={state} change={change} />
+          fit && <FittedPlayer fit={fit} state={state} replace={replace} />
         )}
         <div class="buttons">
           <CopyButton words="Copy link" text={() => location.href.replace(/\?token=[^#]*/, "")} />
           <CopyButton
             words="Copy as TOML"
             text={async () => {
-              const { toml } = await post<{ toml: string }>("/api/profile", question ?? {});
-              return toml.includes("[nominal]") ? toml : `${toml}\n${nominalToml(state)}`;
+              return (await post<{ toml: string }>("/api/profile", { profile: question, shot })).toml;
             }}
           />
           <CopyButton words="Copy as command" text={() => command(state, folder)} />
@@ -258,9 +264,10 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
             {feet ? "Use metres" : "Use feet"}
           </button>
         </div>
+        {state.player === "" && <p class="help">Save the TOML as player.toml; the command reads it from there.</p>}
       </section>
       <div class="view">
-        <Answer answer={answer} isSharp={isSharp} />
+        <Answer answer={answer} isSharp={isSharp} isRefused={refused !== null} />
         {ownFaults.length > 0 && (
           <p class="error" role="alert">
             {ownFaults.map((fault) => (fault.field ? `${fault.field}: ${fault.message}` : fault.message)).join("\n")}
@@ -281,36 +288,16 @@ export function ShotPage({ state, start, folder, change, replace }: Props) {
 
 const inMetres = (length: number, system: ShotState["units"]) => length / inSystem(1, "length", system);
 
-function nominalToml(state: ShotState): string {
-  const lines = [`speed = "${text(state.speed, "speed", state.units)}"`, `pitch = "${state.pitch} deg"`];
-  lines.push(`polar = "${Number((state.angle + state.aim).toFixed(3))} deg"`, `backspin = "${state.backspin} rev/s"`);
-  return `[nominal]\n${lines.join("\n")}\n`;
-}
-
 function command(state: ShotState, folder: Folder | null): string {
   if (state.player === "") return `bankshot shot player.toml ${shotFlags(state)}`;
   const place = `--distance '${text(state.distance, "length", state.units)}' --angle '${state.angle} deg'`;
   return `bankshot shot '${folder?.folder ?? "results"}/${state.player}' ${place} --units ${state.units} ${shotFlags(state)}`;
 }
 
-function FittedPlayer({ fit, state, change }: { fit: Fit; state: ShotState; change: (change: Partial<ShotState>) => void }) {
+function FittedPlayer({ fit, state, replace }: { fit: Fit; state: ShotState; replace: (state: ShotState) => void }) {
   const mean = (name: string) => fit.fit.parameters.find((parameter) => parameter.name === name);
-  const rows = ["speed", "pitch", "polar", "backspin"].map((name) => [name, mean(`${name}_sd`)] as const);
-  const current = () => {
-    const value = (name: string) => mean(`${name}_mean`)?.mean ?? 0;
-    const unitOfFit = mean("speed_mean")?.unit === "m/s" ? "metric" : "imperial";
-    const shot = inUnits(
-      { ...state, units: unitOfFit, speed: Number(value("speed").toFixed(2)), distance: state.distance },
-      unitOfFit,
-    );
-    const speed = unitOfFit === state.units ? shot.speed : inUnits(shot, state.units).speed;
-    change({
-      speed,
-      pitch: Number(value("pitch").toFixed(1)),
-      aim: 0,
-      backspin: Number(value("backspin").toFixed(2)),
-    });
-  };
+  const names = { speed: "speed", pitch: "angle", polar: "direction", backspin: "backspin" };
+  const rows = Object.entries(names).map(([name, words]) => [words, mean(`${name}_sd`)] as const);
   return (
     <div class="fitted">
       <p>
@@ -326,17 +313,17 @@ function FittedPlayer({ fit, state, change }: { fit: Fit; state: ShotState; chan
           label="place of the fit"
           value={String(state.fitPlace)}
           options={fit.profiles.map((_, index) => [String(index), `place ${index + 1}`] as const)}
-          onChange={(index) => change({ fitPlace: Number(index) })}
+          onChange={(index) => replace(playersShot(state, fit, Number(index)))}
         />
       )}
-      <button type="button" class="quiet" onClick={current}>
-        Set the current shot
+      <button type="button" class="quiet" onClick={() => replace(playersShot(state, fit, state.fitPlace))}>
+        Set the player's current shot
       </button>
     </div>
   );
 }
 
-function Answer({ answer, isSharp }: { answer: Probability | null; isSharp: boolean }) {
+function Answer({ answer, isSharp, isRefused }: { answer: Probability | null; isSharp: boolean; isRefused: boolean }) {
   const shares = answer?.shares ?? {};
   const share = (keys: string[]) => keys.reduce((sum, key) => sum + (shares[key] ?? 0), 0);
   const error = answer ? 100 * answer.standard_error : 0;
@@ -344,15 +331,22 @@ function Answer({ answer, isSharp }: { answer: Probability | null; isSharp: bool
     <section class="panel answer" aria-label="makes" data-sharp={isSharp ? "yes" : "no"}>
       <p class="makes" aria-live="polite">
         <span class="big" data-testid="makes" data-value={answer?.probability ?? ""}>
-          {answer ? per100(answer.probability, isSharp ? 1 : 0) : "\u2013"}
+          {answer ? per100(answer.over_draws?.mean ?? answer.probability, isSharp ? 1 : 0) : "\u2013"}
         </span>{" "}
         <span class="unbroken">of 100 go in</span>
       </p>
       <p class="faint">
         {answer
           ? `simulation error ${error < 0.05 ? error.toFixed(2) : error.toFixed(1)} per 100, from ${answer.shots.toLocaleString("en")} simulated shots`
-          : "waiting for the first number"}
+          : isRefused
+            ? "no number: see below what is wrong"
+            : "waiting for the first number"}
       </p>
+      {answer?.over_draws && (
+        <p data-testid="interval">
+          95 % interval {per100(answer.over_draws.low, 0)} to {per100(answer.over_draws.high, 0)}, from the measured shots
+        </p>
+      )}
       <dl class="shares">
         {ENDS.map(([words, keys, side]) => (
           <div key={words} class={side}>
@@ -438,6 +432,7 @@ function BestShotCard({ state, question, answer, isSharp, change, searching }: C
               <br />
               {(valueOf(shot, "speed") ?? 0).toFixed(2)} {unit("speed", state.units)}, {(valueOf(shot, "pitch") ?? 0).toFixed(1)} deg,{" "}
               {(valueOf(shot, "backspin") ?? 0).toFixed(1)} rev/s
+              {aimWords(kind, shot)}
             </p>
             <button type="button" class="quiet" onClick={() => use(shot)}>
               Set this shot
@@ -456,6 +451,21 @@ function BestShotCard({ state, question, answer, isSharp, change, searching }: C
       )}
     </div>
   );
+}
+
+/** Where to aim, in words; a draft does not know it. */
+function aimWords(kind: string, shot: Best): string {
+  const value = (name: string) => valueOf(shot, name);
+  const unitOf = (name: string) => (Object.keys(shot).some((key) => key === `${name}_cm`) ? "cm" : "in");
+  if (kind === "bank") {
+    const [across, above] = [value("board_aim_across"), value("board_aim_above_hoop")];
+    if (across === undefined || above === undefined) return "";
+    const side = Math.abs(across) < 0.5 ? "on its middle line" : `${Math.abs(across).toFixed(0)} ${unitOf("board_aim_across")} ${across > 0 ? "right" : "left"} of its middle`;
+    return `; board: ${above.toFixed(0)} ${unitOf("board_aim_above_hoop")} above the ring, ${side}`;
+  }
+  const past = value("aim_past_centre");
+  if (past === undefined) return "";
+  return `; ${Math.abs(past).toFixed(0)} ${unitOf("aim_past_centre")} ${past > 0 ? "past" : "before"} the ring's centre`;
 }
 
 interface SceneProps {

@@ -1,7 +1,7 @@
 // What the Shot page shows, and the address that says it.
 
 import type { System } from "./units";
-import { converted, text } from "./units";
+import { converted, text, valueOf } from "./units";
 
 /** The numbers of the controls, in the chosen units. */
 export interface ShotState {
@@ -68,9 +68,10 @@ const SPEEDS = ["speed", "sdSpeed"] as const;
 
 /** The same shot in the other units. */
 export function inUnits(state: ShotState, units: System): ShotState {
+  if (units === state.units) return state;
   const next = { ...state, units };
-  for (const key of LENGTHS) next[key] = converted(state[key], "length", state.units, units, 3);
-  for (const key of SPEEDS) next[key] = converted(state[key], "speed", state.units, units, 3);
+  for (const key of LENGTHS) next[key] = converted(state[key], "length", state.units, units);
+  for (const key of SPEEDS) next[key] = converted(state[key], "speed", state.units, units);
   return next;
 }
 
@@ -85,6 +86,44 @@ export function profileToml(state: ShotState): string {
     `[location]\ndistance = "${text(state.distance, "length", units)}"\nangle = "${state.angle} deg"\n\n` +
     `[physics]\npreset = "${state.physics}"\n\n[output]\nunits = "${units}"\n`
   );
+}
+
+/** A fit, as far as the Shot page uses it. */
+export interface Fit {
+  name: string;
+  fit: {
+    shooter: string;
+    parameters: { name: string; unit: string; mean: number }[];
+    places: Record<string, unknown>[];
+  };
+  profiles: string[];
+}
+
+/** A fitted player at the place of the fit, with the current shot there. */
+export function playersShot(state: ShotState, fit: Fit, place: number): ShotState {
+  const parameter = (name: string) => {
+    const own = place === 0 ? [name] : [`${name}_place_${place + 1}`, name];
+    return own.map((one) => fit.fit.parameters.find((parameter) => parameter.name === one)).find((one) => one !== undefined);
+  };
+  const mean = (name: string) => parameter(`${name}_mean`)?.mean ?? 0;
+  const units: System = parameter("speed_mean")?.unit === "m/s" ? "metric" : "imperial";
+  const at = fit.fit.places[place] ?? {};
+  const value = (name: string) => valueOf(at, name) ?? 0;
+  const angle = value("court_angle");
+  const shot: ShotState = {
+    ...inUnits(state, units),
+    player: fit.name,
+    fitPlace: place,
+    distance: Number(value("distance").toFixed(3)),
+    angle: Number(angle.toFixed(2)),
+    height: Number(value("release_height").toFixed(3)),
+    speed: Number(mean("speed").toFixed(3)),
+    pitch: Number(mean("pitch").toFixed(2)),
+    aim: Number((mean("polar") - angle).toFixed(3)),
+    backspin: Number(mean("backspin").toFixed(3)),
+    side: 0,
+  };
+  return inUnits(shot, state.units);
 }
 
 /** The shot as the server takes it. */

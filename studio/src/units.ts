@@ -16,9 +16,10 @@ const UNITS: Record<Quantity, Record<System, { name: string; size: number }>> = 
 export const unit = (quantity: Quantity, system: System) => UNITS[quantity][system].name;
 
 /** A number in one system, in the other, with so many decimals. */
-export function converted(value: number, quantity: Quantity, from: System, to: System, decimals: number): number {
+export function converted(value: number, quantity: Quantity, from: System, to: System): number {
   const units = UNITS[quantity];
-  return Number(((value * units[from].size) / units[to].size).toFixed(decimals));
+  // Six decimals: there and back is the same number.
+  return Number(((value * units[from].size) / units[to].size).toFixed(6));
 }
 
 export const inSystem = (metres: number, quantity: Quantity, system: System) => metres / UNITS[quantity][system].size;

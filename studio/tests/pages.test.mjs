@@ -137,9 +137,13 @@ test("the address says the shot, and metres say the same as feet", async () => {
   await other.getByRole("button", { name: "Use metres" }).click();
   await until(() => other.evaluate(() => location.hash.includes("units=metric")), "the address");
   await sharp(other);
-  // The speed is rounded to a millimetre a second.
+  // Six decimals are kept.
   const after = Number(await makes(other).getAttribute("data-value"));
-  assert.ok(Math.abs(after - Number(before)) < 0.004, `${before} and ${after}`);
+  assert.ok(Math.abs(after - Number(before)) < 0.001, `${before} and ${after}`);
+  await other.getByRole("button", { name: "Use feet" }).click();
+  await until(() => other.evaluate(() => !location.hash.includes("units=metric")), "the address");
+  await sharp(other);
+  assert.equal(await makes(other).getAttribute("data-value"), before);
   await page.context().close();
 });
 
@@ -149,6 +153,7 @@ test("a wrong value has the message of the command line at its field", async () 
   await page.getByLabel("speed, ft/s").first().fill("-5");
   const message = await page.waitForSelector(".slider.wrong .error");
   assert.match(await message.innerText(), /must be/);
+  assert.equal(await makes(page).innerText(), "\u2013", "no number stands beside an error");
   await page.getByLabel("speed, ft/s").first().fill("24");
   await until(() => page.locator(".slider.wrong").count().then((n) => n === 0), "the message to go");
   await page.context().close();
@@ -200,10 +205,38 @@ test("an export is dropped, fitted, and ends in the numbers of the command line"
   await row.getByRole("button", { name: "Shot page" }).click();
   await sharp(page);
   assert.match(await page.evaluate(() => location.hash), /player=/);
-  const { answer } = await fromCommand(page);
+  // The number and its interval are those of the command, with the uncertainty of the fit.
+  const { answer, toml } = await fromCommand(page);
   assert.equal(await makes(page).getAttribute("data-value"), String(answer.probability));
+  assert.equal(await makes(page).innerText(), (100 * answer.over_draws.mean).toFixed(1));
+  assert.ok((await page.getByTestId("interval").innerText()).includes(`${(100 * answer.over_draws.low).toFixed(0)} to ${(100 * answer.over_draws.high).toFixed(0)}`));
+  const own_speed = fit.parameters.find((one) => one.name === "speed_mean").mean;
+  assert.ok(Math.abs(answer.nominal.speed_ft_s - own_speed) < 0.001, "the page opens with the player's own shot");
+  writeFileSync(join(folder, "fitted.toml"), toml);
+  const same = JSON.parse(command(["shot", join(folder, "fitted.toml"), "--json", "--quiet"], folder));
+  assert.ok(Math.abs(same.probability - answer.probability) < 1e-9, "the copied TOML is the shot of the page");
   assert.deepEqual(page.faults, []);
   assert.deepEqual(page.foreign, []);
+  await page.context().close();
+});
+
+test("results are not replaced without a question", async () => {
+  const page = await openPage(browser, studio, "#/players");
+  await page.getByLabel("or one that is already here").selectOption("gym_sensor.csv");
+  await page.getByText("125 shots").waitFor();
+  await page.getByRole("button", { name: "Fit the player" }).click();
+  await page.getByText("there are results named gym_sensor already").waitFor();
+  await page.getByRole("button", { name: "Replace the old results" }).waitFor();
+  await page.context().close();
+});
+
+test("side spin and metres are in the copied TOML", async () => {
+  const page = await openPage(browser, studio, "#/shot?side=2&units=metric&distance=4.2&height=2.1&speed=7.4&sdSpeed=0.08");
+  await sharp(page);
+  const { toml } = await fromCommand(page);
+  writeFileSync(join(folder, "side.toml"), toml);
+  const same = JSON.parse(command(["shot", join(folder, "side.toml"), "--json", "--quiet"], folder));
+  assert.equal(await makes(page).getAttribute("data-value"), String(same.probability));
   await page.context().close();
 });
 
@@ -253,6 +286,9 @@ test("the meaning of a column can be changed by a menu", async () => {
   await page.getByLabel("unit of the column Q").selectOption("in");
   await page.getByText("125 shots").waitFor();
   assert.equal(await page.getByTestId("problem").count(), 0);
+  // A column can be left out again.
+  await page.getByLabel("meaning of the column Q").selectOption("");
+  await page.getByTestId("problem").waitFor();
   await page.context().close();
 });
 
@@ -272,6 +308,7 @@ test("a launcher's table has its curves, and its files are those of the command 
   }
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "Java" }).click()]);
   assert.equal(readFileSync(await download.path(), "utf8"), readFileSync(join(made, "ShotTable.java"), "utf8"));
+  await page.getByLabel("name", { exact: true }).fill("far away");
   await distances.fill("8 parsecs");
   await page.getByRole("button", { name: "Make the table" }).click();
   await page.locator(".job.failed, .error").first().waitFor();
