@@ -45,8 +45,8 @@ pub(crate) struct MeasuredShotsOptions {
     pub(crate) tracker: Option<String>,
     /// Which column holds a quantity, where its name differs: QUANTITY=COLUMN:UNIT, such as
     /// 'speed=ReleaseSpeed:mph' or 'made=Result'. A minus before COLUMN reverses the sign, a number
-    /// after UNIT is added: 'left_right=-Left:in', 'depth=PastCentre:in+9'; 'unused=COLUMN' leaves a
-    /// column out. May be repeated; @FILE is a file of such maps, one a line.
+    /// after UNIT is added: 'left_right=-Left:in', 'depth=PastCentre:in+9'; 'unused=COLUMN' leaves
+    /// a column out. May be repeated; @FILE is a file of such maps, one a line.
     #[arg(long, value_name = "MAP")]
     pub(crate) map: Vec<String>,
     /// Take the columns as bankshot proposes them: a file whose columns have other names is refused

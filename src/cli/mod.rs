@@ -108,6 +108,20 @@ pub fn answer_of(arguments: &[String], progress: Arc<dyn Progress + Send>) -> Co
     })
 }
 
+/// How the studio runs the commands.
+#[cfg(feature = "studio")]
+const STUDIO_COMMANDS: crate::studio::Commands = crate::studio::Commands {
+    run: |arguments, progress| {
+        let answer = answer_of(arguments, progress);
+        crate::studio::Finished {
+            exit_code: answer.exit_code,
+            answer: answer.answer,
+            remarks: answer.remarks,
+        }
+    },
+    stop,
+};
+
 /// Runs a command. Its exit code; what failed is printed.
 fn run_caught(arguments: &Arguments) -> u8 {
     match std::panic::catch_unwind(|| run(arguments)) {
@@ -160,7 +174,7 @@ fn run(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Merge(options) => sweep::merge(options),
         Command::Report(options) => report::run(options),
         #[cfg(feature = "studio")]
-        Command::Studio(options) => studio::run(options),
+        Command::Studio(options) => studio::run(options, STUDIO_COMMANDS),
         Command::Figures { out } => figures::run(out),
         Command::Trace(options) => trace::run(options),
         Command::Schema => {

@@ -69,7 +69,8 @@ impl Scene {
         Ok(record)
     }
 
-    /// The path of the error-free shot: `[t, x, y, z]`, about every [`INTERVAL_S`] and at each event.
+    /// The path of the error-free shot: `[t, x, y, z]`, about every [`INTERVAL_S`] and at each
+    /// event.
     fn path(&self, shot: &ReportShot) -> Result<Value, StateError> {
         let trace = self.simulator.trace(&self.release(shot), INTERVAL_S)?;
         Ok(json!(path(&trace, INTERVAL_S)))

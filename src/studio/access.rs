@@ -6,7 +6,7 @@
 //! needs the token of this start.
 
 use super::refusal::Refusal;
-use super::server::Shared;
+use super::site::Site;
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
@@ -33,15 +33,15 @@ fn host_and_port(host: &str) -> (&str, u16) {
 
 /// Whether a name is an address that this server listens on, and no name that anybody can point to
 /// it.
-fn is_own_host(host: &str, shared: &Shared) -> bool {
+fn is_own_host(host: &str, site: &Site) -> bool {
     let (name, port) = host_and_port(host);
-    let bound = shared.address.ip();
+    let bound = site.address.ip();
     let name = name.trim_start_matches('[').trim_end_matches(']');
     let is_own_name = match name.parse::<IpAddr>() {
         Ok(ip) => ip == bound || ip.is_loopback() || bound.is_unspecified(),
         Err(_) => name.eq_ignore_ascii_case("localhost"),
     };
-    is_own_name && port == shared.address.port()
+    is_own_name && port == site.address.port()
 }
 
 /// Whether two texts are equal, in a time that does not depend on where they differ.
@@ -60,14 +60,14 @@ fn token<'a>(headers: &'a HeaderMap, cookie_name: &str) -> Option<&'a str> {
     })
 }
 
-fn refuse(shared: &Shared, request: &Request) -> Option<Refusal> {
+fn refuse(site: &Site, request: &Request) -> Option<Refusal> {
     let headers = request.headers();
     let text = |name| {
         headers
             .get(name)
             .and_then(|value: &HeaderValue| value.to_str().ok())
     };
-    let Some(host) = text(header::HOST).filter(|host| is_own_host(host, shared)) else {
+    let Some(host) = text(header::HOST).filter(|host| is_own_host(host, site)) else {
         return Some(Refusal::forbidden(
             "this name is not an address of the studio; use the address that the terminal shows",
         ));
@@ -81,12 +81,11 @@ fn refuse(shared: &Shared, request: &Request) -> Option<Refusal> {
         && !["/api/", "/files/"]
             .iter()
             .any(|start| request.uri().path().starts_with(start));
-    let site = headers.get("sec-fetch-site").map(HeaderValue::as_bytes);
-    if !is_page && site.is_some_and(|site| !matches!(site, b"same-origin" | b"none")) {
+    let from = headers.get("sec-fetch-site").map(HeaderValue::as_bytes);
+    if !is_page && from.is_some_and(|from| !matches!(from, b"same-origin" | b"none")) {
         return Some(Refusal::forbidden("another page may not use the studio"));
     }
-    if is_page || token(headers, &shared.cookie_name()).is_some_and(|t| are_equal(t, &shared.token))
-    {
+    if is_page || token(headers, &site.cookie_name()).is_some_and(|t| are_equal(t, &site.token)) {
         return None;
     }
     Some(Refusal::forbidden(
@@ -95,13 +94,9 @@ fn refuse(shared: &Shared, request: &Request) -> Option<Refusal> {
 }
 
 /// Lets a request through if it may be, and says to the browser what the answer may do.
-pub(super) async fn guard(
-    State(shared): State<Arc<Shared>>,
-    request: Request,
-    next: Next,
-) -> Response {
+pub(super) async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> Response {
     let is_file = request.uri().path().starts_with("/files/");
-    let mut response = match refuse(&shared, &request) {
+    let mut response = match refuse(&site, &request) {
         Some(refusal) => refusal.into_response(),
         None => next.run(request).await,
     };
@@ -128,20 +123,20 @@ pub(super) async fn guard(
 }
 
 /// The first visit: the token of the address goes into a cookie, and out of the address.
-pub(super) fn sign_in(shared: &Shared, query: &str) -> Result<Option<Response>, Refusal> {
+pub(super) fn sign_in(site: &Site, query: &str) -> Result<Option<Response>, Refusal> {
     let mut values = query.split('&');
     let Some(given) = values.find_map(|value| value.strip_prefix("token=")) else {
         return Ok(None);
     };
-    if !are_equal(given, &shared.token) {
+    if !are_equal(given, &site.token) {
         return Err(Refusal::forbidden(
             "this address belongs to an earlier start of the studio; open the one that the terminal shows",
         ));
     }
     let cookie = format!(
         "{}={}; Path=/; HttpOnly; SameSite=Strict",
-        shared.cookie_name(),
-        shared.token
+        site.cookie_name(),
+        site.token
     );
     let to = [
         (header::LOCATION, "/"),
@@ -156,14 +151,18 @@ mod tests {
 
     #[test]
     fn contract_only_addresses_of_the_server_are_hosts() {
-        let shared = Shared::for_test("127.0.0.1:4747");
+        let site = Site {
+            address: "127.0.0.1:4747".parse().unwrap(),
+            token: "token".to_owned(),
+            folder: std::env::temp_dir(),
+        };
         for own in [
             "127.0.0.1:4747",
             "localhost:4747",
             "[::1]:4747",
             "LOCALHOST:4747",
         ] {
-            assert!(is_own_host(own, &shared), "{own}");
+            assert!(is_own_host(own, &site), "{own}");
         }
         for other in [
             "evil.example:4747",
@@ -174,7 +173,7 @@ mod tests {
             "",
             ":4747",
         ] {
-            assert!(!is_own_host(other, &shared), "{other}");
+            assert!(!is_own_host(other, &site), "{other}");
         }
     }
 

@@ -2,7 +2,7 @@
 //! be one of those that are found here.
 
 use super::refusal::Refusal;
-use super::server::Shared;
+use super::site::Site;
 use crate::answers::shot_file::ShotFileRequest;
 use axum::Json;
 use axum::body::Body;
@@ -148,27 +148,27 @@ fn kind(name: &str) -> Option<&'static str> {
     found.map(|(_, kind)| *kind)
 }
 
-pub(super) async fn content(State(shared): State<Arc<Shared>>) -> Json<Content> {
-    Json(Content::of(&shared.folder))
+pub(super) async fn content(State(site): State<Arc<Site>>) -> Json<Content> {
+    Json(Content::of(&site.folder))
 }
 
 /// The folder of a fit.
-pub(super) fn fit_folder(shared: &Shared, name: &str) -> Result<PathBuf, Refusal> {
-    let is_known = Content::of(&shared.folder)
+pub(super) fn fit_folder(site: &Site, name: &str) -> Result<PathBuf, Refusal> {
+    let is_known = Content::of(&site.folder)
         .fits
         .iter()
         .any(|known| known == name);
-    let found = is_known.then(|| shared.folder.join(name));
+    let found = is_known.then(|| site.folder.join(name));
     found.ok_or_else(|| Refusal::not_found(name))
 }
 
 /// The folder of a sweep.
-pub(super) fn sweep_folder(shared: &Shared, name: &str) -> Result<PathBuf, Refusal> {
-    let is_known = Content::of(&shared.folder)
+pub(super) fn sweep_folder(site: &Site, name: &str) -> Result<PathBuf, Refusal> {
+    let is_known = Content::of(&site.folder)
         .sweeps
         .iter()
         .any(|known| known == name);
-    let found = is_known.then(|| shared.folder.join(name));
+    let found = is_known.then(|| site.folder.join(name));
     found.ok_or_else(|| Refusal::not_found(name))
 }
 
@@ -204,12 +204,12 @@ pub(super) fn check_new_name(field: &str, name: &str) -> Result<(), Refusal> {
 
 /// One file of the folder.
 pub(super) async fn file(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
     UrlPath(name): UrlPath<String>,
 ) -> Result<Response, Refusal> {
     /// Larger files are not shown.
     const MAX_BYTES: u64 = 64 << 20;
-    let known = files(&shared.folder);
+    let known = files(&site.folder);
     let entry = known.iter().find(|entry| entry.name == name);
     let (Some(entry), Some(kind)) = (entry, kind(&name)) else {
         return Err(Refusal::not_found(&name));
@@ -218,7 +218,7 @@ pub(super) async fn file(
         let words = format!("{name}: is larger than 64 MiB; open it in the folder itself");
         return Err(Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, words));
     }
-    let opened = fs::File::open(shared.folder.join(&name));
+    let opened = fs::File::open(site.folder.join(&name));
     let mut bytes = Vec::new();
     opened
         .and_then(|file| file.take(MAX_BYTES).read_to_end(&mut bytes))

@@ -8,7 +8,7 @@ use super::folder::{Content, UPLOADS, check_new_name, fit_folder, shot_flags, up
 use super::questions::read_json;
 use super::refusal::Refusal;
 use super::results::ADVICE_FILE;
-use super::server::Shared;
+use super::site::Site;
 use crate::answers::requests::ProfileRequest;
 use crate::answers::shot_file::ShotFileRequest;
 use crate::files::atomic_file;
@@ -53,16 +53,6 @@ pub struct Commands {
     pub run: fn(&[String], Arc<dyn Progress + Send>) -> Finished,
     /// Stops it.
     pub stop: fn() -> !,
-}
-
-impl Commands {
-    #[cfg(test)]
-    pub(super) fn none() -> Self {
-        Self {
-            run: |_, _| Finished::default(),
-            stop: || panic!("nothing runs"),
-        }
-    }
 }
 
 /// Long work that the page asks for.
@@ -346,9 +336,9 @@ fn write(path: &Path, content: &str) -> Result<(), String> {
 
 impl JobRequest {
     /// Whether everything is as it must be.
-    fn check(&self, shared: &Shared) -> Result<(), Refusal> {
+    fn check(&self, site: &Site) -> Result<(), Refusal> {
         if let Self::Continue { name } = self {
-            let file = shared.folder.join(format!("sweeps/{name}/sweep.toml"));
+            let file = site.folder.join(format!("sweeps/{name}/sweep.toml"));
             check_new_name("name", name)?;
             return match file.is_file() {
                 true => Ok(()),
@@ -356,10 +346,10 @@ impl JobRequest {
             };
         }
         if let Self::Advise { name } = self {
-            return fit_folder(shared, name).map(drop);
+            return fit_folder(site, name).map(drop);
         }
         check_new_name("name", self.name())?;
-        if !self.replaces() && shared.folder.join(self.folder()).exists() {
+        if !self.replaces() && site.folder.join(self.folder()).exists() {
             return Err(Refusal::new(
                 StatusCode::CONFLICT,
                 format!(
@@ -382,7 +372,7 @@ impl JobRequest {
                 shot_flags(shots)?;
                 files
                     .iter()
-                    .try_for_each(|file| upload(&shared.folder, file).map(drop))
+                    .try_for_each(|file| upload(&site.folder, file).map(drop))
             }
             Self::Compare {
                 file,
@@ -394,10 +384,10 @@ impl JobRequest {
                     return Err(Refusal::field("sessions", "must be two"));
                 }
                 shot_flags(shots)?;
-                upload(&shared.folder, file).map(drop)
+                upload(&site.folder, file).map(drop)
             }
             Self::Team { fits, .. } => {
-                let known = Content::of(&shared.folder).fits;
+                let known = Content::of(&site.folder).fits;
                 match fits.iter().find(|fit| !known.contains(fit)) {
                     Some(unknown) => Err(Refusal::not_found(unknown)),
                     None if fits.is_empty() => {
@@ -642,18 +632,19 @@ impl Jobs {
     }
 }
 
-pub(super) async fn list(State(shared): State<Arc<Shared>>) -> Json<Vec<Job>> {
-    Json(shared.jobs.all())
+pub(super) async fn list(State(jobs): State<Arc<Jobs>>) -> Json<Vec<Job>> {
+    Json(jobs.all())
 }
 
 /// Adds a job behind the others.
 pub(super) async fn add(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
+    State(jobs): State<Arc<Jobs>>,
     body: Bytes,
 ) -> Result<Json<Job>, Refusal> {
     let request: JobRequest = read_json(&body)?;
-    request.check(&shared)?;
-    let inner = &shared.jobs.inner;
+    request.check(&site)?;
+    let inner = &jobs.inner;
     let mut list = inner.list();
     let is_open = |job: &&Job| matches!(job.stage, Stage::Waiting | Stage::Running);
     let folder = request.folder();
@@ -706,10 +697,10 @@ pub(super) async fn add(
 
 /// Stops a job. What it has finished stays.
 pub(super) async fn stop(
-    State(shared): State<Arc<Shared>>,
+    State(jobs): State<Arc<Jobs>>,
     UrlPath(id): UrlPath<u64>,
 ) -> Result<StatusCode, Refusal> {
-    let mut list = shared.jobs.inner.list();
+    let mut list = jobs.inner.list();
     let found = list.jobs.iter_mut().find(|job| job.id == id);
     let job = found.ok_or_else(|| Refusal::not_found(&format!("job {id}")))?;
     job.is_stopped.store(true, Ordering::Relaxed);
@@ -717,28 +708,27 @@ pub(super) async fn stop(
         job.stage = Stage::Stopped;
     }
     drop(list);
-    shared.jobs.inner.changed();
+    jobs.inner.changed();
     Ok(StatusCode::NO_CONTENT)
 }
 
 /// The jobs, again with each change: server-sent events.
-pub(super) async fn events(State(shared): State<Arc<Shared>>) -> Response {
-    let changes = shared.jobs.inner.changes.subscribe();
-    let begin = (shared, changes, true);
-    let stream =
-        futures_util::stream::unfold(begin, |(shared, mut changes, is_first)| async move {
-            if !is_first {
-                tokio::time::sleep(PAUSE).await;
-                // After a pause without change the line is sent again, so that a dead one is noticed.
-                let _ = tokio::time::timeout(HEARTBEAT, changes.changed()).await;
-            }
-            changes.mark_unchanged();
-            let jobs = serde_json::to_string(&shared.jobs.all()).unwrap_or_default();
-            Some((
-                Ok::<_, Infallible>(format!("data: {jobs}\n\n")),
-                (shared, changes, false),
-            ))
-        });
+pub(super) async fn events(State(jobs): State<Arc<Jobs>>) -> Response {
+    let changes = jobs.inner.changes.subscribe();
+    let begin = (jobs, changes, true);
+    let stream = futures_util::stream::unfold(begin, |(jobs, mut changes, is_first)| async move {
+        if !is_first {
+            tokio::time::sleep(PAUSE).await;
+            // After a pause without change the line is sent again: a dead one is noticed.
+            let _ = tokio::time::timeout(HEARTBEAT, changes.changed()).await;
+        }
+        changes.mark_unchanged();
+        let list = serde_json::to_string(&jobs.all()).unwrap_or_default();
+        Some((
+            Ok::<_, Infallible>(format!("data: {list}\n\n")),
+            (jobs, changes, false),
+        ))
+    });
     let kind = [(header::CONTENT_TYPE, "text/event-stream")];
     (kind, Body::from_stream(stream)).into_response()
 }

@@ -1,8 +1,8 @@
 //! The studio: the engine behind a page in the browser.
 //!
 //! A server inside the program answers the requests of one page, from this machine alone. It
-//! computes nothing of its own: questions go to [`crate::answers`], long work runs commands, and what
-//! they write stays in the folder that the studio was started in.
+//! computes nothing of its own: questions go to [`crate::answers`], long work runs commands, and
+//! what they write stays in the folder that the studio was started in.
 //!
 //! | path | what |
 //! |---|---|
@@ -29,6 +29,7 @@ mod questions;
 mod refusal;
 mod results;
 mod server;
+mod site;
 mod start;
 mod uploads;
 

@@ -2,7 +2,7 @@
 
 use super::access::sign_in;
 use super::refusal::Refusal;
-use super::server::Shared;
+use super::site::Site;
 use axum::extract::{RawQuery, State};
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
@@ -13,10 +13,10 @@ const SCRIPT: &[u8] = include_bytes!("../../studio/dist/studio.js");
 const STYLE: &[u8] = include_bytes!("../../studio/dist/studio.css");
 
 pub(super) async fn page(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
     RawQuery(query): RawQuery,
 ) -> Result<Response, Refusal> {
-    Ok(match sign_in(&shared, &query.unwrap_or_default())? {
+    Ok(match sign_in(&site, &query.unwrap_or_default())? {
         Some(response) => response,
         None => axum::response::Html(HTML).into_response(),
     })

@@ -2,7 +2,7 @@
 
 use super::folder::fit_folder;
 use super::refusal::{Fault, Refusal};
-use super::server::Shared;
+use super::site::Site;
 use crate::answers::nominal_shot::NominalRequest;
 use crate::answers::requests::{Answered, ProfileRequest, Request, RequestError};
 use crate::present::shot_note_text::note_text;
@@ -123,7 +123,8 @@ pub(super) fn read_json<T: serde::de::DeserializeOwned>(body: &Bytes) -> Result<
 }
 
 pub(super) async fn answer(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
+    State(questions): State<Arc<Questions>>,
     headers: HeaderMap,
     body: Bytes,
 ) -> Result<Response, Refusal> {
@@ -133,20 +134,20 @@ pub(super) async fn answer(
         None => None,
         Some(name) => {
             let name = percent_decoded(name);
-            let folder = fit_folder(&shared, &name)?;
+            let folder = fit_folder(&site, &name)?;
             Some(Fit::read(&folder).map_err(|error| Refusal::bad(error.to_string()))?)
         }
     };
     let page = headers.get("x-page").and_then(|value| value.to_str().ok());
     let page = page.filter(|page| page.len() <= 64);
-    let is_old = shared.questions.begin(page, &request);
-    let Ok(waiting) = Arc::clone(&shared.questions.waiting).try_acquire_owned() else {
+    let is_old = questions.begin(page, &request);
+    let Ok(waiting) = Arc::clone(&questions.waiting).try_acquire_owned() else {
         return Err(Refusal::new(
             StatusCode::SERVICE_UNAVAILABLE,
             "too many questions at once; ask again in a second",
         ));
     };
-    let place = Arc::clone(&shared.questions.places).acquire_owned().await;
+    let place = Arc::clone(&questions.places).acquire_owned().await;
     drop(waiting);
     let (lines, mut received) = unbounded_channel::<Line>();
     tokio::task::spawn_blocking(move || {

@@ -2,7 +2,7 @@
 
 use super::folder::{fit_folder, sweep_folder};
 use super::refusal::Refusal;
-use super::server::Shared;
+use super::site::Site;
 use crate::answers::json::in_si;
 use crate::shooter::Nominal;
 use crate::store::fit::{FIT_FILE, profile_file};
@@ -41,10 +41,10 @@ fn advice(folder: &Path) -> Option<Vec<Value>> {
 
 /// A fit, the profile of each of its places, and its advice if it was asked for.
 pub(super) async fn fit(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
     UrlPath(name): UrlPath<String>,
 ) -> Result<Json<Value>, Refusal> {
-    let folder = fit_folder(&shared, &name)?;
+    let folder = fit_folder(&site, &name)?;
     let fit = read_json(&folder.join(FIT_FILE)).ok_or_else(|| {
         Refusal::new(
             StatusCode::INTERNAL_SERVER_ERROR,
@@ -159,10 +159,10 @@ fn state(path: &Path) -> Result<SweepState, String> {
 
 /// A sweep with the results so far.
 pub(super) async fn sweep(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
     UrlPath(name): UrlPath<String>,
 ) -> Result<Json<Value>, Refusal> {
-    let folder = sweep_folder(&shared, &name)?;
+    let folder = sweep_folder(&site, &name)?;
     let state = tokio::task::spawn_blocking(move || state(&folder)).await;
     match state {
         Ok(Ok(state)) => Ok(Json(in_si(&state))),

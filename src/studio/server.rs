@@ -2,15 +2,16 @@
 
 use super::jobs::{Commands, Jobs};
 use super::questions::Questions;
+use super::site::Site;
 use super::{access, folder, jobs, page_files, questions, results, start, uploads};
 use axum::Router;
-use axum::extract::DefaultBodyLimit;
+use axum::extract::{DefaultBodyLimit, FromRef};
 use axum::middleware;
 use axum::routing::{delete, get, post, put};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::io;
-use std::net::{IpAddr, SocketAddr};
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -35,39 +36,36 @@ pub struct StudioOptions {
     pub folder: PathBuf,
 }
 
-/// What all requests share.
-pub(super) struct Shared {
-    pub(super) address: SocketAddr,
-    pub(super) token: String,
-    pub(super) folder: PathBuf,
-    pub(super) questions: Questions,
-    pub(super) jobs: Jobs,
+/// What the requests share, each what it needs.
+#[derive(Clone)]
+struct Shared {
+    site: Arc<Site>,
+    questions: Arc<Questions>,
+    jobs: Arc<Jobs>,
 }
 
-impl Shared {
-    /// The cookie with the token. Cookies belong to a host with all its ports, so the port is in the
-    /// name.
-    pub(super) fn cookie_name(&self) -> String {
-        format!("bankshot_{}", self.address.port())
+impl FromRef<Shared> for Arc<Site> {
+    fn from_ref(shared: &Shared) -> Self {
+        Arc::clone(&shared.site)
     }
+}
 
-    #[cfg(test)]
-    pub(super) fn for_test(address: &str) -> Self {
-        let folder = std::env::temp_dir();
-        Self {
-            address: address.parse().unwrap(),
-            token: "token".to_owned(),
-            jobs: Jobs::new(Commands::none(), folder.clone()),
-            folder,
-            questions: Questions::default(),
-        }
+impl FromRef<Shared> for Arc<Questions> {
+    fn from_ref(shared: &Shared) -> Self {
+        Arc::clone(&shared.questions)
+    }
+}
+
+impl FromRef<Shared> for Arc<Jobs> {
+    fn from_ref(shared: &Shared) -> Self {
+        Arc::clone(&shared.jobs)
     }
 }
 
 /// A server that is ready to answer.
 pub struct Studio {
     listener: std::net::TcpListener,
-    shared: Arc<Shared>,
+    shared: Shared,
 }
 
 /// A number that nobody can guess, in hexadecimal digits.
@@ -105,23 +103,23 @@ impl Studio {
         std::fs::create_dir_all(&options.folder)?;
         let listener = bind(options.address, options.port)?;
         listener.set_nonblocking(true)?;
-        let shared = Shared {
+        let site = Site {
             address: listener.local_addr()?,
             token: random_token()?,
             folder: options.folder.clone(),
-            questions: Questions::default(),
-            jobs: Jobs::new(commands, options.folder.clone()),
         };
-        Ok(Self {
-            listener,
-            shared: Arc::new(shared),
-        })
+        let shared = Shared {
+            site: Arc::new(site),
+            questions: Arc::default(),
+            jobs: Arc::new(Jobs::new(commands, options.folder.clone())),
+        };
+        Ok(Self { listener, shared })
     }
 
     /// The address to open, with the token of this start.
     #[must_use]
     pub fn url(&self) -> String {
-        let address = self.shared.address;
+        let address = self.shared.site.address;
         let host = match address.ip() {
             ip if ip.is_unspecified() => "127.0.0.1".to_owned(),
             IpAddr::V6(ip) => format!("[{ip}]"),
@@ -130,7 +128,7 @@ impl Studio {
         format!(
             "http://{host}:{}/?token={}",
             address.port(),
-            self.shared.token
+            self.shared.site.token
         )
     }
 
@@ -150,7 +148,7 @@ impl Studio {
     }
 }
 
-fn routes(shared: Arc<Shared>) -> Router {
+fn routes(shared: Shared) -> Router {
     Router::new()
         .route("/", get(page_files::page))
         .route("/studio.js", get(page_files::script))
@@ -172,7 +170,7 @@ fn routes(shared: Arc<Shared>) -> Router {
             put(uploads::receive).layer(DefaultBodyLimit::disable()),
         )
         .layer(middleware::from_fn_with_state(
-            Arc::clone(&shared),
+            Arc::clone(&shared.site),
             access::guard,
         ))
         .with_state(shared)

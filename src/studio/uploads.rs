@@ -3,7 +3,7 @@
 use super::folder::{UPLOADS, check_new_name, upload};
 use super::questions::read_json;
 use super::refusal::Refusal;
-use super::server::Shared;
+use super::site::Site;
 use crate::answers::shot_file::{ShotFileRequest, document};
 use axum::Json;
 use axum::body::{Body, Bytes};
@@ -33,7 +33,7 @@ fn too_large(name: &str) -> Refusal {
 
 /// Keeps a file, whole or not at all. One of the same name is replaced.
 pub(super) async fn receive(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
     UrlPath(name): UrlPath<String>,
     body: Body,
 ) -> Result<Json<Value>, Refusal> {
@@ -46,7 +46,7 @@ pub(super) async fn receive(
             format!("{name}: must be a table of shots; its name ends in one of {ends}"),
         ));
     }
-    let folder = shared.folder.join(UPLOADS);
+    let folder = site.folder.join(UPLOADS);
     let refuse = |error: std::io::Error| Refusal::io(&name, &error);
     std::fs::create_dir_all(&folder).map_err(refuse)?;
     let mut file = tempfile::NamedTempFile::new_in(&folder).map_err(refuse)?;
@@ -79,12 +79,12 @@ pub(super) async fn receive(
 
 /// What a file holds.
 pub(super) async fn content(
-    State(shared): State<Arc<Shared>>,
+    State(site): State<Arc<Site>>,
     UrlPath(name): UrlPath<String>,
     body: Bytes,
 ) -> Result<Json<Value>, Refusal> {
     let request: ShotFileRequest = read_json(&body)?;
-    let path = upload(&shared.folder, &name)?;
+    let path = upload(&site.folder, &name)?;
     let answer = tokio::task::spawn_blocking(move || document(&request.answer(&path))).await;
     let failed = |_| Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, "the file cannot be read");
     answer.map(Json).map_err(failed)

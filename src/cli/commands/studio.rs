@@ -3,8 +3,7 @@
 use crate::cli::failure::{Failure, code};
 use crate::cli::signals::set_exit_remark;
 use crate::cli::terminal::print_remark;
-use crate::cli::{answer_of, stop};
-use crate::studio::{Commands, Finished, Studio, StudioOptions as Options};
+use crate::studio::{Commands, Studio, StudioOptions as Options};
 use clap::Args;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
@@ -32,24 +31,13 @@ pub(crate) struct StudioOptions {
     pub(crate) no_browser: bool,
 }
 
-pub(crate) fn run(options: &StudioOptions) -> Result<u8, Failure> {
+pub(crate) fn run(options: &StudioOptions, commands: Commands) -> Result<u8, Failure> {
     let wanted = Options {
         address: options.address,
         port: options.port,
         folder: options.folder.clone(),
     };
     let place = format!("the studio at {}", options.address);
-    let commands = Commands {
-        run: |arguments, progress| {
-            let answer = answer_of(arguments, progress);
-            Finished {
-                exit_code: answer.exit_code,
-                answer: answer.answer,
-                remarks: answer.remarks,
-            }
-        },
-        stop,
-    };
     let studio = Studio::open(&wanted, commands).map_err(|error| Failure::io(&place, &error))?;
     if !options.address.is_loopback() {
         print_remark(
