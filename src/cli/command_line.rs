@@ -197,7 +197,11 @@ pub(crate) fn command(all: bool) -> clap::Command {
     let count = if all { GROUPS.len() } else { GROUPS.len() - 1 };
     for (title, names) in &GROUPS[..count] {
         listed += &format!("{title}:\n");
-        for name in *names {
+        // Without its feature a command is not there.
+        for name in names
+            .iter()
+            .filter(|name| command.find_subcommand(name).is_some())
+        {
             listed += &format!("  {name:<12} {}\n", about(name));
         }
         listed += "\n";
