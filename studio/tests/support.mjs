@@ -49,6 +49,8 @@ export const launchBrowser = () =>
 /** A page of the studio. What it logs, and requests to other hosts, are kept. */
 export async function openPage(browser, studio, hash = "#/shot", options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "no-preference", ...options });
+  // A busy machine is slow, and no fault of the page.
+  context.setDefaultTimeout(150_000);
   const page = await context.newPage();
   page.faults = [];
   page.foreign = [];
@@ -75,7 +77,7 @@ export const request = (studio, path, init = {}) =>
 export const remove = (folder) => rmSync(folder, { recursive: true, force: true });
 
 /** Waits until a condition holds. */
-export async function until(condition, what, limit = 120_000) {
+export async function until(condition, what, limit = 150_000) {
   const end = Date.now() + limit;
   for (;;) {
     const value = await condition();
