@@ -1,6 +1,7 @@
 //! Rows of an answer as CSV: their keys are its columns.
 
 use super::json::in_units;
+use crate::files::csv_text::CsvText;
 use crate::units::UnitSystem;
 use serde::Serialize;
 use serde_json::Value;
@@ -22,16 +23,15 @@ pub fn csv<T: Serialize>(rows: &[T], units: UnitSystem) -> String {
         .flatten()
         .map(|(name, _)| name.as_str())
         .collect();
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    // Writing to memory does not fail.
-    let _ = writer.write_record(&header);
+    let mut table = CsvText::default();
+    table.row(&header);
     for cells in &rows {
-        let _ = writer.write_record(header.iter().map(|name| {
+        table.row(header.iter().map(|name| {
             let cell = cells.iter().find(|(of, _)| of == name);
             cell.map_or("", |(_, text)| text.as_str())
         }));
     }
-    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+    String::from_utf8(table.into_bytes()).unwrap_or_default()
 }
 
 /// Adds the cells of a value.

@@ -4,6 +4,7 @@ use super::failure::{Failure, code};
 use crate::answers::best_shots::BestShotsAnswer;
 use crate::answers::json::{self, Provenance, document};
 use crate::best_shot::BestShots;
+use crate::escape::file_name;
 use crate::files::atomic_file;
 use crate::present::best_shot_csv::{best_shots_csv, curves_csv, sensitivity_csv};
 use crate::shooter::Profile;
@@ -36,7 +37,7 @@ const LATEST: &str = "latest";
 /// or nothing yet. So the same run again finds its folder, and another configuration of the same
 /// name never overwrites it.
 fn numbered(parent: &Path, name: &str, hash: &str) -> PathBuf {
-    let of_name = parent.join(safe_name(name));
+    let of_name = parent.join(file_name(name));
     let mut number = 1;
     loop {
         let folder = of_name.join(number.to_string());
@@ -76,27 +77,6 @@ pub(crate) fn link_latest(folder: &Path) {
     }
     #[cfg(not(unix))]
     let _ = (number, new);
-}
-
-/// A name reduced to letters, digits and dashes, so that it never becomes a path.
-pub(crate) fn safe_name(name: &str) -> String {
-    let mut name: String = name
-        .chars()
-        .map(|c| {
-            if c.is_ascii_alphanumeric() {
-                c.to_ascii_lowercase()
-            } else {
-                '-'
-            }
-        })
-        .take(40)
-        .collect();
-    while name.contains("--") {
-        name = name.replace("--", "-");
-    }
-    let name = name.trim_matches('-');
-    let name = if name.is_empty() { "shooter" } else { name };
-    name.to_owned()
 }
 
 /// The usual folder of a profile's run, in the profile's output folder. It belongs to this profile

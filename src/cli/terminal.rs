@@ -2,15 +2,15 @@
 
 use super::embedded_session;
 use super::failure::{Failure, code};
+use crate::escape;
 use crate::present::layout::TextAnswer;
-use crate::shooter::is_control_or_direction;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Prints an answer. A closed reader (`| head -1`) is not a failure.
 pub(crate) fn print_answer(text: &str) -> Result<u8, Failure> {
-    print_bytes(text.as_bytes())
+    print_bytes(escape::terminal(text).as_bytes())
 }
 
 /// As [`print_answer`], for prose: lines of more than 80 columns are wrapped. What follows a label
@@ -152,18 +152,18 @@ pub(crate) fn print_hint(text: &str) {
 
 /// Prints a remark on standard error. A failure to print it is ignored.
 pub(crate) fn print_remark(text: &str) {
-    let text = harmless(text);
+    let text = escape::terminal(text);
     if embedded_session::take_remark(&text) {
         return;
     }
     let mut out = io::stderr().lock();
     let text = if out.is_terminal() {
-        wrapped_remark(&text)
+        wrapped_remark(&text).into()
     } else {
         text
     };
     let text = if has_colours(&out) {
-        coloured(&text)
+        coloured(&text).into()
     } else {
         text
     };
@@ -232,20 +232,6 @@ fn coloured(text: &str) -> String {
 /// Whether this can stand before the bar of a quoted line: spaces and its number.
 fn is_gutter(text: &str) -> bool {
     text.chars().all(|c| c == ' ' || c.is_ascii_digit())
-}
-
-/// The text without characters that steer a terminal or turn the direction of text: a message can
-/// quote any file.
-fn harmless(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        if !matches!(c, '\n' | '\t') && is_control_or_direction(c) {
-            safe.extend(c.escape_unicode());
-        } else {
-            safe.push(c);
-        }
-    }
-    safe
 }
 
 /// A time for people: `12 s`, `22 min`, `3.1 h`.

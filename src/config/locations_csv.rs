@@ -1,8 +1,8 @@
 //! A CSV file of locations on the court.
 
+use crate::escape::is_control_or_direction;
 use crate::files::csv_records::Row;
 use crate::files::table_rows::{TableRows, cell_as_text};
-use crate::shooter::is_control_or_direction;
 use crate::units::{DEGREE_RAD, FOOT_M};
 use csv::ByteRecord;
 

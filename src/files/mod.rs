@@ -3,9 +3,11 @@
 
 pub mod atomic_file;
 pub mod csv_records;
+pub mod csv_text;
 pub mod file_kind;
 mod header_row;
 mod json_rows;
+mod parquet_pages;
 pub mod parquet_rows;
 pub mod table_rows;
 mod text_encoding;

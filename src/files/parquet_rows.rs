@@ -1,9 +1,10 @@
 //! Rows of text cells from and to Parquet files. Columns that are carried through keep their types.
 
 use super::csv_records::{MAX_RECORD_BYTES, Row};
+use super::parquet_pages::CheckedPages;
 use csv::ByteRecord;
 use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::{
     BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int32Type, Int64Type,
 };
@@ -24,6 +25,10 @@ const GROUP_ROWS: usize = 1 << 16;
 const GROUP_BYTES: usize = 16 << 20;
 /// Rows that are read from every column at a time.
 const BLOCK_ROWS: usize = 256;
+
+/// Most rows of a file for each of its bytes, and beside that: equal cells take next to nothing.
+const MAX_ROWS_PER_BYTE: u64 = 1000;
+const ROWS_OF_NO_BYTES: u64 = 1_000_000;
 
 /// The rows of a Parquet file.
 pub struct ParquetRows {
@@ -126,8 +131,14 @@ impl ParquetRows {
             let group = self.file.get_row_group(self.group)?;
             self.group += 1;
             self.rows_left = group.metadata().num_rows() as usize;
+            let schema = group.metadata().schema_descr_ptr();
             self.readers = (0..self.columns.len())
-                .map(|column| group.get_column_reader(column))
+                .map(|index| {
+                    let column = schema.column(index);
+                    let pages = group.get_column_page_reader(index)?;
+                    let pages = CheckedPages::new(pages, column.max_def_level() > 0);
+                    Ok(get_column_reader(column, Box::new(pages)))
+                })
                 .collect::<Result<_>>()?;
         }
         let count = most.min(self.rows_left);
@@ -180,9 +191,14 @@ fn check_chunks(file: &SerializedFileReader<File>, bytes: u64) -> Result<()> {
         let end = offset.zip(length).and_then(|(a, b)| a.checked_add(b));
         end.is_some_and(|end| end <= bytes)
     };
+    let mut rows = 0_u64;
     for group in file.metadata().row_groups() {
-        if group.num_rows() < 0 {
-            return Err(ParquetError::General("the file is damaged".into()));
+        let count = u64::try_from(group.num_rows()).unwrap_or(u64::MAX);
+        rows = rows.saturating_add(count);
+        if rows > ROWS_OF_NO_BYTES + bytes.saturating_mul(MAX_ROWS_PER_BYTE) {
+            return Err(ParquetError::General(format!(
+                "the file is damaged: it says that it has {rows} rows"
+            )));
         }
         for chunk in group.columns() {
             if !matches!(

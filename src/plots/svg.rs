@@ -1,6 +1,7 @@
 //! A drawing as SVG text: rectangles, lines, circles, text and grids of colours.
 
 use super::rasterise::encode_pixels;
+use crate::escape::html;
 use base64::Engine;
 use std::fmt::Write;
 
@@ -66,24 +67,6 @@ fn px(value: f64) -> String {
     } else {
         text.to_owned()
     }
-}
-
-/// Escapes a text for SVG and HTML. Characters that XML forbids become spaces.
-#[must_use]
-pub fn escaped(text: &str) -> String {
-    let mut safe = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\'' => safe.push_str("&#39;"),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => safe.push(' '),
-            c => safe.push(c),
-        }
-    }
-    safe
 }
 
 /// A text of at most `max_chars` characters. An ellipsis replaces the rest.
@@ -200,7 +183,7 @@ impl Svg {
             px(x),
             px(y),
             px(size),
-            escaped(text)
+            html(text)
         );
     }
 
@@ -254,7 +237,7 @@ impl Svg {
         let (width, height) = (px(self.width), px(self.height));
         let text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" style=\"max-width:100%;height:auto\" font-family=\"DejaVu Sans, Verdana, sans-serif\" role=\"img\">\n<title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            escaped(title),
+            html(title),
             self.body
         );
         Drawing {

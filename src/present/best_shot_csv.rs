@@ -4,6 +4,7 @@ use super::sensitivity_rows::sensitivity_rows;
 use crate::answers::best_shots::ShotAnswer;
 use crate::answers::json::in_units;
 use crate::best_shot::BestShots;
+use crate::files::csv_text::CsvText;
 use crate::shooter::Profile;
 use crate::units::{UnitSystem, rounded};
 use serde_json::Value;
@@ -28,28 +29,10 @@ const SENSITIVITY_HEADER: [&str; 7] = [
     "standard_error",
 ];
 
-/// A CSV text in memory.
-struct MemoryCsv(csv::Writer<Vec<u8>>);
-
-impl MemoryCsv {
-    fn new() -> Self {
-        Self(csv::Writer::from_writer(Vec::new()))
-    }
-
-    fn row<T: AsRef<[u8]>>(&mut self, fields: impl IntoIterator<Item = T>) {
-        // Writing to memory does not fail.
-        let _ = self.0.write_record(fields);
-    }
-
-    fn into_bytes(self) -> Vec<u8> {
-        self.0.into_inner().unwrap_or_default()
-    }
-}
-
 /// The best shots: one row for each kind that was found.
 #[must_use]
 pub fn best_shots_csv(profile: &Profile, best: &BestShots, units: UnitSystem) -> Vec<u8> {
-    let mut csv = MemoryCsv::new();
+    let mut csv = CsvText::default();
     let mut has_header = false;
     for (kind, shot) in best.by_kind() {
         let Ok(shot) = shot else { continue };
@@ -74,7 +57,7 @@ pub fn best_shots_csv(profile: &Profile, best: &BestShots, units: UnitSystem) ->
 /// P along each variable of the best shots.
 #[must_use]
 pub fn curves_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
-    let mut csv = MemoryCsv::new();
+    let mut csv = CsvText::default();
     csv.row(CURVES_HEADER);
     for (kind, shot) in best.by_kind() {
         let Ok(shot) = shot else { continue };
@@ -103,7 +86,7 @@ pub fn curves_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
 /// `backspin` or `release_height`.
 #[must_use]
 pub fn sensitivity_csv(best: &BestShots, units: UnitSystem) -> Vec<u8> {
-    let mut csv = MemoryCsv::new();
+    let mut csv = CsvText::default();
     csv.row(SENSITIVITY_HEADER);
     for (kind, shot) in best.by_kind() {
         let Ok(shot) = shot else { continue };

@@ -1,6 +1,6 @@
 //! A sheet to print: what to tell each player.
 
-use crate::plots::svg::escaped;
+use crate::escape::html;
 
 /// The page: a heading and a paragraph for each player. `source` says what it rests on.
 #[must_use]
@@ -10,8 +10,8 @@ pub fn coach_sheet(players: &[(String, String)], source: &str) -> String {
         .map(|(name, text)| {
             format!(
                 "<section>\n<h2>{}</h2>\n<p>{}</p>\n</section>\n",
-                escaped(name),
-                escaped(text)
+                html(name),
+                html(text)
             )
         })
         .collect();
@@ -24,6 +24,6 @@ pub fn coach_sheet(players: &[(String, String)], source: &str) -> String {
          section {{ break-inside: avoid }} footer {{ color: #555; font-size: 0.8em; margin-top: 2em }}\n\
          @media print {{ body {{ font-size: 12pt }} }}\n\
          </style>\n<h1>What to tell each player</h1>\n{parts}<footer>{}</footer>\n</html>\n",
-        escaped(source)
+        html(source)
     )
 }

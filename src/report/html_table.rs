@@ -1,6 +1,6 @@
 //! Tables of a page.
 
-use crate::plots::svg::escaped;
+use crate::escape::html;
 use std::fmt::Write;
 
 /// Longer tables are not printed.
@@ -36,13 +36,13 @@ impl HtmlTable {
         } else {
             ("", "h2", "")
         };
-        let note = match escaped(&self.note) {
+        let note = match html(&self.note) {
             none if none.is_empty() => none,
             note => format!("<p>{note}</p>\n"),
         };
-        let mut html = format!(
+        let mut text = format!(
             "{start}<{heading} id=\"h-table-{number}\">{}</{heading}>\n{note}<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"h-table-{number}\">\n<table class=\"sortable\">\n<thead><tr>",
-            escaped(&self.caption)
+            html(&self.caption)
         );
         let is_number = |cell: &str| cell.parse::<f64>().is_ok();
         for (i, column) in self.columns.iter().enumerate() {
@@ -50,15 +50,15 @@ impl HtmlTable {
             let is_text = cells.all(|cell| !is_number(cell));
             // Writing to a String never fails, here and below.
             let _ = write!(
-                html,
+                text,
                 "<th scope=\"col\"{}><button type=\"button\">{}</button></th>",
                 if is_text { " class=\"text\"" } else { "" },
-                escaped(column)
+                html(column)
             );
         }
-        html.push_str("</tr></thead>\n<tbody>\n");
+        text.push_str("</tr></thead>\n<tbody>\n");
         for (shot, cells) in &self.rows {
-            html.push_str(&shot.map_or("<tr>".to_owned(), |shot| {
+            text.push_str(&shot.map_or("<tr>".to_owned(), |shot| {
                 format!("<tr data-shot=\"{shot}\">")
             }));
             for (cell, column) in cells.iter().zip(&self.columns) {
@@ -67,18 +67,18 @@ impl HtmlTable {
                 } else {
                     " class=\"text\""
                 };
-                let label = escaped(column);
+                let label = html(column);
                 let _ = write!(
-                    html,
+                    text,
                     "<td{class} data-label=\"{label}\">{}</td>",
-                    escaped(cell)
+                    html(cell)
                 );
             }
-            html.push_str("</tr>\n");
+            text.push_str("</tr>\n");
         }
-        html.push_str("</tbody>\n</table>\n</div>\n");
-        html.push_str(end);
-        html
+        text.push_str("</tbody>\n</table>\n</div>\n");
+        text.push_str(end);
+        text
     }
 }
 

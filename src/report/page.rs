@@ -4,8 +4,9 @@ use super::html_table::HtmlTable;
 use super::page_data::Scene;
 use super::shot_in_words::{ReportShot, most_probable};
 use crate::dynamics::StateError;
+use crate::escape::{html, json_in_script};
 use crate::plots::svg::Plot;
-use crate::plots::svg::{escaped, shortened};
+use crate::plots::svg::shortened;
 use std::fmt::Write;
 
 const HTML: &str = include_str!("../../assets/report/page.html");
@@ -178,15 +179,14 @@ impl Page {
         if let Some(other) = &self.other_shooter {
             other.add_to(&mut data)?;
         }
-        // Inside a script element, only a tag can end the element.
-        let data = data.to_string().replace('<', "\\u003c");
-        let answer: Vec<String> = self.answer.lines().map(escaped).collect();
+        let data = json_in_script(&data.to_string());
+        let answer: Vec<String> = self.answer.lines().map(html).collect();
         let parts = [
-            ("title", escaped(&shortened(&self.title, LONGEST_NAME))),
+            ("title", html(&shortened(&self.title, LONGEST_NAME))),
             ("css", CSS.to_owned()),
             ("answer", answer.join("\n")),
             ("body", body),
-            ("footer", escaped(&self.footer)),
+            ("footer", html(&self.footer)),
             ("data", data),
             ("js", JS.to_owned()),
         ];
@@ -201,7 +201,7 @@ fn figure_html(plot: &Plot) -> String {
         .svg
         .replace("id=\"clip", &format!("id=\"{name}-clip"))
         .replace("url(#clip", &format!("url(#{name}-clip"));
-    let caption = escaped(&plot.caption);
+    let caption = html(&plot.caption);
     let mut html = String::new();
     // Writing to a String never fails.
     let _ = write!(

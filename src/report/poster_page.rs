@@ -1,7 +1,8 @@
 //! Posters to print: one page each, A4 or letter.
 
+use crate::escape::html;
 use crate::plots::player_poster::PlayerPoster;
-use crate::plots::svg::{escaped, shortened};
+use crate::plots::svg::shortened;
 
 /// The page of one player: the map, the sentences, and nothing else.
 #[must_use]
@@ -22,7 +23,7 @@ fn page<'a>(title: &str, posters: impl IntoIterator<Item = &'a PlayerPoster>) ->
     let sheet = |poster: &PlayerPoster| {
         let sentences = poster.sentences.iter();
         let list: String = sentences
-            .map(|sentence| format!("<p>{}</p>\n", escaped(sentence)))
+            .map(|sentence| format!("<p>{}</p>\n", html(sentence)))
             .collect();
         format!("<section>\n{}\n{list}</section>\n", poster.map_svg)
     };
@@ -36,7 +37,7 @@ fn page<'a>(title: &str, posters: impl IntoIterator<Item = &'a PlayerPoster>) ->
          section + section {{ break-before: page; margin-top: 2em }}\n\
          @media print {{ body {{ font-size: 17px }} svg {{ max-height: 14cm }} section + section {{ margin-top: 0 }} }}\n\
          </style>\n{}</html>\n",
-        escaped(title),
+        html(title),
         posters.into_iter().map(sheet).collect::<String>()
     )
 }

@@ -1,7 +1,8 @@
 //! The page of a team: who should bank from where, who is best from where, and the way to the
 //! players' posters.
 
-use crate::plots::svg::{Plot, escaped};
+use crate::escape::html;
+use crate::plots::svg::Plot;
 
 /// A plain table.
 pub struct PageTable {
@@ -39,13 +40,13 @@ impl PageTable {
         let columns: String = self
             .columns
             .iter()
-            .map(|name| format!("<th scope=\"col\" class=\"text\">{}</th>", escaped(name)))
+            .map(|name| format!("<th scope=\"col\" class=\"text\">{}</th>", html(name)))
             .collect();
         let row = |cells: &Vec<String>| {
             let cells = cells.iter().zip(&self.columns).map(|(cell, column)| {
                 format!(
                     "<td class=\"text\" data-label=\"{}\">{}</td>",
-                    escaped(column),
+                    html(column),
                     cell_html(cell)
                 )
             });
@@ -59,14 +60,14 @@ impl PageTable {
 
     /// The table with its caption as a heading.
     fn section(&self) -> String {
-        format!("<h2>{}</h2>\n{}", escaped(&self.caption), self.table())
+        format!("<h2>{}</h2>\n{}", html(&self.caption), self.table())
     }
 }
 
 /// The lines of a cell in one block, each set off from the one before; nothing for an empty cell,
 /// which a narrow page then leaves out.
 fn cell_html(cell: &str) -> String {
-    let entry = |line: &str| format!("<span class=\"entry\">{}</span>", escaped(line));
+    let entry = |line: &str| format!("<span class=\"entry\">{}</span>", html(line));
     match cell {
         "" => String::new(),
         cell => format!(
@@ -84,13 +85,13 @@ fn lines(text: &str) -> String {
         match words.split_once(':') {
             Some((name, rest)) if spaces == 0 => format!(
                 "<span class=\"player\"><strong>{}</strong>:{}</span>",
-                escaped(name),
-                escaped(rest)
+                html(name),
+                html(rest)
             ),
             _ => format!(
                 "<span class=\"line\" style=\"padding-left:{:.1}em\">{}</span>",
                 0.6 * spaces as f64,
-                escaped(words)
+                html(words)
             ),
         }
     };
@@ -99,7 +100,7 @@ fn lines(text: &str) -> String {
 
 /// The lines of a text, one below the other.
 fn plain_lines(text: &str) -> String {
-    let lines: Vec<String> = text.trim_end().lines().map(escaped).collect();
+    let lines: Vec<String> = text.trim_end().lines().map(html).collect();
     lines.join("<br>")
 }
 
@@ -108,7 +109,7 @@ impl TeamPage {
     #[must_use]
     pub fn html(&self) -> String {
         let posters = self.posters.as_ref().map_or_else(String::new, |file| {
-            let file = escaped(file);
+            let file = html(file);
             format!(
                 "<p class=\"unprinted\">A sheet to print for each player, with the points on the board to aim at: <a href=\"{file}\">{file}</a>, a file beside this page. Printed, this page is the table and the maps.</p>\n"
             )
@@ -125,13 +126,13 @@ impl TeamPage {
             .collect();
         let advice = match advice.is_empty() {
             true => advice,
-            false => format!("<h2>{}</h2>\n{advice}", escaped(&self.advice_title)),
+            false => format!("<h2>{}</h2>\n{advice}", html(&self.advice_title)),
         };
         let maps = self.maps.as_ref().map_or_else(String::new, |plot| {
             format!(
                 "<figure class=\"wide\">\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
                 &*plot.svg,
-                escaped(&plot.caption)
+                html(&plot.caption)
             )
         });
         format!(
@@ -152,7 +153,7 @@ impl TeamPage {
              <footer><p>{footer}</p></footer>\n</html>\n",
             css = include_str!("../../assets/report/page.css"),
             summary = self.summary.table(),
-            caption = escaped(&self.summary.caption),
+            caption = html(&self.summary.caption),
             answer = lines(&self.answer),
             tables = self
                 .tables

@@ -1,7 +1,6 @@
 //! The shooter: release errors, limits, location on the court, and the checked profile of all of
 //! them.
 
-mod allowed_characters;
 mod correlation;
 mod identity_hash;
 mod invalid_setting;
@@ -15,7 +14,6 @@ mod release_variable;
 mod search_settings;
 mod shot_kind;
 
-pub use allowed_characters::is_control_or_direction;
 pub use correlation::Correlation;
 pub use identity_hash::{IdentityError, identity_hash};
 pub use invalid_setting::SettingError;

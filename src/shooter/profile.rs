@@ -1,6 +1,5 @@
 //! The checked profile: shooter, location, physics, search and output.
 
-use super::allowed_characters::is_control_or_direction;
 use super::identity_hash::{IdentityError, identity_hash};
 use super::invalid_setting::{SettingChecks, SettingError};
 use super::location::{Location, LocationError};
@@ -9,6 +8,7 @@ use super::release_errors::{MAX_SPEED_M_S, MAX_SPIN_RAD_S, ReleaseDispersion};
 use super::release_variable::NominalVariable;
 use super::search_settings::{Search, SearchSettings, TableGrid};
 use crate::dynamics::{InstructionSet, Integrator, Release, Simulator, SimulatorError};
+use crate::escape::is_control_or_direction;
 use crate::model::Physics;
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 use serde::{Serialize, Serializer};

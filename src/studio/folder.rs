@@ -4,6 +4,7 @@
 use super::refusal::Refusal;
 use super::site::Site;
 use crate::answers::shot_file::ShotFileRequest;
+use crate::escape::is_device;
 use axum::Json;
 use axum::body::Body;
 use axum::extract::{Path as UrlPath, State};
@@ -184,14 +185,10 @@ pub(super) fn upload(folder: &Path, name: &str) -> Result<PathBuf, Refusal> {
 
 /// Refuses a name that should become that of a folder or file and cannot be one everywhere.
 pub(super) fn check_new_name(field: &str, name: &str) -> Result<(), Refusal> {
-    /// Names that Windows keeps for devices.
-    const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
     let is_allowed = |c: char| c.is_alphanumeric() || " -_.()+".contains(c);
-    let stem = name.split('.').next().unwrap_or_default().to_lowercase();
-    let is_device = DEVICES.contains(&stem.trim_end_matches(|c: char| c.is_ascii_digit()));
     let ends_well = name.starts_with(char::is_alphanumeric) && !name.ends_with(['.', ' ']);
     let is_short = (1..=MAX_NAME).contains(&name.chars().count());
-    if ends_well && is_short && !is_device && name.chars().all(is_allowed) {
+    if ends_well && is_short && !is_device(name) && name.chars().all(is_allowed) {
         return Ok(());
     }
     Err(Refusal::field(

@@ -11,6 +11,7 @@ use super::results::ADVICE_FILE;
 use super::site::Site;
 use crate::answers::requests::ProfileRequest;
 use crate::answers::shot_file::ShotFileRequest;
+use crate::escape::toml_string;
 use crate::files::atomic_file;
 use crate::probability::Progress;
 use axum::Json;
@@ -520,13 +521,12 @@ impl JobRequest {
             } => {
                 let profile = profile.text().map_err(|error| error.to_string())?;
                 write(&folder.join("shooter.toml"), &profile)?;
-                let quoted = |text: &str| toml_edit::value(text).to_string();
                 let mut sweep = format!(
                     "# Written by the studio.\n[sweep]\nname = {}\nshooter = \"shooter.toml\"\n\
                      compute = [\"direct\", \"bank\"{}]\nregion = \"half_court\"\nstep = {}\n",
-                    quoted(name).trim(),
+                    toml_string(name),
                     if *spin { ", \"spin\"" } else { "" },
-                    quoted(step).trim(),
+                    toml_string(step),
                 );
                 if *inside_three {
                     sweep += "within = \"three_point_line\"\n";

@@ -8,6 +8,7 @@ use super::job_list::Jobs;
 use super::result_row::{Cell, ResultRow};
 use super::sweep_toml::SweepConfig;
 use crate::answers::json::{self, Provenance};
+use crate::files::csv_text::CsvText;
 use crate::units::UnitSystem;
 use crate::units::rounded;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -112,11 +113,10 @@ impl ResultTables {
     /// The tables as CSV: a header, and one line for each place and kind.
     #[must_use]
     pub fn csv(&self) -> Vec<u8> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut table = CsvText::default();
         let names = self.column_names.iter().map(String::as_str);
-        // Writing to memory does not fail.
         let name = (!self.place_names.is_empty()).then_some("name");
-        let _ = writer.write_record(["place", "mirrored"].into_iter().chain(name).chain(names));
+        table.row(["place", "mirrored"].into_iter().chain(name).chain(names));
         for line in &self.lines {
             let first = [line.place.to_string(), line.mirrored.to_string()];
             let first = first.into_iter().chain(self.place_name(line));
@@ -128,9 +128,9 @@ impl ResultTables {
                 Cell::Integer(value) => value.to_string(),
                 Cell::Text(text) => text.clone(),
             });
-            let _ = writer.write_record(first.chain(cells));
+            table.row(first.chain(cells));
         }
-        writer.into_inner().unwrap_or_default()
+        table.into_bytes()
     }
 
     /// The name of the place of a line, if places have names.

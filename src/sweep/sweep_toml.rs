@@ -10,12 +10,10 @@ use crate::config::{
     ConfigError, Diagnostic, ReadSettings, parse_locations, parse_profile, parse_toml,
     read_settings, read_settings_of,
 };
+use crate::escape::is_control_or_direction;
 use crate::model::league_courts::League;
 use crate::model::named_places::{named_places, place_named, place_names_in_words};
-use crate::shooter::{
-    IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash,
-    is_control_or_direction,
-};
+use crate::shooter::{IdentityError, NominalVariable, Profile, ProfileSettings, identity_hash};
 use serde::{Deserialize, Serialize};
 
 /// Longest name of a sweep, in characters.

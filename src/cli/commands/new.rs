@@ -3,7 +3,8 @@
 use crate::cli::failure::{Failure, code};
 use crate::cli::terminal::{print_answer, print_hint, print_remark};
 use crate::config::parse_profile;
-use crate::shooter::{Profile, implausible_values, is_control_or_direction};
+use crate::escape::{is_control_or_direction, toml_string};
+use crate::shooter::{Profile, implausible_values};
 use crate::units::{self, Dimension};
 use clap::{Args, ValueEnum};
 use std::io::{BufRead, Write};
@@ -299,9 +300,8 @@ fn with_value(text: &str, start: &str, value: &str) -> String {
             return format!("{line}\n");
         }
         is_done = true;
-        let value = value.replace('\\', "\\\\").replace('"', "\\\"");
         let comment = line.find("  #").map_or("", |at| line[at..].trim_start());
-        format!("{:<35}{comment}", format!("{start}\"{value}\""))
+        format!("{:<35}{comment}", format!("{start}{}", toml_string(value)))
             .trim_end()
             .to_owned()
             + "\n"

@@ -10,9 +10,9 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::AGAINST_FOLDER;
 use crate::cli::terminal::{print_answer, print_hint, print_prose, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
+use crate::escape::html;
 use crate::files::atomic_file;
 use crate::fitting::advise;
-use crate::plots::svg::escaped;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{physics_probabilities, sweep_difference_map};
 use crate::present::fit_files::advice_text::PlayerAdvice;
@@ -74,11 +74,13 @@ fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
             page.display()
         )));
     }
-    let html = read_text(&page)?;
-    let parts = html.split_once(ADVICE_BEGINS).and_then(|(before, rest)| {
-        let (_, after) = rest.split_once(SECTION_ENDS)?;
-        Some((before, after))
-    });
+    let written = read_text(&page)?;
+    let parts = written
+        .split_once(ADVICE_BEGINS)
+        .and_then(|(before, rest)| {
+            let (_, after) = rest.split_once(SECTION_ENDS)?;
+            Some((before, after))
+        });
     let Some((before, after)) = parts else {
         return Err(Failure::usage(format!(
             "{}: has no place for the advice; it was written by another version: run `bankshot fit` again",
@@ -100,13 +102,13 @@ fn page_of_fit(folder: &Path) -> Result<u8, Failure> {
         let text = player.brief();
         if fit.profiles.len() > 1 {
             let words = profile.location().in_words(fit.units);
-            advice += &format!("<h3>{}</h3>\n", escaped(&words));
+            advice += &format!("<h3>{}</h3>\n", html(&words));
         }
-        let lines: Vec<String> = text.lines().map(escaped).collect();
+        let lines: Vec<String> = text.lines().map(html).collect();
         advice += &format!("<p class=\"answer\">{}</p>\n", lines.join("\n"));
     }
-    let html = format!("{before}{ADVICE_BEGINS}\n{advice}{SECTION_ENDS}{after}");
-    atomic_file::write_unlinked(&page, html.as_bytes())
+    let renewed = format!("{before}{ADVICE_BEGINS}\n{advice}{SECTION_ENDS}{after}");
+    atomic_file::write_unlinked(&page, renewed.as_bytes())
         .map_err(|error| Failure::io(page.display(), &error))?;
     print_answer(&format!("{}\n", page.display()))?;
     Ok(code::DONE)

@@ -6,6 +6,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{is_quiet, print_remark};
 use crate::cli::value_parsers::PhysicsArg;
 use crate::dynamics::{Integrator, Simulator};
+use crate::escape::csv_cell;
 use crate::files::atomic_file::{AtomicFile, same_file};
 use crate::files::csv_records::Row;
 use crate::files::parquet_rows::{ParquetSink, column};
@@ -186,7 +187,7 @@ impl<W: Write + Send> Sink<W> {
         let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(out);
         let added = OUTCOME_COLUMNS.iter().map(|name| name.as_bytes());
         writer
-            .write_record(header.iter().chain(added))
+            .write_record(header.iter().chain(added).map(csv_cell))
             .map_err(output_error)?;
         Ok(Self::Csv(Box::new(writer)))
     }
@@ -221,7 +222,9 @@ impl<W: Write + Send> Sink<W> {
 
     fn write(&mut self, row: ByteRecord) -> Result<(), StreamError> {
         match self {
-            Self::Csv(writer) => writer.write_byte_record(&row).map_err(output_error),
+            Self::Csv(writer) => writer
+                .write_record(row.iter().map(csv_cell))
+                .map_err(output_error),
             Self::Parquet(sink) => sink.push(row).map_err(parquet_output_error),
         }
     }

@@ -19,7 +19,9 @@ use crate::cli::value_lists::ascending_values;
 use crate::cli::value_parsers::{PhysicsArg, UnitsArg};
 use crate::files::atomic_file;
 use crate::present::shot_table_files::notes;
-use crate::present::shot_table_files::source_code::{Language, namespace_of, source_code};
+use crate::present::shot_table_files::source_code::{
+    Language, is_class_name, namespace_of, source_code,
+};
 use crate::present::shot_table_files::table_answer::table_answer;
 use crate::present::shot_table_files::table_text::table_text;
 use crate::present::shot_table_files::unfinished::UnfinishedTable;
@@ -463,12 +465,7 @@ fn source_name(path: Option<&Path>, format: TableFormat) -> Result<String, Failu
     if path.extension().is_none_or(|end| end != "java") {
         return Ok("ShotTable".to_owned());
     }
-    let mut letters = name.chars();
-    let is_name = letters
-        .next()
-        .is_some_and(|first| first.is_ascii_alphabetic() || first == '_')
-        && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if is_name {
+    if is_class_name(&name) {
         Ok(name.into_owned())
     } else {
         Err(Failure::usage(format!(

@@ -2,6 +2,7 @@
 
 use super::fit_note_text::fit_note_text;
 use crate::answers::fit::FitSource;
+use crate::escape::toml_string;
 use crate::fitting::{PlaceScatter, ShooterFit, SpinSource, VALUE_NAMES};
 use crate::store::parameters::{Parameter, mean_name, parameters, value_units};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitName, UnitSystem};
@@ -47,7 +48,7 @@ pub fn fitted_profile_toml(
         "# Fitted by `bankshot fit` to {} {} of {}.",
         fit.posterior.shots,
         source.kind.name(),
-        quoted(&source.file)
+        toml_string(&source.file)
     ));
     line(format!(
         "# Tracker: {} (noise {}). Physics: {}. The profile is valid for this physics only.",
@@ -61,7 +62,7 @@ pub fn fitted_profile_toml(
             fit.places.len(),
             match source.place_names[place_index].as_str() {
                 "" => String::new(),
-                name => format!(", {}", quoted(name)),
+                name => format!(", {}", toml_string(name)),
             }
         ));
     }
@@ -70,7 +71,7 @@ pub fn fitted_profile_toml(
     }
     line(String::new());
     line("[shooter]".to_owned());
-    line(format!("name = {}", quoted(&fit.name)));
+    line(format!("name = {}", toml_string(&fit.name)));
     line(format!(
         "release_height = \"{:.4} {long}\"",
         place.release_height_m / metre
@@ -182,9 +183,4 @@ pub fn fitted_profile_toml(
     line(String::new());
     line(physics.trim().to_owned());
     text
-}
-
-/// A text as a TOML string.
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
 }

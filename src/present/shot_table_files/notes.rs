@@ -49,8 +49,7 @@ pub fn notes(table: &ShotTable, profile: &Profile, units: UnitSystem) -> Vec<Str
 pub(super) fn shooter_note(table: &ShotTable, profile: &Profile, units: UnitSystem) -> String {
     let (long, metre) = units.length();
     let shooter = profile.shooter();
-    let is_allowed = |c: char| !c.is_control() && c != '\\';
-    let name: String = shooter.name.chars().filter(|c| is_allowed(*c)).collect();
+    let name = &shooter.name;
     let mut note = format!(
         "Shooter: {name}, release height {} {long}",
         short(shooter.release_height_m / metre)

@@ -5,6 +5,7 @@
 
 use super::notes::{notes, physics_note, shooter_note, what_shots};
 use crate::best_shot::{ShotTable, TableShot};
+use crate::escape::source_comment;
 use crate::shooter::{Profile, ShotKind};
 use crate::units::{DEGREE_RAD, REV_RAD, UnitSystem};
 
@@ -61,22 +62,123 @@ fn values(units: UnitSystem) -> [(String, fn(&TableShot) -> f64, f64); 10] {
 /// of a cell have the same kind.)
 const NOT_INTERPOLATED: usize = 3;
 
+/// Words that can be the name of a file, and not of a class or a namespace, in Java or C++.
+const TAKEN: [&str; 96] = [
+    "abstract",
+    "and",
+    "asm",
+    "assert",
+    "auto",
+    "bool",
+    "boolean",
+    "break",
+    "byte",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "compl",
+    "concept",
+    "const",
+    "constexpr",
+    "continue",
+    "decltype",
+    "default",
+    "delete",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "explicit",
+    "export",
+    "extends",
+    "extern",
+    "false",
+    "final",
+    "finally",
+    "float",
+    "for",
+    "friend",
+    "goto",
+    "if",
+    "implements",
+    "import",
+    "inline",
+    "instanceof",
+    "int",
+    "interface",
+    "long",
+    "mutable",
+    "namespace",
+    "native",
+    "new",
+    "noexcept",
+    "not",
+    "null",
+    "nullptr",
+    "operator",
+    "or",
+    "package",
+    "private",
+    "protected",
+    "public",
+    "record",
+    "register",
+    "requires",
+    "return",
+    "sealed",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "std",
+    "strictfp",
+    "struct",
+    "super",
+    "switch",
+    "synchronized",
+    "template",
+    "this",
+    "throw",
+    "throws",
+    "transient",
+    "true",
+    "try",
+    "typedef",
+    "typeid",
+    "typename",
+    "union",
+    "unsigned",
+    "using",
+    "var",
+    "virtual",
+    "void",
+    "volatile",
+    "wchar_t",
+    "while",
+    "xor",
+    "yield",
+    "_",
+    "java",
+];
+
+/// Whether a Java class can have this name.
+#[must_use]
+pub fn is_class_name(name: &str) -> bool {
+    let begins = |c: char| c.is_ascii_alphabetic() || c == '_';
+    name.starts_with(begins)
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && !TAKEN.contains(&name)
+}
+
 /// The namespace of a C++ header with this file name: letters, digits and single underscores, and
 /// no word of the language. Headers of other names then stand side by side in one program.
 #[must_use]
 pub fn namespace_of(file_stem: &str) -> String {
-    /// Words that can be the name of a file and not of a namespace.
-    const TAKEN: [&str; 31] = [
-        "and", "auto", "bool", "break", "case", "char", "class", "const", "continue", "default",
-        "delete", "do", "double", "else", "export", "float", "for", "if", "int", "long", "new",
-        "not", "or", "private", "public", "short", "std", "this", "try", "while", "xor",
-    ];
     let words = file_stem.split(|c: char| !c.is_ascii_alphanumeric());
     let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     let name = words.join("_");
-    let is_free =
-        name.starts_with(|c: char| c.is_ascii_alphabetic()) && !TAKEN.contains(&name.as_str());
-    if is_free {
+    if name.starts_with(|c: char| c.is_ascii_alphabetic()) && !TAKEN.contains(&name.as_str()) {
         name
     } else {
         format!("table_{name}").trim_end_matches('_').to_owned()
@@ -165,7 +267,7 @@ pub fn source_code(
         let options = textwrap::Options::new(100 - prefix.len() - 1);
         let lines = about.iter().flat_map(|line| textwrap::wrap(line, &options));
         lines
-            .map(|line| format!("{prefix} {line}\n"))
+            .map(|line| format!("{prefix} {}\n", source_comment(&line)))
             .collect::<String>()
     };
     let template = match language {
@@ -179,7 +281,6 @@ pub fn source_code(
         "//"
     };
     template
-        .replace("@ABOUT@", &comment(prefix))
         .replace("@CLASS@", class)
         .replace("@DISTANCES@", &list(&table.distances_m, metre))
         .replace("@ANGLES@", &list(&table.angles_rad, DEGREE_RAD))
@@ -194,6 +295,8 @@ pub fn source_code(
         .replace("@JAVA_ROWS@", &JAVA_ROWS.to_string())
         .replace("@VALUES@", &values.len().to_string())
         .replace("@LINEAR@", &(values.len() - NOT_INTERPOLATED).to_string())
+        // The last: a name in it stays as it is.
+        .replace("@ABOUT@", &comment(prefix))
 }
 
 /// What the time of a shot is not: a robot that moved and led by it missed.

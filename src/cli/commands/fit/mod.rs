@@ -10,8 +10,8 @@ mod shooters_table;
 mod unmeasured_parameters;
 
 use crate::cli::failure::{Failure, code};
-use crate::cli::run_folder;
 use crate::cli::terminal::is_quiet;
+use crate::escape::file_name;
 use crate::files::atomic_file::same_file;
 use crate::store::fit::SHOTS_FILE;
 use remarks::print_sides;
@@ -29,7 +29,7 @@ pub(crate) fn run(options: &FitOptions) -> Result<u8, Failure> {
         let folder = default_folder(&options.shots, &options.measured.session);
         // Where a fit of all shooters puts this one.
         match &options.measured.shooter {
-            Some(name) => folder.join(run_folder::safe_name(name)),
+            Some(name) => folder.join(file_name(name)),
             None => folder,
         }
     });
@@ -72,5 +72,5 @@ fn default_folder(shots: &Path, sessions: &[String]) -> PathBuf {
     for session in sessions {
         stem += &format!("-{session}");
     }
-    Path::new("results").join(format!("{}-fit", run_folder::safe_name(&stem)))
+    Path::new("results").join(format!("{}-fit", file_name(&stem)))
 }

@@ -16,6 +16,7 @@ use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{
     is_quiet, print_answer, print_next, print_prose, print_remark, print_text,
 };
+use crate::escape::file_name;
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::present::fit_files::fit_text::fit_text;
@@ -36,9 +37,7 @@ pub(super) fn fit(
         return Err(Failure::usage(format!(
             "{0}: has the fits of several shooters; name a folder in it: --output {1}",
             folder.display(),
-            folder
-                .join(run_folder::safe_name(&file.name_of(shots)))
-                .display()
+            folder.join(file_name(&file.name_of(shots))).display()
         )));
     }
     if options.out.is_none() && options.measured.shooter.is_some() {

@@ -9,8 +9,8 @@ use super::unmeasured_parameters::{UnmeasuredParameter, check_shots, drag, estim
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder;
 use crate::cli::terminal::{is_quiet, print_next, print_prose, print_remark, print_text};
+use crate::escape::file_name;
 use crate::fitting::{Contradiction, Place, ShooterFit, ShooterFitError};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
@@ -100,7 +100,7 @@ pub(crate) fn fit_each(
 fn folders_of(file: &MeasuredFile, out: &Path) -> Vec<PathBuf> {
     let mut folders: Vec<PathBuf> = Vec::new();
     for shots in &file.shooters {
-        let name = run_folder::safe_name(&file.name_of(shots));
+        let name = file_name(&file.name_of(shots));
         let mut folder = out.join(&name);
         let mut number = 1;
         while folders.contains(&folder) {

@@ -5,6 +5,7 @@ use crate::cli::failure::Failure;
 use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::cli::terminal::print_remark;
 use crate::files::atomic_file;
+use crate::files::csv_text::CsvText;
 use crate::fitting::ShooterFit;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::store::shooters::{FittedPlace, ShooterPlace, Shooters};
@@ -53,7 +54,7 @@ pub(super) fn write_table(
     units: UnitSystem,
 ) -> Result<(), Failure> {
     let (long, metre) = units.length();
-    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut table = CsvText::default();
     let header = [
         "shooter",
         "shots",
@@ -68,7 +69,7 @@ pub(super) fn write_table(
         "folder",
         "error",
     ];
-    writer.write_record(header).map_err(Failure::bug)?;
+    table.row(header);
     for place in &shooters.places {
         let cell = |decimals: usize, value: &dyn Fn(&FittedPlace) -> f64| {
             let cell = |fitted| format!("{:.decimals$}", value(fitted));
@@ -92,11 +93,11 @@ pub(super) fn write_table(
             path,
             place.error.clone(),
         ];
-        writer.write_record(record).map_err(Failure::bug)?;
+        table.row(record);
     }
-    let bytes = writer.into_inner().map_err(Failure::bug)?;
     let path = folder.join(TABLE_FILE);
-    atomic_file::write(&path, &bytes).map_err(|error| Failure::io(path.display(), &error))?;
+    atomic_file::write(&path, &table.into_bytes())
+        .map_err(|error| Failure::io(path.display(), &error))?;
     Ok(shooters.write(folder)?)
 }
 

@@ -14,10 +14,10 @@ use crate::cli::failure::{Failure, code};
 use crate::cli::fit_folder;
 use crate::cli::plot_files;
 use crate::cli::progress_bars::ProgressBars;
-use crate::cli::run_folder;
 use crate::cli::terminal::{
     is_quiet, print_answer, print_hint, print_prose, print_remark, time_in_words,
 };
+use crate::escape::file_name;
 use crate::files::atomic_file;
 use crate::fitting::UnseenParameter;
 use crate::plots::player_poster::PlayerPoster;
@@ -150,7 +150,7 @@ pub(super) fn run(paths: &[PathBuf], sweep: &Path, out: &Path) -> Result<u8, Fai
         let (path, player) = &planned.player;
         warn_of(path, player)?;
     }
-    let folder_of = |player: &PlannedPlayer| out.join(run_folder::safe_name(&player.name));
+    let folder_of = |player: &PlannedPlayer| out.join(file_name(&player.name));
     let folders: Vec<PathBuf> = planned.iter().map(folder_of).collect();
     let units = planned[0].config.settings.output.units;
     let told = ring_told_by_makes(paths)?;
@@ -237,17 +237,17 @@ fn write_team(
     plot_files::write(out, maps.as_slice())?;
     let has_posters = !posters.is_empty();
     if has_posters {
-        write(&out.join("posters.html"), &posters_page(posters))?;
+        write(&out.join("posters.html"), posters_page(posters))?;
     }
-    write(&out.join("team.csv"), &team_csv(players, units))?;
+    write(&out.join("team.csv"), team_csv(players, units))?;
     let file = out.join("team.html");
     let page = team_page(players, maps, has_posters, (warnings, ring), units);
-    write(&file, &page.html())?;
+    write(&file, page.html())?;
     Ok(file)
 }
 
-fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    atomic_file::write(file, text.as_bytes()).map_err(|error| Failure::io(file.display(), &error))
+fn write(file: &Path, text: impl AsRef<[u8]>) -> Result<(), Failure> {
+    atomic_file::write(file, text.as_ref()).map_err(|error| Failure::io(file.display(), &error))
 }
 
 /// Says which players have a sweep in the folder of the team, and are not in its files.
@@ -292,7 +292,7 @@ fn write_pictures(
     plots.extend(sweep_bank_direct_map::draw(&results));
     let poster = player_poster::draw(&results, own);
     if let Some(poster) = &poster {
-        write(&folder.join("poster.html"), &poster_page(name, poster))?;
+        write(&folder.join("poster.html"), poster_page(name, poster))?;
         plots.push(poster.plot.clone());
     }
     plot_files::write(folder, &plots)?;

@@ -3,9 +3,9 @@
 use crate::cli::config_files::{read_text, warnings_of_fit};
 use crate::cli::failure::Failure;
 use crate::cli::loaded_profile::LoadedProfile;
-use crate::cli::run_folder;
 use crate::cli::terminal::print_hint;
 use crate::cli::value_parsers::PhysicsArg;
+use crate::escape::file_name;
 use crate::shooter::{Profile, implausible_values};
 use crate::store::fit::profile_file;
 use crate::store::shooters::fits_within;
@@ -49,10 +49,10 @@ pub(super) fn load_players(
         }
         let player = LoadedProfile::read(&path, &PhysicsArg::default())?.profile;
         let name = &player.shooter().name;
-        let folder = run_folder::safe_name(name);
+        let folder = file_name(name);
         if players
             .iter()
-            .any(|(_, other)| run_folder::safe_name(&other.shooter().name) == folder)
+            .any(|(_, other)| file_name(&other.shooter().name) == folder)
         {
             return Err(Failure::usage(format!(
                 "{}: two players have the name \"{name}\"; give each their own",
