@@ -65,6 +65,17 @@ impl Failure {
     }
 }
 
+/// Refuses a file in the place of a folder, before anybody waits for results that cannot be kept.
+pub(crate) fn refuse_file(folder: &Path) -> Result<(), Failure> {
+    match std::fs::metadata(folder) {
+        Ok(about) if !about.is_dir() => Err(Failure::io(
+            folder.display(),
+            &ErrorKind::NotADirectory.into(),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Refuses a path at which there is nothing, with a name in its folder that may have been meant.
 pub(crate) fn refuse_missing(path: &Path) -> Result<(), Failure> {
     // What is there and cannot be read has a message of its own.
@@ -102,6 +113,9 @@ const NO_SUCH_FILE: &str = "there is no such file or folder";
 pub(crate) fn io_in_words(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => NO_SUCH_FILE.to_owned(),
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            "is a file where a folder must be; choose another name".to_owned()
+        }
         _ => error.to_string(),
     }
 }

@@ -231,8 +231,12 @@ const MAX_THREADS_PER_CORE: usize = 4;
 fn thread_pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let most = MAX_THREADS_PER_CORE * cores;
+    // What rayon's own variable asks for is bounded too.
+    let wanted = std::env::var("RAYON_NUM_THREADS").ok();
+    let wanted = wanted.and_then(|text| text.parse().ok());
+    let wanted = threads.map(usize::from).or(wanted).unwrap_or(0);
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, |threads| usize::from(threads).min(most)))
+        .num_threads(wanted.min(most))
         .build()
         .map_err(|error| Failure {
             code: code::IO,

@@ -28,12 +28,15 @@ fn exit(exit_code: u8) -> ! {
 /// Handles SIGINT (Ctrl-C), SIGTERM and SIGHUP (a closed terminal).
 #[cfg(unix)]
 pub(crate) fn handle() {
+    use signal_hook::consts::signal::SIGXFSZ;
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     // If the handler cannot be set, the default one ends the program too, but leaves temporary
     // files. SIGHUP stays ignored if the parent process ignores it, as `nohup` does.
     let handled = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()
         .filter(|&signal| signal != SIGHUP || !is_ignored(signal));
+    // A file that grows beyond the limit of the shell is an error of writing, with its message.
+    let _ = signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default());
     let Ok(mut signals) = signal_hook::iterator::Signals::new(handled) else {
         return;
     };

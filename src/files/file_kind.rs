@@ -56,7 +56,8 @@ impl FileKind {
         let is_wide = first.starts_with(b"\xff\xfe") || first.starts_with(b"\xfe\xff");
         let zeros = first.iter().filter(|byte| **byte == 0).count();
         // Text of two bytes a letter has a zero in every other one.
-        if zeros > 0 && !is_wide && zeros < first.len() / 4 {
+        let few = zeros > 0 && zeros < first.len() / 4;
+        if zeros > first.len() / 2 + 1 || few && !is_wide {
             let name = path.extension().map(|end| end.to_string_lossy());
             let name = name.map_or(String::new(), |end| format!(" (.{end})"));
             return Err(format!(

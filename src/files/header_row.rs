@@ -8,7 +8,7 @@ pub(super) const ROWS_LOOKED_AT: usize = 40;
 const LEAST_SHARE: f64 = 0.6;
 
 /// The texts of the cells that are not empty.
-fn filled(row: &ByteRecord) -> Vec<&[u8]> {
+pub(super) fn filled(row: &ByteRecord) -> Vec<&[u8]> {
     let cells = row.iter().map(<[u8]>::trim_ascii);
     cells.filter(|cell| !cell.is_empty()).collect()
 }

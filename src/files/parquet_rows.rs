@@ -27,8 +27,8 @@ const GROUP_BYTES: usize = 16 << 20;
 const BLOCK_ROWS: usize = 256;
 
 /// Most rows of a file for each of its bytes, and beside that: equal cells take next to nothing.
-const MAX_ROWS_PER_BYTE: u64 = 1000;
-const ROWS_OF_NO_BYTES: u64 = 1_000_000;
+const MAX_ROWS_PER_BYTE: u64 = 100;
+const ROWS_OF_NO_BYTES: u64 = 100_000;
 
 /// The rows of a Parquet file.
 pub struct ParquetRows {

@@ -3,7 +3,7 @@
 
 use super::csv_records::{CsvRecords, Row};
 use super::file_kind::FileKind;
-use super::header_row::{ROWS_LOOKED_AT, header_row, is_blank, is_remark};
+use super::header_row::{ROWS_LOOKED_AT, filled, header_row, is_blank, is_remark};
 use super::json_rows::json_rows;
 use super::parquet_rows::ParquetRows;
 use super::text_encoding::{cell_text, wide_encoding};
@@ -327,7 +327,9 @@ impl TableRows {
             let says_nothing = row.cells.as_ref().is_err_and(|reason| reason == "is empty");
             return (!says_nothing).then_some(row);
         };
-        if is_text && (is_blank(&cells) || is_remark(&cells)) {
+        // A whole row is none, though its first cell, the name of a player, begins with `#`.
+        let is_short = cells.len() < self.header.len() || filled(&cells).len() < 2;
+        if is_text && (is_blank(&cells) || is_remark(&cells) && is_short) {
             return None;
         }
         while cells.len() > self.header.len()
@@ -379,9 +381,15 @@ fn first_bytes(input: &mut impl Read) -> Result<Vec<u8>, String> {
     Ok(first)
 }
 
+/// The bytes of a file that is read as a whole.
 fn all_bytes(mut first: Vec<u8>, rest: &mut impl Read) -> Result<Vec<u8>, String> {
-    rest.read_to_end(&mut first)
+    const MAX_BYTES: u64 = 256 << 20;
+    rest.take(MAX_BYTES)
+        .read_to_end(&mut first)
         .map_err(|error| error.to_string())?;
+    if first.len() as u64 >= MAX_BYTES {
+        return Err("is larger than 256 MiB; save it as CSV of UTF-8, or split it".to_owned());
+    }
     Ok(first)
 }
 

@@ -1,7 +1,7 @@
 //! Names that are formulas, scripts, sources, paths and codes, in every output: they stay text.
 //!
-//! An ordinary run takes each kind of name once; `cargo test --release --test cli -- --ignored
-//! --nocapture campaign_hostile_names` takes 5,000 (`docs/reliability.md`).
+//! An ordinary run takes each kind of name once; `cargo test --test cli -- --ignored --nocapture
+//! campaign_hostile_names` takes 5,000 (`docs/reliability.md`).
 
 use crate::support::*;
 use bankshot::best_shot::{ShotKind, ShotTable, ShotTableRequest, TableKind};
@@ -637,28 +637,37 @@ fn contract_hostile_names_stay_text() {
     assert!(seen.sources > 100 && seen.refused > 5);
 }
 
+/// How many names the campaigns take.
+const CAMPAIGN: usize = 5000;
+
 #[test]
-#[ignore = "about ten minutes"]
-fn campaign_hostile_names() {
-    let names = hostile_names(5000);
+#[ignore = "about eight minutes"]
+fn campaign_hostile_names_in_texts() {
+    let names = hostile_names(CAMPAIGN);
     let mut seen = Seen::default();
-    let done = |what: &str, seen: &Seen| println!("{what}: {seen:?}");
     simulate(&names, &mut seen);
-    done("columns and notes of simulate", &seen);
+    println!("columns and notes of simulate: {seen:?}");
     profiles(&names, &mut seen);
-    done("profiles", &seen);
+    println!("profiles: {seen:?}");
     sources(&names, &mut seen);
-    done("sources", &seen);
+    println!("sources: {seen:?}");
+}
+
+#[test]
+#[ignore = "about fifteen minutes"]
+fn campaign_hostile_names_in_results() {
+    let names = hostile_names(CAMPAIGN);
+    let mut seen = Seen::default();
     for some in names.chunks(500) {
         places(some, &mut seen);
     }
-    done("places", &seen);
+    println!("places: {seen:?}");
     for some in names.chunks(127) {
         measured(some, &mut seen);
     }
-    done("measured shots", &seen);
+    println!("measured shots: {seen:?}");
     for name in names.iter().filter(|name| is_allowed(name)).step_by(100) {
         best_shots(name, &mut seen);
     }
-    done("best shots", &seen);
+    println!("best shots: {seen:?}");
 }

@@ -7,6 +7,7 @@ mod compare;
 mod doc_outputs;
 mod fit;
 mod help_examples;
+mod hostile_files;
 mod hostile_names;
 mod man;
 mod new;

@@ -6,3 +6,4 @@ mod common;
 mod best_shot;
 mod mechanics;
 mod probability;
+mod relations;

@@ -3,7 +3,7 @@
 
 use super::fit::{FitOptions, fit_each, print_sessions, print_unused, report_rejected};
 use super::team::over_the_court_of;
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, refuse_file};
 use crate::cli::fit_folder;
 use crate::cli::measured_shots_flags::MeasuredShotsOptions;
 use crate::cli::progress_bars::ProgressBars;
@@ -50,6 +50,7 @@ pub(crate) struct CoachOptions {
 }
 
 pub(crate) fn run(options: &CoachOptions) -> Result<u8, Failure> {
+    refuse_file(&options.out)?;
     let mut worst = code::DONE;
     let mut folders: Vec<PathBuf> = Vec::new();
     let mut units = UnitSystem::Imperial;

@@ -1,6 +1,6 @@
 //! `bankshot studio`: the engine behind a page in the browser.
 
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, refuse_file};
 use crate::cli::signals::set_exit_remark;
 use crate::cli::terminal::print_remark;
 use crate::studio::{Commands, Studio, StudioOptions as Options};
@@ -32,6 +32,7 @@ pub(crate) struct StudioOptions {
 }
 
 pub(crate) fn run(options: &StudioOptions, commands: Commands) -> Result<u8, Failure> {
+    refuse_file(&options.folder)?;
     let wanted = Options {
         address: options.address,
         port: options.port,

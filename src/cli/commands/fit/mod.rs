@@ -9,7 +9,7 @@ mod several_shooters;
 mod shooters_table;
 mod unmeasured_parameters;
 
-use crate::cli::failure::{Failure, code};
+use crate::cli::failure::{Failure, code, refuse_file};
 use crate::cli::terminal::is_quiet;
 use crate::escape::file_name;
 use crate::files::atomic_file::same_file;
@@ -33,6 +33,7 @@ pub(crate) fn run(options: &FitOptions) -> Result<u8, Failure> {
             None => folder,
         }
     });
+    refuse_file(&out)?;
     if same_file(&options.shots, &out.join(SHOTS_FILE)) {
         return Err(Failure::usage(format!(
             "--output {}: the fit would write its own {SHOTS_FILE} over your file; name another folder",
