@@ -41,8 +41,8 @@ pub fn json_in_script(json: &str) -> String {
 }
 
 /// A cell of a CSV file, before it gets quotes. A spreadsheet runs a cell that begins with `=`,
-/// `+`, `-`, `@` or a tab; an apostrophe makes it text. Numbers stay as they are. Control characters
-/// become question marks.
+/// `+`, `-`, `@` or a tab; an apostrophe makes it text. Numbers stay as they are, and control
+/// characters become question marks.
 #[must_use]
 pub fn csv_cell(cell: &[u8]) -> Cow<'_, [u8]> {
     let is_number = || std::str::from_utf8(cell).is_ok_and(|text| text.parse::<f64>().is_ok());

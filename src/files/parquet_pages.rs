@@ -1,5 +1,5 @@
-//! Pages of a Parquet file whose counts are possible: the library makes room for as many values as a
-//! page says it has, and a few bytes can say billions.
+//! Pages of a Parquet file whose counts are possible: the library makes room for as many values as
+//! a page says it has, and a few bytes can say billions.
 
 use parquet::basic::Encoding;
 use parquet::column::page::{Page, PageMetadata, PageReader};

@@ -1,6 +1,5 @@
 //! Bytes of a text as letters, whatever program wrote them.
 
-use crate::escape::is_control_or_direction;
 use encoding_rs::{UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 /// The encoding of a text of two bytes a letter, by its mark or by its zeros; `None` of others.
@@ -35,9 +34,8 @@ pub(super) fn cell_text(cell: &[u8]) -> String {
         Ok(text) => text.to_owned(),
         Err(_) => WINDOWS_1252.decode(cell).0.into_owned(),
     };
-    // No control character may reach a terminal, and none turns the direction of text.
-    let steers = |c: char| is_control_or_direction(c) && c != '\t' && c != '\n';
-    let text = text.replace(steers, "");
+    // No control character may reach a terminal.
+    let text = text.replace(|c: char| c.is_control() && c != '\t' && c != '\n', "");
     text.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}')
         .to_owned()
 }

@@ -26,8 +26,8 @@ pub(super) struct Sheet {
 /// It is none, or no sheet has two columns.
 pub(super) fn workbook_rows(bytes: Vec<u8>) -> Result<Sheet, String> {
     let is_zip = bytes.starts_with(b"PK");
-    if is_zip && unpacked_bytes(&bytes).is_none_or(|unpacked| unpacked > MAX_UNPACKED) {
-        return Err("is too large a workbook, or a damaged one: save the sheet as CSV".to_owned());
+    if is_zip && unpacked_bytes(&bytes).is_some_and(|unpacked| unpacked > MAX_UNPACKED) {
+        return Err("is too large a workbook: save the sheet as CSV".to_owned());
     }
     let mut workbook =
         open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| match is_zip {

@@ -1,6 +1,7 @@
 //! A whole file of any kind as rows of text.
 
 use super::column_texts::{ColumnSummary, ColumnText, tidy_cells, unit_named};
+use crate::escape::is_control_or_direction;
 use crate::files::csv_records::Row;
 use crate::files::table_rows::TableRows;
 use std::path::Path;
@@ -128,5 +129,7 @@ impl Table {
 }
 
 fn text(cell: &[u8]) -> String {
-    crate::files::table_rows::cell_as_text(cell)
+    // Sheets of languages that are written to the left have marks of direction around cells.
+    let text = crate::files::table_rows::cell_as_text(cell);
+    text.replace(|c: char| is_control_or_direction(c) && !c.is_control(), "")
 }

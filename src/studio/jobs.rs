@@ -350,7 +350,10 @@ impl JobRequest {
             return fit_folder(site, name).map(drop);
         }
         check_new_name("name", self.name())?;
-        if !self.replaces() && site.folder.join(self.folder()).exists() {
+        // The studio was killed before it had written what a sweep is to do.
+        let folder = site.folder.join(self.folder());
+        let is_empty = matches!(self, Self::Sweep { .. }) && !folder.join("sweep.toml").exists();
+        if !self.replaces() && !is_empty && folder.exists() {
             return Err(Refusal::new(
                 StatusCode::CONFLICT,
                 format!(

@@ -9,6 +9,7 @@ mod fit;
 mod help_examples;
 mod hostile_files;
 mod hostile_names;
+mod kills;
 mod man;
 mod new;
 mod output_file_errors;

@@ -312,7 +312,7 @@ fn contract_texts_of_strangers_pass_the_escapes() {
         ),
         // The terminal.
         (
-            &["stdout()", "stderr()", "print!(", "println!("],
+            &["io::stdout", "io::stderr", "print!(", "println!("],
             &[
                 "cli/terminal.rs",
                 "cli/commands/simulate.rs",
@@ -322,7 +322,12 @@ fn contract_texts_of_strangers_pass_the_escapes() {
         // Names of files made of other names.
         (
             &["is_ascii_alphanumeric"],
-            &["escape/mod.rs", "present/shot_table_files/source_code.rs"],
+            &[
+                "escape/mod.rs",
+                "present/shot_table_files/source_code.rs",
+                // The name of this machine.
+                "sweep/sweep_folder.rs",
+            ],
         ),
     ];
     let mut found = Vec::new();
@@ -396,7 +401,6 @@ const READS_OF_OTHERS: [(&str, &str); 25] = [
     ("cli/commands/new.rs", "  #"),
     ("cli/commands/team/one_place.rs", "profile.toml"),
     ("cli/measured_shots_flags.rs", "--map"),
-    ("cli/run_folder.rs", "--"),
     ("cli/signals.rs", "SigIgn:"),
     ("cli/terminal.rs", "  "),
     ("cli/terminal.rs", "  --"),

@@ -8,7 +8,7 @@ use bankshot::model::PRESETS;
 use bankshot::probability::{Estimate, Sampler, Silent, monte_carlo};
 use bankshot::shooter::{
     Correlation, Location, Nominal, Profile, ProfileSettings, ReleaseDispersion, ReleaseVariable,
-    Shooter, TableGrid,
+    Shooter,
 };
 use bankshot::units::{DEGREE_RAD, FOOT_M, REV_RAD};
 use rand::rngs::ChaCha12Rng;
@@ -23,7 +23,7 @@ fn scatter(rng: &mut ChaCha12Rng, usual: f64) -> f64 {
     }
 }
 
-/// A shooter somewhere on the court, from a machine to a child, with a search that takes a moment.
+/// A shooter somewhere on the court, from a machine to a child, with the usual search.
 fn random_profile(rng: &mut ChaCha12Rng) -> Option<Profile> {
     let variable = |rng: &mut ChaCha12Rng| ReleaseVariable::ALL[rng.random_range(0..4)];
     let (a, b) = (variable(rng), variable(rng));
@@ -50,12 +50,6 @@ fn random_profile(rng: &mut ChaCha12Rng) -> Option<Profile> {
         },
     });
     settings.physics = PRESETS[rng.random_range(0..PRESETS.len())].physics();
-    settings.grid = TableGrid {
-        speed: 30,
-        pitch: 20,
-        polar: 16,
-        backspin: 5,
-    };
     settings.search.standard_error = Some(0.002);
     let location = Location {
         distance_m: rng.random_range(1.0..9.0),
@@ -195,6 +189,9 @@ fn run(count: usize, seed: u64) {
         compared += check(&profile);
         slowest = slowest.max(start.elapsed());
         profiles += 1;
+        if profiles % 50 == 0 {
+            println!("{profiles} profiles agree");
+        }
     }
     println!(
         "{profiles} profiles, {refused} refused, {compared} best shots; the slowest took {slowest:?}"
@@ -204,7 +201,7 @@ fn run(count: usize, seed: u64) {
 
 #[test]
 fn prop_answers_of_random_shooters_agree() {
-    run(6, 1);
+    run(3, 1);
 }
 
 #[test]

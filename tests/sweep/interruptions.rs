@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Half of the kills come while a thread waits at a random spot and another one computes; the other
 /// half after a random time, which may be before the first spot. The times only vary the moment: a
-/// sweep that ends before its kill is a finished round.
+/// sweep that ends before its kill is a finished round. `BANKSHOT_KILLS` gives another number.
 #[test]
 fn contract_a_hundred_kills_change_no_byte() {
     let test = TestFolder::new();
@@ -19,7 +19,8 @@ fn contract_a_hundred_kills_change_no_byte() {
     let mut random = ChaCha12Rng::seed_from_u64(5);
     let out = test.out("killed");
     let (mut kills, mut rounds, mut resumed) = (0, 0, 0);
-    while kills < 100 {
+    let wanted = std::env::var("BANKSHOT_KILLS").map_or(100, |count| count.parse().unwrap());
+    while kills < wanted {
         let waits = random.random::<bool>();
         let delay_s = if waits { 0.05 } else { 0.5 } * random.random::<f64>();
         let (mut command, file) = test.waiting_command(&out, random.random_range(0..SPOTS));
