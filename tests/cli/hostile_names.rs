@@ -584,7 +584,7 @@ fn measured(names: &[String], seen: &mut Seen) {
                 quoted(name(k)),
                 quoted(name(k % 2)),
                 quoted(name(2)),
-                quoted(name(k)).repeat(1) + &",x".repeat(5)
+                quoted(name(k)) + &",x".repeat(5)
             ),
         };
     }

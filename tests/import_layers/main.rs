@@ -396,7 +396,7 @@ fn contract_every_dependency_is_in_the_notices() {
 
 /// Where a text is looked into by words that this program does not write itself: input of a user,
 /// names of files and columns, messages of libraries, requests, a template, the layout of a terminal.
-const READS_OF_OTHERS: [(&str, &str); 25] = [
+const READS_OF_OTHERS: [(&str, &str); 24] = [
     ("cli/commands/sample_size/tracker.rs", "optical_"),
     ("cli/commands/new.rs", "  #"),
     ("cli/commands/team/one_place.rs", "profile.toml"),
