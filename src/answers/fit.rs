@@ -3,9 +3,9 @@
 use super::json::{Answer, Named, Provenance};
 use super::probability::OverDraws;
 use crate::fitting::{
-    AimPrior, ConstantErrorPrior, FitNote, PopulationPrior, ReleaseDifference, ReliabilityBin,
-    SessionTrend, ShooterFit, Spread, StudentSpread, TrackerNoise, UnseenPrior, UnseenSample,
-    VALUE_NAMES, Wilson,
+    AimPrior, ConstantErrorPrior, FitNote, PopulationPrior, PredictiveCheck, PriorSensitivity,
+    ReleaseDifference, ReliabilityBin, SessionTrend, ShapeScore, ShooterFit, Spread, StudentSpread,
+    TrackerNoise, UnseenPrior, UnseenSample, VALUE_NAMES, Wilson,
 };
 use crate::measured_shots::source::Source;
 use crate::shooter::ReleaseVariable;
@@ -213,10 +213,12 @@ pub struct Difference {
 pub struct SamplerAnswer {
     /// Their number.
     pub draws: usize,
-    /// The greatest potential scale reduction factor.
+    /// The greatest R-hat of normal scores, of values and of their distances from the median.
     pub r_hat: f64,
-    /// The least effective sample size.
-    pub effective_sample_size: f64,
+    /// The least effective sample size of a parameter's middle.
+    pub bulk_effective_sample_size: f64,
+    /// The least of its 5 % and 95 % quantiles.
+    pub tail_effective_sample_size: f64,
     /// How evenly what no sensor sees was sampled.
     pub unseen: Option<UnseenSample>,
 }
@@ -413,6 +415,13 @@ pub struct FitAnswer {
     pub weight_of_the_population: Named<f64>,
     /// What was known before.
     pub prior: PriorAnswer,
+    /// P of the current shot at the first place if a prior were weaker or stronger.
+    pub prior_sensitivity: Vec<PriorSensitivity>,
+    /// Predicted against measured.
+    pub predictive: PredictiveCheck,
+    /// How well shapes of the releases predict shots that were left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shapes: Vec<ShapeScore>,
     /// What the fit was made from.
     pub source: SourceAnswer,
     /// What made the answer.
@@ -464,7 +473,8 @@ impl FitAnswer {
             sampler: SamplerAnswer {
                 draws: posterior.draws.len(),
                 r_hat: posterior.r_hat,
-                effective_sample_size: posterior.effective_sample_size,
+                bulk_effective_sample_size: posterior.bulk_effective_sample_size,
+                tail_effective_sample_size: posterior.tail_effective_sample_size,
                 unseen: posterior.unseen,
             },
             weight_of_the_population: Named(
@@ -473,6 +483,12 @@ impl FitAnswer {
                     .collect(),
             ),
             prior: PriorAnswer::new(&source.prior, &source.unseen),
+            prior_sensitivity: PriorSensitivity::of(
+                &posterior.priors,
+                &fit.probabilities[0].of_draws,
+            ),
+            predictive: fit.predictive.clone(),
+            shapes: fit.shapes.clone(),
             source: source.into(),
             provenance: Provenance {
                 seed: source.seed,

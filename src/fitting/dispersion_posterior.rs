@@ -6,6 +6,7 @@
 //! with the same noise at the same place count through their number, mean and scatter alone, so a
 //! density costs the same for 30 shots and for 3000.
 
+use super::grouped_measurements::measured;
 use super::measured_release::MeasuredRelease;
 use super::prior::{PopulationPrior, Spread};
 use hammer_and_sample::Model;
@@ -47,6 +48,15 @@ pub(super) trait ReleaseModel<const D: usize>: Model<Params = Vec<f64>> + Sync {
     /// normals.
     fn means(&self, point: &[f64], normal: &mut dyn FnMut() -> f64)
     -> Option<Vec<SVector<f64, D>>>;
+
+    /// The logarithm of the density of each shot's measurement, without the constant of the normal
+    /// distribution; `None` where a covariance is not positive definite.
+    fn shot_log_densities(
+        &self,
+        point: &[f64],
+        means: &[SVector<f64, D>],
+        shots: &[MeasuredRelease],
+    ) -> Option<Vec<f64>>;
 }
 
 /// The posterior density.
@@ -94,8 +104,7 @@ impl<const D: usize> DispersionPosterior<D> {
         let mut groups: Vec<NoiseGroup<D>> = Vec::new();
         // One group for each covariance, in the order of the shots.
         for shot in shots {
-            let noise = SMatrix::<f64, D, D>::from_fn(|i, j| shot.noise[(i, j)]);
-            let y = SVector::<f64, D>::from_fn(|i, _| shot.values[i]);
+            let (y, noise) = measured(shot);
             let found = groups
                 .iter_mut()
                 .rev()
@@ -282,7 +291,7 @@ impl<const D: usize> DispersionPosterior<D> {
 /// definite. Each tracked flight has a covariance of its own: so with few divisions and a single
 /// logarithm.
 #[inline]
-fn inverse_and_log_determinant<const D: usize>(
+pub(super) fn inverse_and_log_determinant<const D: usize>(
     covariance: SMatrix<f64, D, D>,
 ) -> Option<(SMatrix<f64, D, D>, f64)> {
     let cholesky = Cholesky::new(covariance)?;
@@ -300,6 +309,15 @@ fn inverse_and_log_determinant<const D: usize>(
         }
     }
     Some((inverse.tr_mul(&inverse), 2.0 * libm::log(diagonal)))
+}
+
+/// The logarithm of a normal density at a deviation from its mean, without its constant.
+pub(super) fn normal_log_density<const D: usize>(
+    deviation: &SVector<f64, D>,
+    covariance: SMatrix<f64, D, D>,
+) -> Option<f64> {
+    let (inverse, log_determinant) = inverse_and_log_determinant(covariance)?;
+    Some(-0.5 * (deviation.dot(&(inverse * deviation)) + log_determinant))
 }
 
 impl<const D: usize> Model for DispersionPosterior<D> {
@@ -341,5 +359,21 @@ impl<const D: usize> ReleaseModel<D> for DispersionPosterior<D> {
             Some(mean + deviation)
         };
         means.into_iter().map(&mut draw).collect()
+    }
+
+    fn shot_log_densities(
+        &self,
+        point: &[f64],
+        means: &[SVector<f64, D>],
+        shots: &[MeasuredRelease],
+    ) -> Option<Vec<f64>> {
+        let dispersion = self.dispersion(point);
+        let of_shot = |shot: &MeasuredRelease| {
+            let (values, noise) = measured(shot);
+            let factor = self.release_factor(&dispersion, shot.place);
+            let deviation = values - means[shot.place];
+            normal_log_density(&deviation, factor * factor.transpose() + noise)
+        };
+        shots.iter().map(of_shot).collect()
     }
 }

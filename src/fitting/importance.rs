@@ -201,42 +201,87 @@ pub(super) fn systematic(weights: &[f64], count: usize, first: f64) -> Vec<usize
     chosen
 }
 
+/// The greatest weights, as a generalised Pareto distribution above a threshold, by the estimate of
+/// Zhang and Stephens (Technometrics 51 (2009) 316).
+struct ParetoTail {
+    threshold: f64,
+    shape: f64,
+    scale: f64,
+    /// How many weights are above the threshold.
+    count: usize,
+}
+
+impl ParetoTail {
+    /// `None` where the greatest weights are all equal.
+    fn of(ascending: &[f64]) -> Option<Self> {
+        let all = ascending.len() as f64;
+        let count = ((0.2 * all).min(3.0 * all.sqrt()) as usize).max(5);
+        let (below, tail) = ascending.split_at(ascending.len() - count);
+        let threshold = below.last().copied().unwrap_or_default();
+        let excess: Vec<f64> = tail.iter().map(|weight| weight - threshold).collect();
+        let (n, most) = (excess.len() as f64, excess[excess.len() - 1]);
+        if !(most > 0.0) {
+            return None;
+        }
+        let quarter = excess[((n / 4.0 + 0.5) as usize).max(1) - 1].max(1e-12 * most);
+        let grid = 30 + n.sqrt() as usize;
+        let shape_of = |theta: f64| excess.iter().map(|x| libm::log1p(-theta * x)).sum::<f64>() / n;
+        let candidates: Vec<(f64, f64)> = (1..=grid)
+            .map(|j| {
+                let theta =
+                    1.0 / most + (1.0 - (grid as f64 / (j as f64 - 0.5)).sqrt()) / (3.0 * quarter);
+                let shape = shape_of(theta);
+                (theta, n * (libm::log(-theta / shape) - shape - 1.0))
+            })
+            .collect();
+        let theta: f64 = candidates
+            .iter()
+            .map(|(theta, own)| {
+                let sum: f64 = candidates
+                    .iter()
+                    .map(|(_, other)| libm::exp(other - own))
+                    .sum();
+                theta / sum
+            })
+            .sum();
+        let shape = shape_of(theta);
+        Some(Self {
+            threshold,
+            // Towards 0.5, as if by ten more weights.
+            shape: (n * shape + 10.0 * 0.5) / (n + 10.0),
+            scale: -shape / theta,
+            count,
+        })
+    }
+
+    fn quantile(&self, p: f64) -> f64 {
+        self.threshold + self.scale * libm::expm1(-self.shape * libm::log1p(-p)) / self.shape
+    }
+}
+
 /// The shape of the tail of weights: above 0.7 a few points decide (Vehtari et al., J. Mach. Learn.
-/// Res. 25 (2024) 72), by the estimate of Zhang and Stephens (Technometrics 51 (2009) 316).
+/// Res. 25 (2024) 72). At least six weights.
 pub(super) fn pareto_shape(weights: &[f64]) -> f64 {
     let mut sorted = weights.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let count = (0.2 * sorted.len() as f64).min(3.0 * (sorted.len() as f64).sqrt()) as usize;
-    let (below, tail) = sorted.split_at(sorted.len() - count.max(5));
-    let threshold = below.last().copied().unwrap_or_default();
-    let excess: Vec<f64> = tail.iter().map(|weight| weight - threshold).collect();
-    let (n, most) = (excess.len() as f64, excess[excess.len() - 1]);
-    if !(most > 0.0) {
-        return 0.0;
+    ParetoTail::of(&sorted).map_or(0.0, |tail| tail.shape)
+}
+
+/// Weights whose greatest are those that their distribution expects in place of the drawn ones, and
+/// the shape of that distribution (Pareto-smoothed importance sampling, as above).
+pub(super) fn pareto_smoothed(mut weights: Vec<f64>) -> (Vec<f64>, f64) {
+    let mut order: Vec<usize> = (0..weights.len()).collect();
+    order.sort_by(|a, b| weights[*a].total_cmp(&weights[*b]));
+    let sorted: Vec<f64> = order.iter().map(|index| weights[*index]).collect();
+    let Some(tail) = ParetoTail::of(&sorted) else {
+        return (weights, 0.0);
+    };
+    let (first, most) = (sorted.len() - tail.count, sorted[sorted.len() - 1]);
+    for (number, index) in order[first..].iter().enumerate() {
+        let p = (number as f64 + 0.5) / tail.count as f64;
+        weights[*index] = tail.quantile(p).min(most);
     }
-    let quarter = excess[((n / 4.0 + 0.5) as usize).max(1) - 1].max(1e-12 * most);
-    let grid = 30 + n.sqrt() as usize;
-    let shape_of = |theta: f64| excess.iter().map(|x| libm::log1p(-theta * x)).sum::<f64>() / n;
-    let candidates: Vec<(f64, f64)> = (1..=grid)
-        .map(|j| {
-            let theta =
-                1.0 / most + (1.0 - (grid as f64 / (j as f64 - 0.5)).sqrt()) / (3.0 * quarter);
-            let shape = shape_of(theta);
-            (theta, n * (libm::log(-theta / shape) - shape - 1.0))
-        })
-        .collect();
-    let theta: f64 = candidates
-        .iter()
-        .map(|(theta, own)| {
-            let sum: f64 = candidates
-                .iter()
-                .map(|(_, other)| libm::exp(other - own))
-                .sum();
-            theta / sum
-        })
-        .sum();
-    // Towards 0.5, as if by ten more weights.
-    (n * shape_of(theta) + 10.0 * 0.5) / (n + 10.0)
+    (weights, tail.shape)
 }
 
 #[cfg(test)]

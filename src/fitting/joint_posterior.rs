@@ -20,6 +20,7 @@ use super::makes_likelihood::{MakesLikelihood, UnknownScales, Unseen};
 use super::measured_release::{MeasuredRelease, Place, Values};
 use super::posterior::{Draw, FitOptions, Posterior, SpinSource};
 use super::prior::{AimPrior, UnseenPrior};
+use super::prior_sensitivity::{PriorOf, PriorOfDraws, log_prior_of_scatter, log_student};
 use crate::model::Physics;
 use crate::shooter::{Profile, ProfileError};
 use nalgebra::Vector3;
@@ -70,7 +71,9 @@ struct Model<'a> {
     corrections: Vec<Correction>,
     makes: MakesLikelihood,
     aims: Vec<Option<BestAims>>,
-    /// Values of a release whose aim is known by the flights.
+    /// Values of a release that were measured.
+    measured_values: usize,
+    /// Those of them whose aim is near that of the best shot.
     aim_values: usize,
 }
 
@@ -188,7 +191,7 @@ impl Model<'_> {
         flights: &FlightsOf<'_>,
         profiles: &[Profile],
         options: &FitOptions,
-    ) -> Vec<Draw> {
+    ) -> (Vec<Draw>, Vec<PriorOfDraws>) {
         let typical = flights.posterior.typical();
         let promised = promised_makes(&flights.posterior, profiles);
         let draws = in_order(&flights.posterior.draws, &promised);
@@ -228,9 +231,44 @@ impl Model<'_> {
             };
             let place = systematic(&weights, 1, along)[0];
             let draw = draws[number % TURNS + TURNS * place];
-            self.moved(draw, &typical, unseen).rounded()
+            let priors = self.log_priors(draw, unseen, options);
+            (self.moved(draw, &typical, unseen).rounded(), priors)
         };
-        (0..count).into_par_iter().map(draw).collect()
+        let (draws, priors): (Vec<Draw>, Vec<_>) = (0..count).into_par_iter().map(draw).unzip();
+        let of_kind = |kind: usize| PriorOfDraws {
+            of: priors[0][kind].0,
+            log_densities: priors.iter().map(|of_draw| of_draw[kind].1).collect(),
+        };
+        let priors = (0..priors[0].len()).map(of_kind).collect();
+        (draws, priors)
+    }
+
+    /// The logarithms of the priors of a draw of the flights with what no sensor sees.
+    fn log_priors(
+        &self,
+        draw: &Draw,
+        unseen: &Unseen,
+        options: &FitOptions,
+    ) -> Vec<(PriorOf, f64)> {
+        let scatter = log_prior_of_scatter(draw, &options.prior, self.measured_values);
+        let mut priors = vec![(PriorOf::Scatter, scatter)];
+        if let Some(prior) = &self.prior.aim {
+            let density = self.aims(prior, draw, &self.changes(unseen));
+            priors.push((PriorOf::Aim, libm::log(density.max(f64::MIN_POSITIVE))));
+        }
+        if let Some((prior, ring)) = self.prior.ring.zip(unseen.ring) {
+            let t = (ring - prior.middle) / prior.scale;
+            priors.push((PriorOf::Ring, log_student(&[t])));
+        }
+        if self.unknowns.contains(&Unknown::Backspin) {
+            let z = unseen.more_backspin / self.backspin_sd;
+            priors.push((PriorOf::Backspin, -0.5 * z * z));
+        }
+        if self.unknowns.contains(&Unknown::ConstantError(0)) {
+            let errors = log_student(unseen.constant_errors.as_slice());
+            priors.push((PriorOf::ConstantError, errors));
+        }
+        priors
     }
 }
 
@@ -306,13 +344,14 @@ pub(super) fn with_unseen(
             weights: vec![1.0],
         },
     };
-    let joint = model.joint_draws(&sampled, flights, &profiles, options);
+    let (joint, priors) = model.joint_draws(&sampled, flights, &profiles, options);
     Ok(Posterior {
         unseen: Some(UnseenSample {
             effective_sample_size: effective_size(&sampled.weights),
             pareto_k: pareto_shape(&sampled.weights),
         }),
         draws: joint,
+        priors,
         ..flights.posterior.clone()
     })
 }
@@ -369,6 +408,7 @@ fn model<'a>(
             Some(_) => (0..profiles.len()).map(near).collect(),
             None => Vec::new(),
         },
+        measured_values: measured,
         aim_values: measured.min(3),
     }
 }

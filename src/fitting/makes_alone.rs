@@ -15,6 +15,7 @@ use super::landing::{CENTRE_DEPTH_M, Landing, release_of_landing};
 use super::measured_release::{MeasuredRelease, Place, Values, nominal_of};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource};
 use super::prior::{AimPrior, UnseenPrior};
+use super::prior_sensitivity::{PriorOf, PriorOfDraws};
 use crate::dynamics::BatchWorkspace;
 use crate::math::normal_distribution::quantile;
 use crate::math::sobol::{ScrambleKey, Sobol};
@@ -141,20 +142,23 @@ pub(super) fn posterior_of_makes(
     random.set_stream(u64::MAX - 3);
     let first: f64 = random.random();
     let chosen = super::importance::systematic(&weights, options.draws, first);
-    let draws = chosen.into_iter().map(|index| {
+    let draws = chosen.iter().map(|&index| {
         let tried = counts.tried(&points[index]);
         tried.draw(&mut random).rounded()
     });
+    let effective = effective_size(&weights);
     Ok(Posterior {
         draws: draws.collect(),
         spin: SpinSource::NothingMeasured,
         r_hat: 1.0,
-        effective_sample_size: effective_size(&weights),
+        bulk_effective_sample_size: effective,
+        tail_effective_sample_size: effective,
+        priors: counts.priors(chosen.iter().map(|&index| &points[index])),
         prior_weights: [1.0; 4],
         growth_terms: usize::from(places.len() > 1),
         shots: shots.len(),
         unseen: Some(UnseenSample {
-            effective_sample_size: effective_size(&weights),
+            effective_sample_size: effective,
             pareto_k: pareto_shape(&weights),
         }),
     })
@@ -214,6 +218,24 @@ impl Counts<'_> {
             greatest + libm::log(sum)
         });
         prior + of_others + of_places.sum::<f64>()
+    }
+
+    /// The priors at points. The aims are drawn from theirs.
+    fn priors<'a>(&self, points: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Vec<PriorOfDraws> {
+        let normal = |x: f64| -0.5 * x * x;
+        let each = |of: PriorOf, log_density: &dyn Fn(&[f64]) -> f64| PriorOfDraws {
+            of,
+            log_densities: points.clone().map(|point| log_density(point)).collect(),
+        };
+        let scatter = |point: &[f64]| point[..3].iter().map(|x| normal(*x)).sum();
+        let mut priors = vec![each(PriorOf::Scatter, &scatter)];
+        if self.unseen.ring.is_some() {
+            priors.push(each(PriorOf::Ring, &|point| student_log_density(point[3])));
+        }
+        if self.options.spin != SpinSource::Given {
+            priors.push(each(PriorOf::Backspin, &|point| normal(point[4])));
+        }
+        priors
     }
 
     /// The shooter of a point; the same for the same point.

@@ -25,6 +25,7 @@ mod fit_checks;
 mod fit_note;
 mod fitted_profile;
 mod flight_fit;
+mod grouped_measurements;
 mod importance;
 mod interval;
 mod joint_posterior;
@@ -35,11 +36,15 @@ mod measured_release;
 mod noise_of_tracks;
 mod other_release_height;
 mod posterior;
+mod predictive_check;
 mod prior;
+mod prior_sensitivity;
 mod session_comparison;
 mod session_trends;
+mod shape_comparison;
 mod shooter_fit;
 mod shots_under_physics;
+mod skew_posterior;
 mod student_posterior;
 mod test_design;
 mod tracked_flight_noise;
@@ -79,15 +84,18 @@ pub use measured_release::{
 pub use noise_of_tracks::noise_of_tracks;
 pub use other_release_height::values_at_height;
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
+pub use predictive_check::{PredictedBin, PredictiveCheck, predictive_check};
 pub use prior::{
     AimPrior, ConstantErrorPrior, PopulationPrior, RINGS_OF_GYMS, Spread, StudentSpread,
     UnseenPrior,
 };
+pub use prior_sensitivity::{PriorOf, PriorOfDraws, PriorSensitivity};
 pub use session_comparison::{
     DAILY_FORM, POWER, ProbabilityChange, SessionComparison, TWO_SIDED_95, compare_probabilities,
     compare_sessions, probability_change, share_unseen,
 };
 pub use session_trends::{SessionTrend, session_names, trends};
+pub use shape_comparison::{Shape, ShapeScore, compare_shapes};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter, fit_shooters};
 pub use shots_under_physics::{FittedShots, Measured, ShotsUnderPhysics};
 pub use test_design::{DesignRow, SessionError, design, simulated_test};

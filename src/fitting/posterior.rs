@@ -1,11 +1,12 @@
 //! Draws of a shooter's aim and dispersion.
 
-use super::chain_diagnostics::ParameterChains;
+use super::chain_diagnostics::{Convergence, ParameterChains};
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::importance::UnseenSample;
 use super::interval::Interval;
 use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
 use super::prior::{PopulationPrior, Spread};
+use super::prior_sensitivity::PriorOfDraws;
 use super::student_posterior::StudentPosterior;
 use crate::math::normal_distribution::quantile;
 use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};
@@ -310,10 +311,12 @@ pub struct Posterior {
     pub draws: Vec<Draw>,
     /// Where the backspin comes from.
     pub spin: SpinSource,
-    /// The greatest split R-hat of the parameters.
+    /// The greatest R-hat of the parameters.
     pub r_hat: f64,
-    /// The least effective sample size of the parameters.
-    pub effective_sample_size: f64,
+    /// The least effective sample size of the parameters' middles.
+    pub bulk_effective_sample_size: f64,
+    /// The least of their tails.
+    pub tail_effective_sample_size: f64,
     /// The share of the information on each standard deviation that comes from the population.
     pub prior_weights: Values,
     /// Terms of the growth of the speed's scatter that the places tell apart: 0, 1 (c11) or 2 (c11,
@@ -323,6 +326,8 @@ pub struct Posterior {
     pub shots: usize,
     /// How evenly what no sensor sees was sampled; `None` of flights alone.
     pub unseen: Option<UnseenSample>,
+    /// The priors at the draws; none of flights alone, and of a fit that was read from its file.
+    pub priors: Vec<PriorOfDraws>,
 }
 
 impl Posterior {
@@ -466,7 +471,7 @@ fn fit_values<const D: usize>(
 }
 
 /// A standard normal number.
-fn normal(random: &mut impl Rng) -> f64 {
+pub(super) fn standard_normal(random: &mut impl Rng) -> f64 {
     loop {
         let uniform: f64 = random.random();
         if uniform > 0.0 {
@@ -475,11 +480,53 @@ fn normal(random: &mut impl Rng) -> f64 {
     }
 }
 
-fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
+/// Chains that have converged.
+pub(super) struct Sampled {
+    chains: Vec<Vec<Vec<f64>>>,
+    walkers: usize,
+    convergence: Convergence,
+}
+
+impl Sampled {
+    /// All points, walk by walk, so that evenly spaced ones come from every walker.
+    pub(super) fn points(&self) -> Vec<&Vec<f64>> {
+        walks(&self.chains, self.walkers).collect()
+    }
+
+    fn convergence_of(chains: &[Vec<Vec<f64>>], walkers: usize, steps: usize) -> Convergence {
+        let of_parameter = |parameter: usize| {
+            ParameterChains {
+                values: walks(chains, walkers)
+                    .map(|point| point[parameter])
+                    .collect(),
+                chains: CHAINS,
+                steps,
+            }
+            .convergence()
+        };
+        let of_each: Vec<Convergence> = (0..chains[0][0].len())
+            .into_par_iter()
+            .map(of_parameter)
+            .collect();
+        of_each
+            .into_iter()
+            .fold(Convergence::PERFECT, Convergence::worse)
+    }
+}
+
+/// The points of chains, walk by walk.
+fn walks(chains: &[Vec<Vec<f64>>], walkers: usize) -> impl Iterator<Item = &Vec<f64>> {
+    chains.iter().flat_map(move |chain| {
+        (0..walkers).flat_map(move |w| chain.iter().skip(w).step_by(walkers))
+    })
+}
+
+/// Samples the density of a model until its effective sample sizes are great enough.
+pub(super) fn sampled<const D: usize, M: ReleaseModel<D>>(
     model: &M,
     shots: &[MeasuredRelease],
-    options: &FitOptions,
-) -> Result<Posterior, FitError> {
+    (seed, least_effective_size): (u64, f64),
+) -> Result<Sampled, FitError> {
     let priors = model.priors();
     let dimension = priors.len();
     let walkers = LEAST_WALKERS.max(2 * dimension).next_multiple_of(2);
@@ -491,11 +538,11 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
             .into_par_iter()
             .map(|chain| {
                 let walker = |number: usize| {
-                    let mut random = ChaCha12Rng::seed_from_u64(options.seed);
+                    let mut random = ChaCha12Rng::seed_from_u64(seed);
                     random.set_stream((chain * walkers + number) as u64);
                     let start = starts
                         .iter()
-                        .map(|start| start.mean + start.sd * normal(&mut random))
+                        .map(|start| start.mean + start.sd * standard_normal(&mut random))
                         .collect::<Vec<f64>>();
                     (start, random)
                 };
@@ -510,38 +557,21 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
                 chain
             })
             .collect();
-        // Walk by walk, so that evenly spaced points come from every walker.
-        let points: Vec<&Vec<f64>> = chains
-            .iter()
-            .flat_map(|chain| {
-                (0..walkers).flat_map(move |walker| chain.iter().skip(walker).step_by(walkers))
-            })
-            .collect();
-        let (mut r_hat, mut effective) = (1.0_f64, f64::INFINITY);
-        for parameter in 0..dimension {
-            let of_parameter = ParameterChains {
-                values: points.iter().map(|point| point[parameter]).collect(),
-                chains: CHAINS,
-                steps,
-            };
-            r_hat = r_hat.max(of_parameter.split_r_hat());
-            effective = effective.min(of_parameter.effective_sample_size());
-        }
+        let convergence = Sampled::convergence_of(&chains, walkers, steps);
+        let Convergence {
+            r_hat,
+            bulk_size,
+            tail_size,
+        } = convergence;
         if !r_hat.is_finite() {
             return Err(FitError::NoScatter);
         }
-        if r_hat <= LARGEST_R_HAT && effective >= LEAST_EFFECTIVE_SIZE {
-            let draws = draws_of(model, &points, shots, options)?;
-            let weights = prior_weights::<D>(&points, &priors);
-            return Ok(Posterior {
-                draws,
-                spin: options.spin,
-                r_hat,
-                effective_sample_size: effective,
-                prior_weights: weights,
-                growth_terms: model.normal().growth_terms,
-                shots: shots.len(),
-                unseen: None,
+        let effective = bulk_size.min(tail_size);
+        if r_hat <= LARGEST_R_HAT && effective >= least_effective_size {
+            return Ok(Sampled {
+                chains,
+                walkers,
+                convergence,
             });
         }
         if steps >= FIRST_STEPS << DOUBLINGS {
@@ -550,6 +580,27 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
         steps *= 2;
     }
     unreachable!("the last pass returns")
+}
+
+fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
+    model: &M,
+    shots: &[MeasuredRelease],
+    options: &FitOptions,
+) -> Result<Posterior, FitError> {
+    let sampled = sampled(model, shots, (options.seed, LEAST_EFFECTIVE_SIZE))?;
+    let points = sampled.points();
+    Ok(Posterior {
+        draws: draws_of(model, &points, shots, options)?,
+        spin: options.spin,
+        r_hat: sampled.convergence.r_hat,
+        bulk_effective_sample_size: sampled.convergence.bulk_size,
+        tail_effective_sample_size: sampled.convergence.tail_size,
+        prior_weights: prior_weights::<D>(&points, &model.priors()),
+        growth_terms: model.normal().growth_terms,
+        shots: shots.len(),
+        unseen: None,
+        priors: Vec::new(),
+    })
 }
 
 /// About the standard deviations of the shots, and the prior for the rest.
@@ -628,12 +679,12 @@ fn draws_of<const D: usize>(
             let point = points[k * points.len() / options.draws];
             let dispersion = model.normal().dispersion(point);
             let means = model
-                .means(point, &mut || normal(&mut random))
+                .means(point, &mut || standard_normal(&mut random))
                 .ok_or(FitError::NoScatter)?;
-            let unseen = [normal(&mut random), normal(&mut random)];
+            let unseen = [standard_normal(&mut random), standard_normal(&mut random)];
             let mut draw = draw_of(model.normal(), &dispersion, &means, unseen, options);
             if options.spin == SpinSource::AssumedWithDirection {
-                let unseen = [normal(&mut random), normal(&mut random)];
+                let unseen = [standard_normal(&mut random), standard_normal(&mut random)];
                 draw = with_direction(&draw, unseen, &direction, &options.prior);
             }
             Ok(draw.with_tail_weight(model.tail_weight(point)).rounded())

@@ -12,8 +12,10 @@ use super::joint_posterior::{FlightsOf, with_unseen};
 use super::makes_alone::{CountsError, posterior_of_makes};
 use super::measured_release::{MeasuredRelease, Place, PlaceScatter, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
+use super::predictive_check::PredictiveCheck;
 use super::prior::{Spread, UnseenPrior};
 use super::session_trends::{SessionTrend, trends};
+use super::shape_comparison::ShapeScore;
 use crate::model::{Physics, SolidId};
 use crate::shooter::{Profile, ProfileError};
 use rayon::prelude::*;
@@ -56,6 +58,10 @@ pub struct ShooterFit {
     pub trends: Vec<SessionTrend>,
     /// What should be said.
     pub notes: Vec<FitNote>,
+    /// Predicted against measured; empty until it was asked for.
+    pub predictive: PredictiveCheck,
+    /// How well shapes of the releases predict; empty until it was asked for.
+    pub shapes: Vec<ShapeScore>,
 }
 
 /// Why a shooter was not fitted.
@@ -313,5 +319,7 @@ fn finish(
         shape,
         trends,
         notes,
+        predictive: PredictiveCheck::default(),
+        shapes: Vec::new(),
     })
 }

@@ -7,7 +7,10 @@
 //! a measurement is normal, and `w` is integrated out by the trapezoidal rule in its logarithm. The
 //! means have no closed form here: they are parameters.
 
-use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
+use super::dispersion_posterior::{
+    Dispersion, DispersionPosterior, ReleaseModel, normal_log_density,
+};
+use super::grouped_measurements::{GroupedMeasurements, measured};
 use super::measured_release::MeasuredRelease;
 use super::prior::{PopulationPrior, Spread};
 use crate::math::exponential::exponential;
@@ -16,7 +19,7 @@ use crate::math::real::{Real, SimdReal};
 use crate::math::simd::F64x8;
 use fearless_simd::{Level, Simd};
 use hammer_and_sample::Model;
-use nalgebra::{Cholesky, SMatrix, SVector};
+use nalgebra::{Cholesky, SVector};
 
 /// The heaviest tails, three degrees of freedom; the prior of the tail weight is uniform up to it.
 pub(super) const MAX_TAIL_WEIGHT: f64 = 1.0 / 3.0;
@@ -26,20 +29,10 @@ const NODES: usize = 16;
 const FIRST_NODE: f64 = -6.3;
 const NODE_STEP: f64 = 0.7;
 
-/// Measurements at one place with one covariance of their errors.
-struct NoiseGroup<const D: usize> {
-    place: usize,
-    noise: SMatrix<f64, D, D>,
-    values: Vec<SVector<f64, D>>,
-}
-
 /// The posterior density of dispersion, tail weight and means.
 pub(super) struct StudentPosterior<const D: usize> {
     normal: DispersionPosterior<D>,
-    groups: Vec<NoiseGroup<D>>,
-    /// Of each place the means of the measurements and their standard errors, the unit of the
-    /// parameters.
-    means: Vec<[Spread; D]>,
+    measurements: GroupedMeasurements<D>,
     level: Level,
 }
 
@@ -132,37 +125,9 @@ impl<const D: usize> DensitiesAtNodes<D> {
 
 impl<const D: usize> StudentPosterior<D> {
     pub(super) fn new(shots: &[MeasuredRelease], places: usize, prior: PopulationPrior) -> Self {
-        let mut groups: Vec<NoiseGroup<D>> = Vec::new();
-        for shot in shots {
-            let noise = SMatrix::<f64, D, D>::from_fn(|i, j| shot.noise[(i, j)]);
-            let y = SVector::<f64, D>::from_fn(|i, _| shot.values[i]);
-            let mut latest = groups.iter_mut().rev().take(64);
-            match latest.find(|group| group.place == shot.place && group.noise == noise) {
-                Some(group) => group.values.push(y),
-                None => groups.push(NoiseGroup {
-                    place: shot.place,
-                    noise,
-                    values: vec![y],
-                }),
-            }
-        }
-        let mean_of = |place: usize, i: usize| {
-            let of_place = || shots.iter().filter(|shot| shot.place == place);
-            let count = of_place().count() as f64;
-            let mean = of_place().map(|shot| shot.values[i]).sum::<f64>() / count;
-            let deviation = |shot: &MeasuredRelease| shot.values[i] - mean;
-            let squares: f64 = of_place().map(|s| deviation(s) * deviation(s)).sum();
-            Spread {
-                mean,
-                sd: (squares / (count - 1.0).max(1.0) / count).sqrt(),
-            }
-        };
         Self {
             normal: DispersionPosterior::new(shots, places, prior),
-            groups,
-            means: (0..places)
-                .map(|place| std::array::from_fn(|i| mean_of(place, i)))
-                .collect(),
+            measurements: GroupedMeasurements::new(shots, places),
             level: Level::new(),
         }
     }
@@ -171,19 +136,16 @@ impl<const D: usize> StudentPosterior<D> {
         MAX_TAIL_WEIGHT * cdf(point[self.normal.dimension()])
     }
 
-    fn mean(&self, point: &[f64], place: usize) -> SVector<f64, D> {
-        let first = self.normal.dimension() + 1 + place * D;
-        SVector::from_fn(|i, _| {
-            let spread = self.means[place][i];
-            spread.mean + spread.sd * point[first + i]
-        })
+    /// The place of the first mean in a point.
+    fn first_mean(&self) -> usize {
+        self.normal.dimension() + 1
     }
 
     fn log_likelihood(&self, point: &[f64], dispersion: &Dispersion<D>) -> Option<f64> {
         let tail_weight = self.tail(point);
         let nodes = scale_nodes(tail_weight);
         let mut sum = 0.0;
-        for group in &self.groups {
+        for group in &self.measurements.groups {
             let factor = self.normal.release_factor(dispersion, group.place);
             let scale = factor * factor.transpose() * (1.0 - 2.0 * tail_weight);
             let mut at_nodes = DensitiesAtNodes::<D> {
@@ -202,7 +164,9 @@ impl<const D: usize> StudentPosterior<D> {
                     }
                 }
             }
-            let mean = self.mean(point, group.place);
+            let mean = self
+                .measurements
+                .mean(point, self.first_mean(), group.place);
             sum += fearless_simd::dispatch!(
                 self.level,
                 simd => at_nodes.log_likelihood(simd, &group.values, &mean)
@@ -235,11 +199,7 @@ impl<const D: usize> ReleaseModel<D> for StudentPosterior<D> {
     fn priors(&self) -> Vec<Spread> {
         let mut priors = self.normal.priors();
         priors.push(Spread { mean: 0.0, sd: 1.0 });
-        let flat = Spread {
-            mean: 0.0,
-            sd: f64::INFINITY,
-        };
-        priors.resize(priors.len() + D * self.means.len(), flat);
+        self.measurements.add_priors(&mut priors);
         priors
     }
 
@@ -252,8 +212,34 @@ impl<const D: usize> ReleaseModel<D> for StudentPosterior<D> {
         point: &[f64],
         _normal: &mut dyn FnMut() -> f64,
     ) -> Option<Vec<SVector<f64, D>>> {
-        let places = 0..self.means.len();
-        Some(places.map(|place| self.mean(point, place)).collect())
+        Some(self.measurements.all_means(point, self.first_mean()))
+    }
+
+    fn shot_log_densities(
+        &self,
+        point: &[f64],
+        means: &[SVector<f64, D>],
+        shots: &[MeasuredRelease],
+    ) -> Option<Vec<f64>> {
+        let (dispersion, tail_weight) = (self.normal.dispersion(point), self.tail(point));
+        let nodes = scale_nodes(tail_weight);
+        let of_shot = |shot: &MeasuredRelease| {
+            let (values, noise) = measured(shot);
+            let factor = self.normal.release_factor(&dispersion, shot.place);
+            let scale = factor * factor.transpose() * (1.0 - 2.0 * tail_weight);
+            let deviation = values - means[shot.place];
+            let of_nodes = nodes.map(|(inverse_w, log_probability)| {
+                let density = normal_log_density(&deviation, scale * inverse_w + noise)?;
+                Some(log_probability + density)
+            });
+            let greatest = of_nodes.iter().flatten().copied();
+            let greatest = greatest.fold(f64::NEG_INFINITY, f64::max);
+            let sum = of_nodes
+                .iter()
+                .try_fold(0.0, |sum, log| Some(sum + libm::exp((*log)? - greatest)))?;
+            Some(greatest + libm::log(sum))
+        };
+        shots.iter().map(of_shot).collect()
     }
 }
 

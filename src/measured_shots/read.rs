@@ -319,14 +319,16 @@ fn release_differences(
                     Some(stated - shot.values[value])
                 })
                 .collect();
-            let count = differences.len() as f64;
-            let summary = Interval::of(differences);
-            (count >= LEAST_SHOTS as f64).then(|| ReleaseDifference {
-                column: reader.columns.name(column.index).to_owned(),
-                value,
-                shots: count as usize,
-                mean: summary.mean,
-                standard_error: summary.sd / count.sqrt(),
+            let shots = differences.len();
+            (shots >= LEAST_SHOTS).then(|| {
+                let summary = Interval::of(differences);
+                ReleaseDifference {
+                    column: reader.columns.name(column.index).to_owned(),
+                    value,
+                    shots,
+                    mean: summary.mean,
+                    standard_error: summary.sd / (shots as f64).sqrt(),
+                }
             })
         })
         .collect()

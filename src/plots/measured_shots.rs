@@ -3,8 +3,8 @@
 use super::axes::Axes;
 use super::svg::{Anchor, FAINT, INK, Plot, Svg, shortened};
 use crate::fitting::{
-    CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, ShooterFit, SpinSource, Values, landing_of,
-    nominal_of, release_of_landing, session_names,
+    CENTRE_DEPTH_M, Interval, Landing, MeasuredRelease, PredictedBin, ShooterFit, SpinSource,
+    Values, landing_of, nominal_of, release_of_landing, session_names,
 };
 use crate::units::{DEGREE_RAD, INCH_M, UnitSystem};
 use rayon::prelude::*;
@@ -47,6 +47,9 @@ pub fn all(
     }
     if !fit.makes.bins.is_empty() {
         plots.push(reliability(fit));
+    }
+    if fit.predictive.bins().next().is_some() {
+        plots.push(predicted(fit, units));
     }
     plots.extend([drift(fit, shots, sessions, units), intervals(fit, units)]);
     plots
@@ -607,4 +610,101 @@ fn reliability(fit: &ShooterFit) -> Plot {
         "Points: shots of similar chance, with their number. On the dashed line: as predicted.",
     );
     named(fit, "reliability", "predicted against observed", svg)
+}
+
+/// What the fit predicts of shots like these, and what was measured.
+fn predicted(fit: &ShooterFit, units: UnitSystem) -> Plot {
+    let (short, inch) = units.short_length();
+    let check = &fit.predictive;
+    let depth = format!("depth from the front of the ring ({short})");
+    let right = format!("left and right of the line ({short})");
+    let panels = [
+        (&check.depth, "Shots by depth", &depth, "shots", 1.0),
+        (&check.left_right, "Shots by side", &right, "shots", 1.0),
+        (
+            &check.makes_by_depth,
+            "Makes by depth",
+            &depth,
+            "went in (%)",
+            100.0,
+        ),
+    ];
+    let panels: Vec<_> = panels
+        .into_iter()
+        .filter(|(bins, ..)| !bins.is_empty())
+        .collect();
+    let mut svg = Svg::new(40.0 + 360.0 * panels.len() as f64, 430.0);
+    let what = "Predicted by the fit against measured";
+    svg.heading((20.0, 26.0), 16.0, Anchor::Start, what);
+    for (number, (bins, title, x_label, y_label, unit)) in panels.into_iter().enumerate() {
+        // An open bin is as wide as its neighbour.
+        let inner: Vec<f64> = bins
+            .iter()
+            .filter_map(|bin| bin.below_short_m)
+            .map(|edge| edge / inch)
+            .collect();
+        let width = match inner[..] {
+            [first, second, ..] => second - first,
+            _ => 1.0,
+        };
+        let ends = |bin: &PredictedBin| {
+            let low = bin.above_short_m.map(|edge| edge / inch);
+            let high = bin.below_short_m.map(|edge| edge / inch);
+            let (first, last) = (low.or(high), high.or(low));
+            (
+                low.or(first.map(|edge| edge - width)).unwrap_or(0.0),
+                high.or(last.map(|edge| edge + width)).unwrap_or(1.0),
+            )
+        };
+        let lows = bins.iter().map(|bin| ends(bin).0);
+        let highs = bins.iter().map(|bin| ends(bin).1);
+        let greatest = bins.iter().map(|bin| bin.high.max(bin.seen));
+        let axes = Axes {
+            corner: (70.0 + 360.0 * number as f64, 70.0),
+            size: (280.0, 270.0),
+            x: (
+                lows.fold(f64::INFINITY, f64::min),
+                highs.fold(f64::NEG_INFINITY, f64::max),
+            ),
+            y: (
+                0.0,
+                match unit {
+                    100.0 => 100.0,
+                    _ => 1.08 * greatest.fold(1.0, f64::max),
+                },
+            ),
+        };
+        axes.draw_grid(&mut svg);
+        for bin in bins {
+            let (low, high) = ends(bin);
+            let at = |x: f64, y: f64| axes.pixel((x, unit * y));
+            let corners = [
+                at(low, bin.low),
+                at(high, bin.low),
+                at(high, bin.high),
+                at(low, bin.high),
+            ];
+            svg.polyline(
+                corners,
+                &format!("stroke=\"none\" fill=\"{MADE}\" fill-opacity=\"0.22\""),
+            );
+            svg.polyline(
+                [at(low, bin.predicted), at(high, bin.predicted)],
+                &format!("stroke=\"{MADE}\" stroke-width=\"2\" fill=\"none\""),
+            );
+            let style = format!("fill=\"{INK}\"");
+            svg.circle(at(0.5 * (low + high), bin.seen), 4.0, &style);
+        }
+        axes.draw(&mut svg, title, x_label, y_label);
+    }
+    svg.footnote(
+        (70.0, 415.0),
+        "Points: measured. Lines and bands: the same shots simulated from the fit, mean and nine in ten. The outer bins are open.",
+    );
+    named(
+        fit,
+        "predicted",
+        "predicted by the fit against measured",
+        svg,
+    )
 }

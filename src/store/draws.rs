@@ -196,10 +196,12 @@ pub fn read_draws(file: File, spin: SpinSource, shots: usize) -> Result<Posterio
         draws,
         spin,
         r_hat: 1.0,
-        effective_sample_size: f64::NAN,
+        bulk_effective_sample_size: f64::NAN,
+        tail_effective_sample_size: f64::NAN,
         prior_weights: [f64::NAN; 4],
         growth_terms: 0,
         shots,
         unseen: None,
+        priors: Vec::new(),
     })
 }

@@ -545,6 +545,31 @@ fn contract_foreign_files_are_named() {
     is_refused("many.csv", many.as_bytes(), &AT_THE_LINE, &["and 280 more"]);
 }
 
+/// A column of releases beside landings may hold no number at all.
+#[test]
+fn contract_a_speed_without_numbers_says_nothing_of_the_landings() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shots.csv");
+    let header = "shot,entry_angle_deg,depth_in,left_right_in,speed_ft_s,distance_ft,made";
+    let text = table(header, |number, s| {
+        let [entry, depth, right] = [s.entry_deg, s.depth_in, s.right_in];
+        format!(
+            "{number},{entry},{depth},{right},-,13.75,{}",
+            u8::from(s.made)
+        )
+    });
+    fs::write(&path, text).unwrap();
+    let fitted = bankshot()
+        .arg("fit")
+        .arg(&path)
+        .args(["--release-height", "7 ft", "--output"])
+        .arg(folder.path().join("fit"))
+        .output()
+        .unwrap();
+    let words = String::from_utf8_lossy(&fitted.stderr);
+    assert_eq!(fitted.status.code(), Some(0), "{words}");
+}
+
 /// Row 12: frames in which the ball was not seen are dropped, not the shot. Row 17: the reasons of
 /// rows that were kept out, with their counts.
 #[test]

@@ -684,7 +684,7 @@ fn campaign_design_agrees_with_repeated_tests() {
 }
 
 /// Every value that `compare-sessions` looks at, of two posteriors with their P.
-fn session_changes(
+pub(super) fn session_changes(
     posteriors: [&Posterior; 2],
     probabilities: [&DrawProbabilities; 2],
     shots: usize,

@@ -29,13 +29,13 @@ fn normal(random: &mut ChaCha12Rng) -> f64 {
     quantile(random.random::<f64>().max(1e-300))
 }
 
-fn physics(ring: f64) -> Physics {
+pub(super) fn physics(ring: f64) -> Physics {
     let mut physics = Preset::named("ncaa").unwrap().physics();
     physics.set_restitution_on(SolidId::Ring, ring).unwrap();
     physics
 }
 
-fn free_throw() -> Place {
+pub(super) fn free_throw() -> Place {
     Place {
         location: Location {
             distance_m: 13.75 * FOOT_M,
@@ -47,7 +47,7 @@ fn free_throw() -> Place {
 
 /// How the shots of a cell come about.
 #[derive(Clone, Copy, Debug)]
-enum Releases {
+pub(super) enum Releases {
     Normal,
     /// Student's t with these degrees of freedom.
     Student(f64),
@@ -63,25 +63,25 @@ enum Releases {
 
 /// A cell of the campaign.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
-    name: &'static str,
-    shots: usize,
+pub(super) struct Cell {
+    pub(super) name: &'static str,
+    pub(super) shots: usize,
     /// Standard deviations of the aims about the best shot: speed (ft/s), pitch, direction (deg).
-    aims: [f64; 3],
-    releases: Releases,
+    pub(super) aims: [f64; 3],
+    pub(super) releases: Releases,
     /// The ring; drawn from those of gyms where there is none.
-    ring: Option<f64>,
+    pub(super) ring: Option<f64>,
     /// The sensor reads too high by: depth, right (in), entry angle (deg).
-    constant: [f64; 3],
+    pub(super) constant: [f64; 3],
     /// The noise is so many times what the fit is told.
-    noise_factor: f64,
+    pub(super) noise_factor: f64,
     /// Whether the file has whole inches and degrees.
-    rounded: bool,
+    pub(super) rounded: bool,
     /// So many rows are off by so many standard deviations.
-    wrong_rows: (f64, f64),
+    pub(super) wrong_rows: (f64, f64),
 }
 
-const BASELINE: Cell = Cell {
+pub(super) const BASELINE: Cell = Cell {
     name: "baseline",
     shots: 50,
     aims: [0.2, 1.5, 0.5],
@@ -92,7 +92,7 @@ const BASELINE: Cell = Cell {
     rounded: false,
     wrong_rows: (0.0, 0.0),
 };
-const REALISTIC: [f64; 3] = [0.08, 2.0, 0.4];
+pub(super) const REALISTIC: [f64; 3] = [0.08, 2.0, 0.4];
 
 fn cells() -> Vec<Cell> {
     let cell = |name, change: &dyn Fn(&mut Cell)| {
@@ -145,14 +145,15 @@ fn cells() -> Vec<Cell> {
 }
 
 /// A shooter, and the gym.
-struct World {
-    truth: Draw,
+#[derive(Clone)]
+pub(super) struct World {
+    pub(super) truth: Draw,
     profile: Profile,
-    ring: f64,
+    pub(super) ring: f64,
 }
 
 impl World {
-    fn new(cell: &Cell, random: &mut ChaCha12Rng) -> Self {
+    pub(super) fn new(cell: &Cell, random: &mut ChaCha12Rng) -> Self {
         let between = |random: &mut ChaCha12Rng, low: f64, high: f64| {
             low + (high - low) * random.random::<f64>()
         };
@@ -185,6 +186,18 @@ impl World {
             profile: profile(&truth),
             truth,
             ring,
+        }
+    }
+
+    /// The shooter on another day: the aims are off by so many standard deviations.
+    pub(super) fn on_another_day(&self, form: f64, random: &mut ChaCha12Rng) -> Self {
+        let mut mean = self.truth.means[0];
+        for (value, sd) in mean.iter_mut().zip(self.truth.sds).take(3) {
+            *value += form * sd * normal(random);
+        }
+        Self {
+            truth: self.truth.aimed_at(mean),
+            ..self.clone()
         }
     }
 
@@ -247,7 +260,7 @@ impl World {
     }
 
     /// The shots as a sensor measures them, read with the usual backspin and ring.
-    fn measured(&self, cell: &Cell, random: &mut ChaCha12Rng) -> Vec<MeasuredRelease> {
+    pub(super) fn measured(&self, cell: &Cell, random: &mut ChaCha12Rng) -> Vec<MeasuredRelease> {
         let place = free_throw();
         let usual = Simulator::new(&physics(0.60)).unwrap();
         let releases = self.releases(cell, cell.shots, random);
@@ -288,7 +301,7 @@ impl World {
     }
 }
 
-fn fitted(shots: &[MeasuredRelease], seed: u64) -> ShooterFit {
+pub(super) fn fitted(shots: &[MeasuredRelease], seed: u64) -> ShooterFit {
     let places = [free_throw()];
     let test = ShooterTest {
         name: "test",

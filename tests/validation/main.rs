@@ -9,6 +9,7 @@ mod common;
 mod fit_coverage;
 mod integrators;
 mod joint_coverage;
+mod joint_decisions;
 mod nominal_tables;
 mod paper_figures;
 mod probability_methods;

@@ -83,6 +83,7 @@ pub(crate) fn run(options: &CoachOptions) -> Result<u8, Failure> {
             measured,
             out: Some(players.clone()),
             free: Vec::new(),
+            compare_shapes: false,
             json: false,
         };
         for fitted in fit_each(&file, &players, &fit_options)? {

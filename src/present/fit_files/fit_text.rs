@@ -1,5 +1,6 @@
 //! The answer of `fit` in text.
 
+use super::fit_checks_text::{fit_checks_text, rests_on_priors, shapes_text};
 use super::fit_note_text::{WHAT_TO_CHECK, contradiction, fit_note_text, p_value};
 use crate::answers::fit::FitSource;
 use crate::fitting::{
@@ -274,6 +275,7 @@ impl FitText<'_> {
             );
         }
         notes.extend(warnings);
+        notes.extend(shapes_text(&fit.shapes));
         notes.push(self.what_is_counted());
         notes
     }
@@ -300,10 +302,11 @@ impl FitText<'_> {
             counted.push("an unmeasured backspin".to_owned());
         }
         const LEFT_OUT: &str = "leave out another board, ball or air (`bankshot physics`).";
-        match counted.is_empty() {
+        let counts = match counted.is_empty() {
             true => format!("The intervals {LEFT_OUT}"),
             false => format!("The intervals count {}. They {LEFT_OUT}", list(&counted)),
-        }
+        };
+        counts + &rests_on_priors(self.fit)
     }
 
     fn details(&self) -> String {
@@ -337,10 +340,11 @@ impl FitText<'_> {
         }
         let [speed, pitch, polar, _] = posterior.prior_weights.map(|weight| 100.0 * weight);
         add(format!(
-            "Sampler: {} draws, R-hat {:.3}, effective sample size {:.0}. Weight of the prior: {speed:.0} % (speed), {pitch:.0} % (angle), {polar:.0} % (direction).",
+            "Sampler: {} draws, R-hat {:.3}, effective sample size {:.0} of the middle and {:.0} of the tails. Weight of the prior: {speed:.0} % (speed), {pitch:.0} % (angle), {polar:.0} % (direction).",
             posterior.draws.len(),
             posterior.r_hat,
-            posterior.effective_sample_size
+            posterior.bulk_effective_sample_size,
+            posterior.tail_effective_sample_size
         ));
         if let Some(unseen) = posterior.unseen {
             add(format!(
@@ -351,6 +355,9 @@ impl FitText<'_> {
         if self.source.kind != Source::Makes {
             add(tests_text(fit));
         }
+        fit_checks_text(fit)
+            .iter()
+            .for_each(|words| add(words.clone()));
         text
     }
 

@@ -4,6 +4,7 @@ pub mod advice_for_team;
 pub mod advice_text;
 pub mod change_in_words;
 pub mod coach_text;
+pub mod fit_checks_text;
 pub mod fit_note_text;
 pub mod fit_text;
 pub mod fitted_profile_toml;

@@ -17,7 +17,7 @@ use crate::cli::terminal::{
     is_quiet, print_answer, print_next, print_prose, print_remark, print_text,
 };
 use crate::escape::file_name;
-use crate::fitting::ShooterFit;
+use crate::fitting::{ShooterFit, compare_shapes, predictive_check};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::present::fit_files::fit_text::fit_text;
 use crate::shooter::implausible_values;
@@ -43,7 +43,7 @@ pub(super) fn fit(
     if options.out.is_none() && options.measured.shooter.is_some() {
         refuse_other_shooter(folder, &shots.name)?;
     }
-    let fit = match file.fit(shots, &file.physics) {
+    let mut fit = match file.fit(shots, &file.physics) {
         Ok(fit) => fit,
         // The drag needs no profile, and flights from many places make none.
         Err(error) if options.free.iter().any(|name| is_drag(name)) && !shots.tracks.is_empty() => {
@@ -53,6 +53,7 @@ pub(super) fn fit(
         Err(error) => return Err(failure(&options.shots.display().to_string(), &error)),
     };
     check_shots(&options.free, shots, &fit)?;
+    add_checks(&mut fit, file, shots, options)?;
     let free = options
         .free
         .iter()
@@ -62,6 +63,27 @@ pub(super) fn fit(
     renew_table(file, (shots, &fit), folder, options)?;
     answer(file, (shots, &fit, &free), options, folder)?;
     Ok(code::DONE)
+}
+
+/// Adds the checks that only a whole answer has.
+pub(super) fn add_checks(
+    fit: &mut ShooterFit,
+    file: &MeasuredFile,
+    shots: &ShooterShots,
+    options: &FitOptions,
+) -> Result<(), Failure> {
+    fit.predictive = predictive_check(fit, &shots.shots);
+    if options.compare_shapes {
+        let places = shots.places.len();
+        let found = compare_shapes(&shots.shots, places, &file.fit_options(shots));
+        fit.shapes = found.map_err(|error| {
+            Failure::usage(format!(
+                "{}: --compare-shapes: {error}",
+                options.shots.display()
+            ))
+        })?;
+    }
+    Ok(())
 }
 
 /// Prints the drag by flights that make no profile, and why they make none.

@@ -33,6 +33,10 @@ pub(crate) struct FitOptions {
     /// and air have one estimate for all.
     #[arg(long, value_name = "PARAMETER")]
     pub(crate) free: Vec<String>,
+    /// Also compare normal, heavier-tailed and skewed releases: how well does each predict shots
+    /// that were left out? Takes some seconds for each player.
+    #[arg(long)]
+    pub(crate) compare_shapes: bool,
     /// Print fit.json instead of the text.
     #[arg(long)]
     pub(crate) json: bool,

@@ -1,7 +1,7 @@
 //! The fits of several shooters: a folder for each, and one table over all.
 
 use super::files::{remove, write};
-use super::one_shooter::answer_drag;
+use super::one_shooter::{add_checks, answer_drag};
 use super::options::FitOptions;
 use super::remarks::print_unused;
 use super::shooters_table::{places_of, write_table};
@@ -295,7 +295,7 @@ fn row_of(
     options: &FitOptions,
 ) -> Result<ShooterRow, Failure> {
     let name = file.name_of(shots);
-    let fit = match fit {
+    let mut fit = match fit {
         Ok(fit) => fit,
         Err(error) => {
             let place = ShooterPlace {
@@ -313,6 +313,7 @@ fn row_of(
             });
         }
     };
+    add_checks(&mut fit, file, shots, options)?;
     write(folder, file, (shots, &fit, &[]), options)?;
     let mut places = Vec::new();
     for (index, place) in fit.places.iter().enumerate() {

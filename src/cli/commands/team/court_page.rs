@@ -1,8 +1,8 @@
 //! The content of `team.html`.
 
 use super::court_results::{
-    PLAYER_COLUMNS, bank_texts, least_to_most, mean_over_places, notes, place_header,
-    place_in_words, place_rows, player_rows, ranking, remarks, sure_in_words,
+    PLAYER_COLUMNS, bank_texts, least_to_most, notes, place_header, place_in_words, place_rows,
+    player_rows, ranking, remarks, standings, sure_in_words,
 };
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
@@ -99,8 +99,9 @@ fn summary(players: &[PlayerSweep], units: UnitSystem) -> PageTable {
     if !advised.is_empty() {
         columns.extend(["now", "after", "change", "train"]);
     }
+    let standings = standings(players);
     let rows = ranking(players).order.into_iter().map(|number| {
-        let mean = mean_over_places(&players[number]).value;
+        let mean = standings[number].value;
         let player = &players[number];
         let mut row = vec![
             shortened(&player.name, LONGEST_NAME),

@@ -2,7 +2,7 @@
 
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
-use super::ranking::{Ranking, Standing};
+use super::ranking::{Ranking, Standing, pooled};
 use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::Difference;
 use crate::fitting::UnseenParameter;
@@ -63,7 +63,7 @@ pub(super) fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<
 
 /// The mean of P over all places of a player's best shots, with the error that the measured shots
 /// leave.
-pub(super) fn mean_over_places(player: &PlayerSweep) -> Standing {
+fn mean_over_places(player: &PlayerSweep) -> Standing {
     let found = player.places.iter().filter_map(PlaceProbabilities::best);
     let found: Vec<f64> = found.map(|p| p.value).collect();
     Standing {
@@ -75,16 +75,22 @@ pub(super) fn mean_over_places(player: &PlayerSweep) -> Standing {
 
 /// Who is best over all places.
 pub(super) fn ranking(players: &[PlayerSweep]) -> Ranking {
-    let standings: Vec<Standing> = players.iter().map(mean_over_places).collect();
-    Ranking::of(&standings)
+    Ranking::of(&standings(players))
+}
+
+/// The players' means over all places as those of one team.
+pub(super) fn standings(players: &[PlayerSweep]) -> Vec<Standing> {
+    let alone: Vec<Standing> = players.iter().map(mean_over_places).collect();
+    pooled(&alone)
 }
 
 /// A row for each player: name, mean, places to bank from, places where nobody is as good.
 pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<Vec<String>> {
     let ranking = ranking(players);
+    let standings = standings(players);
     let row = |&number: &usize| {
         let player = &players[number];
-        let mean = mean_over_places(player);
+        let mean = standings[number];
         let own = best.iter().filter(|of| of[..] == [number]).count();
         let (banks, unsure) = (player.bank_places().len(), player.unsure_places().len());
         let places = player.places.len();
@@ -92,11 +98,11 @@ pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<V
             shortened(&player.name, LONGEST_NAME),
             match player.probability_sd {
                 0.0 => in_hundred(mean.value),
-                sd => format!(
+                _ => format!(
                     "{:.0} ({:.0} to {:.0})",
                     100.0 * mean.value,
-                    100.0 * (mean.value - 1.96 * sd).max(0.0),
-                    100.0 * (mean.value + 1.96 * sd).min(1.0)
+                    100.0 * (mean.value - 1.96 * mean.standard_error).max(0.0),
+                    100.0 * (mean.value + 1.96 * mean.standard_error).min(1.0)
                 ),
             },
             format!("{} %", whole_percent(ranking.is_best[number])),
@@ -382,7 +388,11 @@ fn measured_places(players: &[PlayerSweep]) -> String {
         true => format!("from one place, {}", first.from),
         false => "from the places of their fits".to_owned(),
     };
-    format!("Measured players shot {from}. Every other place assumes the same scatter.\n")
+    let pooled = match advice.len() {
+        1 => "",
+        _ => " Averages are drawn towards the team's, as far as a player's shots leave them open.",
+    };
+    format!("Measured players shot {from}. Every other place assumes the same scatter.{pooled}\n")
 }
 
 fn sides(players: &[PlayerSweep]) -> String {

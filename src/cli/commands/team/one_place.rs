@@ -1,6 +1,6 @@
 //! A table of the players, each from one place.
 
-use super::ranking::{Ranking, Standing};
+use super::ranking::{Ranking, Standing, pooled};
 use super::team_profiles::{load_players, warn_of};
 use super::words::{LONGEST_NAME, whole_percent};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
@@ -60,8 +60,8 @@ impl Verdict {
 struct KindChance {
     /// P of the profile, with its numerical error.
     p: Option<Difference>,
-    /// P over the draws of the player's fit. What the measured shots leave open is many times the
-    /// error of the simulation.
+    /// P over the draws of the player's fit, as one of the team. What the measured shots leave open
+    /// is many times the error of the simulation.
     over_draws: Option<Interval>,
     /// Whether more than half of its makes are of the other kind.
     is_nearly_other: bool,
@@ -227,12 +227,50 @@ pub(super) fn run(
     let find = |(path, profile): (PathBuf, Profile)| {
         PlayerShots::find(&path, &from.moved(profile)?, &bars)
     };
-    let players: Vec<PlayerShots> = profiles.into_iter().map(find).collect::<Result<_, _>>()?;
+    let mut players: Vec<PlayerShots> = profiles.into_iter().map(find).collect::<Result<_, _>>()?;
+    pool(&mut players);
     print_text(&team_text(&players))?;
     print_hint(
         "Whole court, maps and posters: `bankshot new sweep sweep.toml`, then add --sweep sweep.toml",
     );
     Ok(code::DONE)
+}
+
+/// Players who shoot from one place are drawn towards the team's mean, as far as their shots leave
+/// open where they are.
+fn pool(players: &mut [PlayerShots]) {
+    if players
+        .iter()
+        .any(|player| player.place != players[0].place)
+    {
+        return;
+    }
+    for kind in ShotKind::ALL.map(ShotKind::index) {
+        let fitted = players
+            .iter_mut()
+            .filter_map(|player| player.kinds[kind].over_draws.as_mut());
+        let fitted: Vec<&mut Interval> = fitted.collect();
+        let alone: Vec<Standing> = fitted
+            .iter()
+            .map(|p| Standing {
+                value: p.mean,
+                standard_error: p.sd,
+            })
+            .collect();
+        for (p, pooled) in fitted.into_iter().zip(pooled(&alone)) {
+            // The shape of its distribution stays.
+            let at = |end: f64| match p.sd > 0.0 {
+                true => pooled.value + (end - p.mean) * pooled.standard_error / p.sd,
+                false => pooled.value,
+            };
+            *p = Interval {
+                low: at(p.low).max(0.0),
+                high: at(p.high).min(1.0),
+                mean: pooled.value,
+                sd: pooled.standard_error,
+            };
+        }
+    }
 }
 
 /// What each player should do, then a table of their best shots.
@@ -292,6 +330,8 @@ fn team_text(players: &[PlayerShots]) -> TextAnswer {
 fn notes(players: &[PlayerShots]) -> Vec<String> {
     let any = |is: &dyn Fn(&PlayerShots) -> bool| players.iter().any(is);
     let has_fits = any(&|player| player.has_fit);
+    let fits = players.iter().filter(|player| player.has_fit).count();
+    let is_pooled = fits > 1 && !any(&|player| player.place != players[0].place);
     let notes = [
         (
             true,
@@ -312,6 +352,10 @@ fn notes(players: &[PlayerShots]) -> Vec<String> {
         (
             has_fits && players.len() > 1,
             "best of all: the probability that no other player's best shot makes more.",
+        ),
+        (
+            is_pooled,
+            "Makes are drawn towards the team's average, as far as a player's shots leave them open.",
         ),
         (!has_fits, "Each profile is taken as exact."),
         (has_fits, "This assumes a standard ring."),
