@@ -321,6 +321,8 @@ pub struct BestShotsAnswer {
     pub provenance: Provenance,
     /// Shots of the search's table.
     pub table_shots: u64,
+    /// All shots that were simulated for this answer, and for earlier ones of the same profile.
+    pub simulated_shots: u64,
 }
 
 impl BestShotsAnswer {
@@ -343,6 +345,7 @@ impl BestShotsAnswer {
             bank_minus_direct: bank_minus_direct(best).map(Gain::from),
             provenance: Provenance::of(profile),
             table_shots: best.plan.shots,
+            simulated_shots: profile.simulator().simulated_shots(),
         }
     }
 }

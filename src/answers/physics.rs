@@ -366,6 +366,8 @@ pub struct PhysicsRows {
     pub base: usize,
     /// The physics.
     pub rows: Vec<PhysicsRowAnswer>,
+    /// All shots that were simulated for this answer, and for earlier ones of the same profile.
+    pub simulated_shots: u64,
     /// What made the answer.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -405,6 +407,7 @@ impl PhysicsAnswer {
             shooter: profile.shooter().name.clone(),
             base: self.comparison.base,
             rows: rows.collect(),
+            simulated_shots: profile.simulator().simulated_shots(),
             provenance: Provenance::of(profile),
         }
     }

@@ -17,6 +17,8 @@ use crate::model::constants_per_ball_mass::ModelParams;
 use crate::model::{BallState, Physics, PhysicsError, SolidId};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How the equations of motion are integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -222,6 +224,8 @@ pub struct Simulator {
     pub(super) params: ModelParams,
     pub(super) limits: ShotLimits,
     instructions: InstructionSet,
+    /// Shots that this simulator and those that count with it have simulated.
+    simulated: Arc<AtomicU64>,
 }
 
 impl Simulator {
@@ -271,7 +275,28 @@ impl Simulator {
                 max_steps: max_steps(integrator),
             },
             instructions: InstructionSet::default(),
+            simulated: Arc::default(),
         })
+    }
+
+    /// Shots that were simulated so far, with those of copies and of simulators that count with
+    /// this one, but without traces.
+    #[must_use]
+    pub fn simulated_shots(&self) -> u64 {
+        self.simulated.load(Ordering::Relaxed)
+    }
+
+    /// The same simulator, its shots counted with those of another.
+    #[must_use]
+    pub fn counting_with(self, other: &Self) -> Self {
+        Self {
+            simulated: Arc::clone(&other.simulated),
+            ..self
+        }
+    }
+
+    fn count(&self, shots: usize) {
+        self.simulated.fetch_add(shots as u64, Ordering::Relaxed);
     }
 
     /// The same simulator with other vector instructions for [`Simulator::verdicts`] (by default,
@@ -481,6 +506,7 @@ impl Simulator {
 
     /// As [`Simulator::simulate_state`], for a state that is known to be finite.
     pub(crate) fn outcome(&self, start: BallState) -> Outcome {
+        self.count(1);
         let mut classifier = OutcomeClassifier::new(self.params.ring.radius, &start);
         let verdict = self.run(start, &mut classifier);
         classifier.outcome(verdict)
@@ -488,6 +514,7 @@ impl Simulator {
 
     /// The verdict of one shot whose state is known to be finite.
     pub(crate) fn verdict(&self, start: BallState) -> Verdict {
+        self.count(1);
         self.run(start, &mut ())
     }
 
@@ -497,6 +524,7 @@ impl Simulator {
         starts: &[BallState],
         workspace: &'w mut BatchWorkspace,
     ) -> &'w [Verdict] {
+        self.count(starts.len());
         match (self.integrator, self.instructions.level()) {
             (Integrator::EventDriven { .. }, Some(level)) => {
                 batch::run(level, &self.params, &self.limits, starts, workspace);
@@ -505,7 +533,7 @@ impl Simulator {
                 workspace.verdicts.clear();
                 workspace
                     .verdicts
-                    .extend(starts.iter().map(|start| self.verdict(*start)));
+                    .extend(starts.iter().map(|start| self.run(*start, &mut ())));
             }
         }
         &workspace.verdicts

@@ -69,7 +69,9 @@ pub(super) fn under_ring(profile: &Profile, restitution: Option<f64>) -> Simulat
         let set = physics.set_restitution_on(SolidId::Ring, restitution.clamp(low, high));
         debug_assert!(set.is_ok(), "the range is that of restitutions");
     }
-    Simulator::new(&physics).unwrap_or_else(|_| profile.simulator().clone())
+    Simulator::new(&physics)
+        .unwrap_or_else(|_| profile.simulator().clone())
+        .counting_with(profile.simulator())
 }
 
 /// The rings under which shots are simulated for draws.

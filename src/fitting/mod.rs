@@ -98,7 +98,7 @@ pub use session_trends::{SessionTrend, session_names, trends};
 pub use shape_comparison::{Shape, ShapeScore, compare_shapes};
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter, fit_shooters};
 pub use shots_under_physics::{FittedShots, Measured, ShotsUnderPhysics};
-pub use test_design::{DesignRow, SessionError, design, simulated_test};
+pub use test_design::{DesignRow, LEAST_TYPICAL_SHOTS, SessionError, design, simulated_test};
 pub use tracked_flight_noise::tracked_flight_noise;
 pub use tracker_noise::{Tracker, TrackerNoise};
 pub use unmeasured_parameter_likelihood::{

@@ -3,14 +3,13 @@
 use super::advice::usual_probabilities;
 use super::fitted_profile::fitted_profile;
 use super::measured_release::{Covariance, MeasuredRelease, Place, Values};
-use super::posterior::{FitError, FitOptions, SpinSource, Tails, fit};
+use super::posterior::{FitError, FitOptions, SpinSource, Tails, fit, standard_normal};
 use super::session_comparison::POWER;
-use crate::math::normal_distribution::quantile;
 use crate::probability::{Progress, Sampler};
 use crate::shooter::{Nominal, Profile, ReleaseDistribution};
-use nalgebra::Vector4;
+use nalgebra::{SMatrix, SVector, Vector4};
+use rand::SeedableRng;
 use rand::rngs::ChaCha12Rng;
-use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 /// Shots of the sample that the probabilities of a simulated test are computed with.
@@ -79,6 +78,17 @@ impl SessionError {
     }
 }
 
+/// Standard normal numbers of a shot: nine of the release, four of the tracker.
+const NORMALS: usize = 13;
+type Normals = SVector<f64, NORMALS>;
+
+fn normals(shots: usize, seed: u64) -> Vec<Normals> {
+    let mut random = ChaCha12Rng::seed_from_u64(seed);
+    (0..shots)
+        .map(|_| Normals::from_fn(|_, _| standard_normal(&mut random)))
+        .collect()
+}
+
 /// A simulated test: shots of a profile with a tracker's errors.
 pub fn simulated_test(
     profile: &Profile,
@@ -87,43 +97,65 @@ pub fn simulated_test(
     shots: usize,
     seed: u64,
 ) -> Vec<MeasuredRelease> {
+    test_of(profile, nominal, noise, &normals(shots, seed))
+}
+
+/// Tests with fewer shots are not made typical: it takes many more of them.
+pub const LEAST_TYPICAL_SHOTS: usize = 20;
+
+/// Numbers whose mean is exactly 0 and whose covariance is exactly the unit matrix (divided by one
+/// less than their number): a test that is neither lucky nor unlucky in its means, scatters and
+/// correlations, so that a few tell what many random ones tell on average.
+fn typical_normals(shots: usize, seed: u64) -> Vec<Normals> {
+    let drawn = normals(shots, seed);
+    let mean = drawn.iter().sum::<Normals>() / shots as f64;
+    let centred = drawn.iter().map(|z| z - mean);
+    let squares: SMatrix<f64, NORMALS, NORMALS> = centred.clone().map(|z| z * z.transpose()).sum();
+    let cholesky = (squares / (shots as f64 - 1.0)).cholesky();
+    match cholesky {
+        Some(cholesky) if shots >= LEAST_TYPICAL_SHOTS => centred
+            .map(|z| cholesky.l().solve_lower_triangular(&z).unwrap_or(z))
+            .collect(),
+        _ => drawn,
+    }
+}
+
+fn test_of(
+    profile: &Profile,
+    nominal: &Nominal,
+    noise: &Covariance,
+    normals: &[Normals],
+) -> Vec<MeasuredRelease> {
     let distribution = ReleaseDistribution::new(profile, nominal);
-    let mut random = ChaCha12Rng::seed_from_u64(seed);
     let noise_factor = super::expected_makes::factor_of(noise);
-    (0..shots)
-        .map(|row| {
-            let mut normal = || loop {
-                let uniform: f64 = random.random();
-                if uniform > 0.0 {
-                    return quantile(uniform);
-                }
-            };
-            let release = distribution.from_normal(std::array::from_fn(|_| normal()));
-            let made = profile
-                .simulator()
-                .simulate(&release)
-                .is_ok_and(|outcome| outcome.verdict.made);
-            let truth = Vector4::new(
-                release.speed_m_s,
-                release.pitch_rad,
-                release.polar_rad,
-                release.backspin_rad_s,
-            );
-            let error = noise_factor * Vector4::from_fn(|_, _| normal());
-            MeasuredRelease {
-                row: row as u64 + 1,
-                place: 0,
-                values: Values::from(truth + error),
-                noise: *noise,
-                made: Some(made),
-                own: None,
-            }
-        })
-        .collect()
+    let shot = |(row, z): (usize, &Normals)| {
+        let release = distribution.from_normal(std::array::from_fn(|i| z[i]));
+        let made = profile
+            .simulator()
+            .simulate(&release)
+            .is_ok_and(|outcome| outcome.verdict.made);
+        let truth = Vector4::new(
+            release.speed_m_s,
+            release.pitch_rad,
+            release.polar_rad,
+            release.backspin_rad_s,
+        );
+        let error = noise_factor * Vector4::from_fn(|i, _| z[NORMALS - 4 + i]);
+        MeasuredRelease {
+            row: row as u64 + 1,
+            place: 0,
+            values: Values::from(truth + error),
+            noise: *noise,
+            made: Some(made),
+            own: None,
+        }
+    };
+    normals.iter().enumerate().map(shot).collect()
 }
 
 /// Simulates tests of each size, as many as it says, and fits them. `sizes` have shots and
-/// repetitions.
+/// repetitions. From [`LEAST_TYPICAL_SHOTS`] on each test is a typical one: means, scatters and correlations are
+/// exactly those of the shooter.
 ///
 /// # Errors
 /// A fit did not converge.
@@ -155,7 +187,8 @@ pub fn design(
             .into_par_iter()
             .map(|repetition| {
                 let seed = profile.search().seed ^ (repetition << 20 | shots as u64);
-                let test = simulated_test(profile, nominal, noise, shots, seed);
+                let typical = typical_normals(shots, seed);
+                let test = test_of(profile, nominal, noise, &typical);
                 let options = FitOptions {
                     prior,
                     spin: SpinSource::Given,
@@ -231,5 +264,17 @@ mod tests {
         assert!((equal.second_session(0.2, 0.4).unwrap() - each).abs() < 1e-9);
         // The first session alone is less sure than the change.
         assert_eq!(first.second_session(0.1, 0.4), None);
+    }
+
+    /// Authority: the definition.
+    #[test]
+    fn contract_typical_normals_have_the_moments_of_the_distribution() {
+        let drawn = typical_normals(40, 3);
+        let mean = drawn.iter().sum::<Normals>() / 40.0;
+        assert!(mean.norm() < 1e-12);
+        let covariance: SMatrix<f64, NORMALS, NORMALS> =
+            drawn.iter().map(|z| z * z.transpose() / 39.0).sum();
+        assert!((covariance - SMatrix::identity()).norm() < 1e-12);
+        assert_eq!(typical_normals(19, 3), normals(19, 3));
     }
 }

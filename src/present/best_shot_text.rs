@@ -3,7 +3,7 @@
 use super::layout::{Side, TextAnswer, TextTable};
 use super::words::{
     capitalised, difference_per_100, do_it, likely, list, nominal_name, of_100, per_100,
-    scatter_note, simulation_error, subject, taken_as_exact, variable_name,
+    scatter_note, simulation_error, subject, taken_as_exact, variable_name, with_commas,
 };
 use crate::analysis::bank_aim::{closed_form_polar_rad, meeting_behind_board_m};
 use crate::analysis::sensitivity::{Difference, ErrorCost, ShotWindow};
@@ -402,6 +402,10 @@ fn details(profile: &Profile, best: &BestShots, units: UnitSystem) -> String {
     if let Some(difference) = bank_minus_direct(best) {
         text += &format!("  {:<14} {}\n", "bank - direct", gain_text(&difference));
     }
+    text += &format!(
+        "{} shots were simulated.\n",
+        with_commas(profile.simulator().simulated_shots())
+    );
     text + "  Gains are per 100 shots, with the simulation error in brackets.\n"
 }
 

@@ -4,6 +4,7 @@ use super::fit_files::change_in_words::changes_in_words;
 use super::layout::{Side, TextAnswer, TextTable};
 use super::words::{
     difference_interval, difference_per_100, list, of_100, per_100, simulation_error, subject,
+    with_commas,
 };
 use crate::answers::physics::{FAR_MAKES, FittedRows, PhysicsAnswer};
 use crate::best_shot::{
@@ -528,11 +529,12 @@ pub fn physics_text(answer: &PhysicsAnswer, profile: &Profile, is_moved: bool) -
         }
     };
     let details = format!(
-        "{}past: how far past the ring's centre the direct shot is aimed.\nsame shot: {}, {}.\nSimulation error: up to {} per 100.\n{of_profile}{}",
+        "{}past: how far past the ring's centre the direct shot is aimed.\nsame shot: {}, {}.\nSimulation error: up to {} per 100, with {} simulated shots.\n{of_profile}{}",
         all_physics(comparison, units),
         same_shot_in_words(comparison.same_shot),
         what_stays(comparison.same_shot),
         simulation_error(comparison.greatest_standard_error()),
+        with_commas(profile.simulator().simulated_shots()),
         fit.map_or_else(String::new, |fit| format!("\n{}", fit.details()))
     );
     TextAnswer {

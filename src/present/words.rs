@@ -24,6 +24,20 @@ pub fn capitalised(text: &str) -> String {
     first.unwrap_or_default() + characters.as_str()
 }
 
+/// A number in groups of three digits.
+#[must_use]
+pub fn with_commas(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place) % 3 == 0 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 /// A number per 100 with one decimal: `78.1`.
 #[must_use]
 pub fn per_100(probability: f64) -> String {

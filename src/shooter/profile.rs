@@ -366,7 +366,7 @@ impl Profile {
     pub fn with(&self, change: impl FnOnce(&mut ProfileSettings)) -> Result<Self, ProfileError> {
         let mut settings = self.settings.clone();
         change(&mut settings);
-        settings.at(self.location)
+        Ok(settings.at(self.location)?.counting_with(self))
     }
 
     /// The same settings at another location.
@@ -374,7 +374,15 @@ impl Profile {
     /// # Errors
     /// As [`ProfileSettings::at`].
     pub fn moved_to(&self, location: Location) -> Result<Self, ProfileError> {
-        self.settings.at(location)
+        Ok(self.settings.at(location)?.counting_with(self))
+    }
+
+    /// The same profile, its shots counted with those of another.
+    fn counting_with(self, other: &Self) -> Self {
+        Self {
+            simulator: self.simulator.counting_with(&other.simulator),
+            ..self
+        }
     }
 
     /// The same profile with its batches on other vector instructions. No result depends on them.

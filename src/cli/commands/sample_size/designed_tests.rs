@@ -8,11 +8,14 @@ use super::tracker::TrackerOfTest;
 use crate::cli::failure::{Failure, code};
 use crate::cli::nominal_shot_flags::NominalOptions;
 use crate::cli::progress_bars::ProgressBars;
-use crate::fitting::{Covariance, DesignRow, FitError, design};
+use crate::fitting::{Covariance, DesignRow, FitError, LEAST_TYPICAL_SHOTS, design};
 use crate::units::UnitSystem;
 
 /// Simulated tests of a size that the answer asked for, at least.
 const LEAST_REPETITIONS: u64 = 12;
+
+/// How many times as many tests of a size that is too small to be typical.
+const MORE_OF_SMALL: u64 = 8;
 
 /// The size that `--target` asks for.
 pub(super) struct Target {
@@ -49,6 +52,7 @@ fn simulate_of(
     let asked = options.shots.iter().chain(&options.first);
     let largest = u64::from(asked.copied().max().unwrap_or(0));
     let of_size = |shots: usize| match options.repetitions * largest / shots as u64 {
+        _ if shots < LEAST_TYPICAL_SHOTS => MORE_OF_SMALL * options.repetitions,
         fewer if shots as u64 > largest => fewer.max(options.repetitions.min(LEAST_REPETITIONS)),
         _ => options.repetitions,
     };

@@ -55,6 +55,6 @@ pub(crate) struct SampleSizeOptions {
     #[arg(long)]
     pub(crate) json: bool,
     /// Simulated tests of each size.
-    #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u64).range(4..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u64).range(4..=10_000))]
     pub(crate) repetitions: u64,
 }
