@@ -71,9 +71,10 @@ struct Model<'a> {
     corrections: Vec<Correction>,
     makes: MakesLikelihood,
     aims: Vec<Option<BestAims>>,
-    /// Values of a release that were measured.
-    measured_values: usize,
-    /// Those of them whose aim is near that of the best shot.
+    spin: SpinSource,
+    /// The direction of the hoop's centre from each place.
+    towards_hoop: Vec<f64>,
+    /// Values whose aim is near that of the best shot.
     aim_values: usize,
 }
 
@@ -250,8 +251,18 @@ impl Model<'_> {
         unseen: &Unseen,
         options: &FitOptions,
     ) -> Vec<(PriorOf, f64)> {
-        let scatter = log_prior_of_scatter(draw, &options.prior, self.measured_values);
+        let scatter = log_prior_of_scatter(draw, &options.prior);
         let mut priors = vec![(PriorOf::Scatter, scatter)];
+        if self.spin == SpinSource::AssumedWithDirection {
+            let prior = &options.prior.aim;
+            let of_place = |(mean, hoop): (&Values, &f64)| {
+                let z = (mean[2] - hoop - prior.mean) / prior.sd;
+                -0.5 * z * z
+            };
+            // One direction for all places.
+            let first = draw.means.iter().zip(&self.towards_hoop).next();
+            priors.push((PriorOf::Direction, first.map_or(0.0, of_place)));
+        }
         if let Some(prior) = &self.prior.aim {
             let density = self.aims(prior, draw, &self.changes(unseen));
             priors.push((PriorOf::Aim, libm::log(density.max(f64::MIN_POSITIVE))));
@@ -408,7 +419,12 @@ fn model<'a>(
             Some(_) => (0..profiles.len()).map(near).collect(),
             None => Vec::new(),
         },
-        measured_values: measured,
+        spin,
+        towards_hoop: flights
+            .places
+            .iter()
+            .map(|place| place.location.angle_rad)
+            .collect(),
         aim_values: measured.min(3),
     }
 }

@@ -42,6 +42,7 @@ mod prior_sensitivity;
 mod session_comparison;
 mod session_trends;
 mod shape_comparison;
+mod shared_error;
 mod shooter_fit;
 mod shots_under_physics;
 mod skew_posterior;
@@ -96,6 +97,7 @@ pub use session_comparison::{
 };
 pub use session_trends::{SessionTrend, session_names, trends};
 pub use shape_comparison::{Shape, ShapeScore, compare_shapes};
+pub use shared_error::shared_sd;
 pub use shooter_fit::{ShooterFit, ShooterFitError, ShooterTest, fit_shooter, fit_shooters};
 pub use shots_under_physics::{FittedShots, Measured, ShotsUnderPhysics};
 pub use test_design::{DesignRow, LEAST_TYPICAL_SHOTS, SessionError, design, simulated_test};

@@ -7,7 +7,7 @@
 
 use super::draw_probabilities::under_ring;
 use super::landing::{CENTRE_DEPTH_M, landing_of};
-use super::measured_release::{MeasuredRelease, Values, nominal_of};
+use super::measured_release::{MeasuredRelease, Values};
 use super::posterior::{Draw, standard_normal};
 use super::shooter_fit::ShooterFit;
 use crate::units::INCH_M;
@@ -134,7 +134,19 @@ pub fn predictive_check(fit: &ShooterFit, shots: &[MeasuredRelease]) -> Predicti
         },
         makes_by_depth: match depths.is_empty() {
             true => Vec::new(),
-            false => bins(&edges, (&seen, &predicted), &|shot| shot.depth_m, &share),
+            false => {
+                let with_result: Vec<Fallen> = seen
+                    .iter()
+                    .filter(|shot| shot.made.is_some())
+                    .copied()
+                    .collect();
+                bins(
+                    &edges,
+                    (&with_result, &predicted),
+                    &|shot| shot.depth_m,
+                    &share,
+                )
+            }
         },
     }
 }
@@ -168,11 +180,16 @@ fn shoot_again(
         let (z, noise) = (normals(), normals());
         let from_aim = draw.factor_at(place) * z * tail_scale(draw.tail_weight, &mut random);
         let released: Values = (Vector4::from(draw.means[place]) + from_aim).into();
-        let seen = Vector4::from(draw.measured_mean(place)) + from_aim + error_factor(shot) * noise;
-        let release = fit.profiles[place].release(&nominal_of(&released));
-        let made = shot.made.and_then(|_| {
-            let outcome = simulators[place].simulate(&release).ok()?;
-            Some(outcome.verdict.made)
+        let mut seen =
+            Vector4::from(draw.measured_mean(place)) + from_aim + error_factor(shot) * noise;
+        if fit.posterior.spin.measured_values() < 4 {
+            // That with which its landing was turned into a release.
+            seen[3] = shot.values[3];
+        }
+        let release = shot.release(&fit.profiles[place], &released);
+        let made = shot.made.map(|_| {
+            let outcome = simulators[place].simulate(&release);
+            outcome.is_ok_and(|outcome| outcome.verdict.made)
         });
         fallen(fit, place, &seen.into(), made)
     });

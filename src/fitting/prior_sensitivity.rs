@@ -24,6 +24,8 @@ pub enum PriorOf {
     Aim,
     /// The standard deviations, and the correlation of speed and pitch angle.
     Scatter,
+    /// The aim from side to side, where the direction was not measured.
+    Direction,
 }
 
 /// The logarithm of a prior's density at each draw, but for a constant.
@@ -86,15 +88,15 @@ impl PriorSensitivity {
     }
 }
 
-/// The logarithm of the prior of a draw's scatter, of so many measured values.
-pub(super) fn log_prior_of_scatter(draw: &Draw, prior: &PopulationPrior, measured: usize) -> f64 {
+/// The logarithm of the prior of a draw's scatter.
+pub(super) fn log_prior_of_scatter(draw: &Draw, prior: &PopulationPrior) -> f64 {
     let of_sd = |i: usize| {
         let z = libm::log(draw.sds[i] / prior.median_sd[i]) / prior.log_sd[i];
         -0.5 * z * z
     };
     let correlation = draw.correlation[(0, 1)].clamp(-0.999_999, 0.999_999);
     let z = (libm::atanh(correlation) - prior.speed_pitch.mean) / prior.speed_pitch.sd;
-    (0..measured).map(of_sd).sum::<f64>() - 0.5 * z * z
+    (0..draw.sds.len()).map(of_sd).sum::<f64>() - 0.5 * z * z
 }
 
 /// The logarithm of the prior of values in its scales, independent and t distributed.

@@ -36,8 +36,8 @@ pub struct ShapeScore {
     pub better_than_normal: f64,
     /// The standard error of it.
     pub standard_error: f64,
-    /// The worst shape of the weights of a shot that was left out: above 0.7 the score is no more
-    /// than a hint.
+    /// The worst shape of the weights of a shot that was left out, of this shape and of the normal
+    /// one: above 0.7 the score is no more than a hint.
     pub pareto_k: f64,
 }
 
@@ -117,7 +117,7 @@ fn compare<const D: usize>(
             shape,
             better_than_normal: sum,
             standard_error: (count / (count - 1.0) * squares.sum::<f64>()).sqrt(),
-            pareto_k: left_out.pareto_k,
+            pareto_k: left_out.pareto_k.max(normal.pareto_k),
         }
     };
     Ok(vec![

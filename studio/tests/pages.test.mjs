@@ -277,6 +277,28 @@ test("three broken files show what is wrong, at the row where there is one", asy
   await page.context().close();
 });
 
+test("names of strangers stay text", async () => {
+  const names = ['<img src=x onerror="window.hacked=1">', '"><script>window.hacked=2</script>', "</script>' onmouseover='window.hacked=3' ="];
+  const cell = (text) => `"${text.replaceAll('"', '""')}"`;
+  const lines = readFileSync(join(ROOT, "docs/data/gym_sensor.csv"), "utf8").trim().split("\n");
+  const rows = lines.slice(1, 91).map((line, number) => `${cell(names[number % 3])},${cell(names[1])},${line.replace(/^[^,]*,/, "")},x`);
+  const header = `shooter,session,${lines[0].replace(/^[^,]*,/, "")},${cell(names[0])}`;
+  const page = await openPage(browser, studio, "#/players");
+  await page.setInputFiles("input[type=file]", { name: "<img src=x onerror=hacked()>.csv", mimeType: "text/csv", buffer: Buffer.from([header, ...rows].join("\n")) });
+  await page.getByText("90 shots").waitFor();
+  await page.getByRole("button", { name: /^Fit/ }).click();
+  await page.waitForSelector(".job.done", { timeout: 120_000 });
+  const row = page.getByRole("row").filter({ hasText: names[0] });
+  await row.first().waitFor();
+  await row.first().getByRole("button", { name: "Show" }).click();
+  await page.locator(".player img").first().waitFor();
+  assert.equal(await page.evaluate(() => window.hacked), undefined);
+  assert.equal(await page.locator("img[src=x], script:not([src]):not([type])").count(), 0);
+  assert.deepEqual(page.faults, []);
+  assert.deepEqual(page.foreign, []);
+  await page.context().close();
+});
+
 test("the meaning of a column can be changed by a menu", async () => {
   const page = await openPage(browser, studio, "#/players");
   const text = readFileSync(join(ROOT, "docs/data/gym_sensor.csv"), "utf8").replace("depth_in", "Q");

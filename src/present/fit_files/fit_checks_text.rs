@@ -1,6 +1,6 @@
 //! The checks of a fit in words.
 
-use crate::fitting::{PriorOf, PriorSensitivity, Shape, ShapeScore, ShooterFit};
+use crate::fitting::{Contradiction, PriorOf, PriorSensitivity, Shape, ShapeScore, ShooterFit};
 use crate::present::words::{list, of_100, per_100};
 
 /// A change of P from which on a prior is named in the answer.
@@ -15,8 +15,16 @@ fn prior_name(prior: PriorOf) -> &'static str {
         PriorOf::Ring => "the ring's bounce",
         PriorOf::Backspin => "the backspin",
         PriorOf::ConstantError => "a constant error of the sensor",
-        PriorOf::Aim => "how near the best shot players aim",
-        PriorOf::Scatter => "the scatter of players",
+        PriorOf::Aim => "how near their best shot players aim",
+        PriorOf::Scatter => "how much players scatter",
+        PriorOf::Direction => "the direction, which was not measured",
+    }
+}
+
+fn uncertain(pareto_k: f64) -> &'static str {
+    match pareto_k > LARGEST_K {
+        true => " (uncertain)",
+        false => "",
     }
 }
 
@@ -24,8 +32,13 @@ fn sensitivities(fit: &ShooterFit) -> Vec<PriorSensitivity> {
     PriorSensitivity::of(&fit.posterior.priors, &fit.probabilities[0].of_draws)
 }
 
-/// A sentence where an assumption decides.
+/// A sentence where an assumption decides about the number of the answer: P of one place, over the
+/// whole session.
 pub(super) fn rests_on_priors(fit: &ShooterFit) -> String {
+    let is_doubted = Contradiction::of_fit(&fit.notes, fit.makes.labelled).is_some();
+    if is_doubted || fit.places.len() > 1 || fit.at_the_end[0].is_some() {
+        return String::new();
+    }
     let p = fit.probabilities[0].interval().mean;
     let change = |one: &PriorSensitivity| one.greatest_change(p);
     let strongest = sensitivities(fit)
@@ -34,7 +47,7 @@ pub(super) fn rests_on_priors(fit: &ShooterFit) -> String {
         .max_by(|a, b| change(a).total_cmp(&change(b)));
     strongest.map_or_else(String::new, |one| {
         format!(
-            " If what is assumed of {} counted half as much, {} of 100 would go in; if twice as much, {}.",
+            " With half as much trust in what is assumed of {}, {} of 100 would go in; with twice as much, {}.",
             prior_name(one.prior),
             of_100(one.probability_if_half_as_strong),
             of_100(one.probability_if_twice_as_strong)
@@ -53,17 +66,17 @@ pub(super) fn fit_checks_text(fit: &ShooterFit) -> Vec<String> {
                 prior_name(one.prior),
                 per_100(one.probability_if_half_as_strong),
                 per_100(one.probability_if_twice_as_strong),
-                if one.pareto_k > LARGEST_K {
-                    " (a hint)"
-                } else {
-                    ""
-                }
+                uncertain(one.pareto_k)
             )
         })
         .collect();
     if !priors.is_empty() {
+        let from = match fit.places.len() {
+            1 => "",
+            _ => " from the first place",
+        };
         paragraphs.push(format!(
-            "Makes per 100 if an assumption counted half as much or twice as much: {}.",
+            "Makes per 100{from} with half as much, or twice as much, trust in an assumption: {}.",
             priors.join("; ")
         ));
     }
@@ -72,8 +85,7 @@ pub(super) fn fit_checks_text(fit: &ShooterFit) -> Vec<String> {
         let outside = fit.predictive.bins();
         let outside = outside.filter(|bin| !bin.is_as_predicted()).count();
         paragraphs.push(format!(
-            "The same shots simulated from the fit (plots/predicted): of {bins} numbers by depth, by left and right, and of makes by depth, {outside} lie outside nine in ten of the simulations; by chance about {:.0} would.",
-            0.1 * bins as f64
+            "The same shots simulated from the fit (plots/predicted): of {bins} numbers by depth, by left and right, and of makes by depth, {outside} lie outside nine in ten of the simulations. Of a fit that is right, fewer than one in ten do."
         ));
     }
     paragraphs
@@ -88,8 +100,10 @@ fn shape_name(shape: Shape) -> &'static str {
 }
 
 /// How well the shapes predict; `None` where they were not compared.
-pub(super) fn shapes_text(shapes: &[ShapeScore]) -> Option<String> {
-    let others = shapes.iter().filter(|score| score.shape != Shape::Normal);
+#[must_use]
+pub fn shapes_text(fit: &ShooterFit) -> Option<String> {
+    let others = fit.shapes.iter();
+    let others = others.filter(|score| score.shape != Shape::Normal);
     let listed: Vec<String> = others
         .clone()
         .map(|score| {
@@ -98,21 +112,23 @@ pub(super) fn shapes_text(shapes: &[ShapeScore]) -> Option<String> {
                 shape_name(score.shape),
                 score.better_than_normal,
                 score.standard_error,
-                if score.pareto_k > LARGEST_K {
-                    " (a hint)"
-                } else {
-                    ""
-                }
+                uncertain(score.pareto_k)
             )
         })
         .collect();
     if listed.is_empty() {
         return None;
     }
+    let is_better = |score: &&ShapeScore| {
+        score.pareto_k <= LARGEST_K && score.better_than_normal > CLEARLY * score.standard_error
+    };
     let best = others
-        .filter(|score| score.better_than_normal > CLEARLY * score.standard_error)
+        .filter(is_better)
         .max_by(|a, b| a.better_than_normal.total_cmp(&b.better_than_normal));
     let verdict = match best.map(|score| score.shape) {
+        Some(Shape::HeavierTails) if fit.typical.tail_weight > 0.0 => {
+            "Heavier tails predict better, and this fit has them."
+        }
         Some(Shape::HeavierTails) => "Heavier tails predict better: fit with --tails student.",
         Some(Shape::Skewed) => {
             "Skewed releases predict better, but a fit has symmetric ones: take the makes with care."
@@ -120,7 +136,7 @@ pub(super) fn shapes_text(shapes: &[ShapeScore]) -> Option<String> {
         _ => "Neither predicts clearly better than normal releases.",
     };
     Some(format!(
-        "Each shot predicted from the others, as a score above that of normal releases with its standard error: {}. {verdict}",
+        "Each shot was predicted from the others. Score above that of normal releases, with its standard error: {}. {verdict}",
         list(&listed)
     ))
 }

@@ -275,7 +275,7 @@ impl FitText<'_> {
             );
         }
         notes.extend(warnings);
-        notes.extend(shapes_text(&fit.shapes));
+        notes.extend(shapes_text(fit));
         notes.push(self.what_is_counted());
         notes
     }

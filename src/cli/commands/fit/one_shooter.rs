@@ -53,7 +53,7 @@ pub(super) fn fit(
         Err(error) => return Err(failure(&options.shots.display().to_string(), &error)),
     };
     check_shots(&options.free, shots, &fit)?;
-    add_checks(&mut fit, file, shots, options)?;
+    add_checks(&mut fit, file, shots, options);
     let free = options
         .free
         .iter()
@@ -71,19 +71,23 @@ pub(super) fn add_checks(
     file: &MeasuredFile,
     shots: &ShooterShots,
     options: &FitOptions,
-) -> Result<(), Failure> {
+) {
     fit.predictive = predictive_check(fit, &shots.shots);
-    if options.compare_shapes {
-        let places = shots.places.len();
-        let found = compare_shapes(&shots.shots, places, &file.fit_options(shots));
-        fit.shapes = found.map_err(|error| {
-            Failure::usage(format!(
-                "{}: --compare-shapes: {error}",
-                options.shots.display()
-            ))
-        })?;
+    if !options.compare_shapes {
+        return;
     }
-    Ok(())
+    let places = shots.places.len();
+    let name = file.name_of(shots);
+    match compare_shapes(&shots.shots, places, &file.fit_options(shots)) {
+        Ok(found) if found.is_empty() => print_remark(&format!(
+            "{name}: --compare-shapes: no release was measured"
+        )),
+        Ok(found) => fit.shapes = found,
+        // The fit itself is good.
+        Err(_) => print_remark(&format!(
+            "{name}: --compare-shapes: one of the shapes cannot be fitted to these shots, so they were not compared"
+        )),
+    }
 }
 
 /// Prints the drag by flights that make no profile, and why they make none.

@@ -14,6 +14,7 @@ use crate::escape::file_name;
 use crate::fitting::{Contradiction, Place, ShooterFit, ShooterFitError};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::plots::svg::shortened;
+use crate::present::fit_files::fit_checks_text::shapes_text;
 use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::present::layout::{Side, TextAnswer, TextTable};
 use crate::present::words::list;
@@ -313,7 +314,7 @@ fn row_of(
             });
         }
     };
-    add_checks(&mut fit, file, shots, options)?;
+    add_checks(&mut fit, file, shots, options);
     write(folder, file, (shots, &fit, &[]), options)?;
     let mut places = Vec::new();
     for (index, place) in fit.places.iter().enumerate() {
@@ -356,6 +357,7 @@ fn row_of(
             .notes
             .iter()
             .map(|note| format!("{name}: warning: {}", fit_note_text(note)))
+            .chain(shapes_text(&fit).map(|words| format!("{name}: {words}")))
             .collect(),
         fit: Some(fit),
     })

@@ -2,7 +2,7 @@
 
 use super::player_advice::PlayerAdvice;
 use super::player_sweep::{PlayerSweep, best_players};
-use super::ranking::{Ranking, Standing, pooled};
+use super::ranking::{Ranking, Standing, own_sd, pooled};
 use super::words::{LONGEST_NAME, in_hundred, table_of, whole_percent};
 use crate::analysis::sensitivity::Difference;
 use crate::fitting::UnseenParameter;
@@ -62,14 +62,14 @@ pub(super) fn place_header(players: &[PlayerSweep], longest_name: usize) -> Vec<
 }
 
 /// The mean of P over all places of a player's best shots, with the error that the measured shots
-/// leave.
+/// leave, without what all players have in common.
 fn mean_over_places(player: &PlayerSweep) -> Standing {
     let found = player.places.iter().filter_map(PlaceProbabilities::best);
     let found: Vec<f64> = found.map(|p| p.value).collect();
     Standing {
         value: found.iter().sum::<f64>() / found.len().max(1) as f64,
         // The simulation's own error is far less.
-        standard_error: player.probability_sd.max(1e-4),
+        standard_error: own_sd(player.probability_sd, player.shared_sd).max(1e-4),
     }
 }
 
@@ -98,12 +98,15 @@ pub(super) fn player_rows(players: &[PlayerSweep], best: &[Vec<usize>]) -> Vec<V
             shortened(&player.name, LONGEST_NAME),
             match player.probability_sd {
                 0.0 => in_hundred(mean.value),
-                _ => format!(
-                    "{:.0} ({:.0} to {:.0})",
-                    100.0 * mean.value,
-                    100.0 * (mean.value - 1.96 * mean.standard_error).max(0.0),
-                    100.0 * (mean.value + 1.96 * mean.standard_error).min(1.0)
-                ),
+                _ => {
+                    let half = 1.96 * libm::hypot(mean.standard_error, player.shared_sd);
+                    format!(
+                        "{:.0} ({:.0} to {:.0})",
+                        100.0 * mean.value,
+                        100.0 * (mean.value - half).max(0.0),
+                        100.0 * (mean.value + half).min(1.0)
+                    )
+                }
             },
             format!("{} %", whole_percent(ranking.is_best[number])),
             match unsure {
@@ -146,9 +149,9 @@ pub(super) fn remarks(
     };
     let has_unsure_places = |player: &PlayerSweep| !player.unsure_places().is_empty();
     let of_profiles = if players.iter().any(has_unsure_places) {
-        "?: not clear, as the probability that this kind is better is below 90 % (listed in team.csv). The numbers take each profile as exact, however few shots it rests on.\n"
+        "?: not clear, as the probability that this kind is better is below 90 % (listed in team.csv). The numbers of single places take each profile as exact, however few shots it rests on.\n"
     } else if players.iter().any(has_draws) {
-        "The numbers take each profile as exact, however few shots it rests on; team.csv has the probability that bank is better.\n"
+        "The numbers of single places take each profile as exact, however few shots it rests on; team.csv has the probability that bank is better.\n"
     } else {
         "The numbers take each profile as exact; for a measured player see `bankshot advise`.\n"
     };

@@ -1,6 +1,6 @@
 //! A table of the players, each from one place.
 
-use super::ranking::{Ranking, Standing, pooled};
+use super::ranking::{Ranking, Standing, own_sd, pooled};
 use super::team_profiles::{load_players, warn_of};
 use super::words::{LONGEST_NAME, whole_percent};
 use crate::analysis::sensitivity::{Difference, SensitivityTopics};
@@ -10,11 +10,11 @@ use crate::cli::fit_folder;
 use crate::cli::profile_flags::PlaceOptions;
 use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{print_hint, print_text};
-use crate::fitting::Interval;
+use crate::fitting::{Interval, shared_sd};
 use crate::plots::svg::shortened;
 use crate::present::layout::{Side, TextAnswer, TextTable};
 use crate::present::words::{likely, list, per_100};
-use crate::shooter::Profile;
+use crate::shooter::{Location, Profile};
 use crate::sweep::probability_by_place::{Preference, SURE};
 use std::path::{Path, PathBuf};
 
@@ -63,6 +63,8 @@ struct KindChance {
     /// P over the draws of the player's fit, as one of the team. What the measured shots leave open
     /// is many times the error of the simulation.
     over_draws: Option<Interval>,
+    /// The part of its standard deviation that all players have in common.
+    shared_sd: f64,
     /// Whether more than half of its makes are of the other kind.
     is_nearly_other: bool,
 }
@@ -88,7 +90,7 @@ impl KindChance {
         Some(match self.over_draws {
             Some(draws) => Standing {
                 value: draws.mean,
-                standard_error: draws.sd,
+                standard_error: own_sd(draws.sd, self.shared_sd),
             },
             None => Standing {
                 value: p.value,
@@ -102,6 +104,7 @@ impl KindChance {
 struct PlayerShots {
     name: String,
     place: String,
+    location: Location,
     /// Direct and bank.
     kinds: [KindChance; 2],
     preference: Option<Preference>,
@@ -119,7 +122,8 @@ impl PlayerShots {
             let over_draws = match (&fit, shot) {
                 (Some(fit), Some(shot)) => {
                     let p = fit_folder::shot_over_draws(fit, profile, &shot.nominal)?;
-                    Some(p.interval())
+                    let shared = shared_sd(&fit.posterior.draws, &p.of_draws);
+                    Some((p.interval(), shared))
                 }
                 _ => None,
             };
@@ -128,7 +132,8 @@ impl PlayerShots {
                     value: shot.estimate.probability,
                     standard_error: shot.estimate.standard_error,
                 }),
-                over_draws,
+                over_draws: over_draws.map(|(p, _)| p),
+                shared_sd: over_draws.map_or(0.0, |(_, shared)| shared),
                 is_nearly_other: shot.is_some_and(|shot| shot.share_of_other_kind(kind) > 0.5),
             })
         };
@@ -149,6 +154,7 @@ impl PlayerShots {
         Ok(Self {
             name: shortened(&profile.shooter().name, LONGEST_NAME),
             place: place_in_words(profile),
+            location: profile.location(),
             kinds,
             preference,
             has_fit: fit.is_some(),
@@ -236,38 +242,45 @@ pub(super) fn run(
     Ok(code::DONE)
 }
 
+/// Whether the players of a team shoot from one place.
+fn is_one_place(players: &[PlayerShots]) -> bool {
+    /// Places as near as this are one.
+    const NEAR_M: f64 = 0.01;
+    let first = &players[0].location;
+    players.iter().all(|player| {
+        let there = &player.location;
+        (there.distance_m - first.distance_m).abs() < NEAR_M
+            && there.distance_m * (there.angle_rad - first.angle_rad).abs() < NEAR_M
+    })
+}
+
 /// Players who shoot from one place are drawn towards the team's mean, as far as their shots leave
-/// open where they are.
+/// open where they are: the better kind of each, and the other one with it.
 fn pool(players: &mut [PlayerShots]) {
-    if players
-        .iter()
-        .any(|player| player.place != players[0].place)
-    {
+    if !is_one_place(players) {
         return;
     }
-    for kind in ShotKind::ALL.map(ShotKind::index) {
-        let fitted = players
-            .iter_mut()
-            .filter_map(|player| player.kinds[kind].over_draws.as_mut());
-        let fitted: Vec<&mut Interval> = fitted.collect();
-        let alone: Vec<Standing> = fitted
-            .iter()
-            .map(|p| Standing {
-                value: p.mean,
-                standard_error: p.sd,
-            })
-            .collect();
-        for (p, pooled) in fitted.into_iter().zip(pooled(&alone)) {
-            // The shape of its distribution stays.
-            let at = |end: f64| match p.sd > 0.0 {
-                true => pooled.value + (end - p.mean) * pooled.standard_error / p.sd,
-                false => pooled.value,
+    let alone: Vec<Standing> = players.iter().map(PlayerShots::standing).collect();
+    for ((player, alone), pooled) in players.iter_mut().zip(&alone).zip(pooled(&alone)) {
+        let by = pooled.value - alone.value;
+        let narrower = match alone.standard_error > 0.0 {
+            true => pooled.standard_error / alone.standard_error,
+            false => 1.0,
+        };
+        for kind in &mut player.kinds {
+            let Some(p) = &mut kind.over_draws else {
+                continue;
             };
+            let own = narrower * own_sd(p.sd, kind.shared_sd);
+            let sd = libm::hypot(own, kind.shared_sd);
+            // The shape of its distribution stays.
+            let factor = if p.sd > 0.0 { sd / p.sd } else { 1.0 };
+            let at = |end: f64| (p.mean + by + (end - p.mean) * factor).clamp(0.0, 1.0);
             *p = Interval {
-                low: at(p.low).max(0.0),
-                high: at(p.high).min(1.0),
-                mean: pooled.value,
-                sd: pooled.standard_error,
+                low: at(p.low),
+                high: at(p.high),
+                mean: at(p.mean),
+                sd,
             };
         }
     }
@@ -331,7 +344,7 @@ fn notes(players: &[PlayerShots]) -> Vec<String> {
     let any = |is: &dyn Fn(&PlayerShots) -> bool| players.iter().any(is);
     let has_fits = any(&|player| player.has_fit);
     let fits = players.iter().filter(|player| player.has_fit).count();
-    let is_pooled = fits > 1 && !any(&|player| player.place != players[0].place);
+    let is_pooled = fits > 1 && is_one_place(players);
     let notes = [
         (
             true,

@@ -19,7 +19,7 @@ use crate::cli::terminal::{
 };
 use crate::escape::file_name;
 use crate::files::atomic_file;
-use crate::fitting::UnseenParameter;
+use crate::fitting::{UnseenParameter, shared_sd};
 use crate::plots::player_poster::PlayerPoster;
 use crate::plots::sweep_results::SweepResults;
 use crate::plots::{player_poster, sweep_bank_direct_map, team_maps};
@@ -124,9 +124,11 @@ impl PlannedPlayer {
             find_sureness(&mut places, &config, fit, &bars)?;
             advice = Some(PlayerAdvice::of_fit(fit, &config.settings.output, &bars)?);
         }
-        let probability_sd = fit
-            .as_ref()
-            .map_or(0.0, |fit| fit.usual_probabilities(0).interval().sd);
+        let (probability_sd, shared_sd) = fit.as_ref().map_or((0.0, 0.0), |fit| {
+            let p = fit.usual_probabilities(0);
+            let shared = shared_sd(&fit.posterior.draws, &p.of_draws);
+            (p.interval().sd, shared)
+        });
         find_hoop_dependence(&mut places, &config, ring, &bars)?;
         let own = advice.as_ref().map(|advice| advice.poster.as_str());
         let poster = write_pictures(folder, (&self.name, own), (&config, &rows), &places)?;
@@ -135,6 +137,7 @@ impl PlannedPlayer {
             name: self.name,
             places,
             probability_sd,
+            shared_sd,
             advice,
         });
         team.results.push((config, rows));

@@ -8,7 +8,8 @@ const CLEAR: f64 = 0.9;
 const POINTS: usize = 2001;
 const REACH: f64 = 6.0;
 
-/// P of a player and its standard error.
+/// P of a player and its standard error, without what is the same for all players: the ring and the
+/// sensor, which averaging cannot make smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Standing {
     pub(super) value: f64,
@@ -80,6 +81,11 @@ pub(super) fn pooled(players: &[Standing]) -> Vec<Standing> {
         }
     };
     players.iter().map(of_player).collect()
+}
+
+/// A standard deviation without the part that all players have in common.
+pub(super) fn own_sd(all: f64, shared: f64) -> f64 {
+    (all * all - shared * shared).max(0.0).sqrt()
 }
 
 /// The order of players.
