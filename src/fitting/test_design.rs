@@ -120,6 +120,28 @@ fn typical_normals(shots: usize, seed: u64) -> Vec<Normals> {
     }
 }
 
+/// Moves the mean of a test to one of the six points that stand for all means of random tests:
+/// along each principal direction of speed, pitch and polar angle, the root of three standard errors
+/// to each side (a cubature formula of degree three; Stroud, *Approximate calculation of multiple
+/// integrals*, 1971, `E_n^{r^2}` 3-1).
+fn move_mean(test: &mut [MeasuredRelease], number: u64) {
+    let count = test.len() as f64;
+    let values = |shot: &MeasuredRelease| SVector::<f64, 3>::from_fn(|i, _| shot.values[i]);
+    let mean = test.iter().map(values).sum::<SVector<f64, 3>>() / count;
+    let squares: SMatrix<f64, 3, 3> = test
+        .iter()
+        .map(|shot| (values(shot) - mean) * (values(shot) - mean).transpose())
+        .sum();
+    let Some(cholesky) = (squares / (count - 1.0)).cholesky() else {
+        return;
+    };
+    let side = if number % 2 == 0 { 1.0 } else { -1.0 };
+    let by = cholesky.l().column((number / 2 % 3) as usize) * (side * (3.0 / count).sqrt());
+    for shot in test {
+        (0..3).for_each(|i| shot.values[i] += by[i]);
+    }
+}
+
 fn test_of(
     profile: &Profile,
     nominal: &Nominal,
@@ -154,8 +176,8 @@ fn test_of(
 }
 
 /// Simulates tests of each size, as many as it says, and fits them. `sizes` have shots and
-/// repetitions. From [`LEAST_TYPICAL_SHOTS`] on each test is a typical one: means, scatters and correlations are
-/// exactly those of the shooter.
+/// repetitions. From [`LEAST_TYPICAL_SHOTS`] on each test is a typical one: its scatters and
+/// correlations are exactly those of the shooter, and six means stand for all.
 ///
 /// # Errors
 /// A fit did not converge.
@@ -187,8 +209,10 @@ pub fn design(
             .into_par_iter()
             .map(|repetition| {
                 let seed = profile.search().seed ^ (repetition << 20 | shots as u64);
-                let typical = typical_normals(shots, seed);
-                let test = test_of(profile, nominal, noise, &typical);
+                let mut test = test_of(profile, nominal, noise, &typical_normals(shots, seed));
+                if shots >= LEAST_TYPICAL_SHOTS {
+                    move_mean(&mut test, repetition);
+                }
                 let options = FitOptions {
                     prior,
                     spin: SpinSource::Given,
