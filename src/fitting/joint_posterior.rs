@@ -19,8 +19,8 @@ use super::importance::{
 use super::makes_likelihood::{MakesLikelihood, UnknownScales, Unseen};
 use super::measured_release::{MeasuredRelease, Place, Values};
 use super::posterior::{Draw, FitOptions, Posterior, SpinSource};
-use super::prior::{AimPrior, UnseenPrior};
-use super::prior_sensitivity::{PriorOf, PriorOfDraws, log_prior_of_scatter, log_student};
+use super::prior::{AimPrior, PriorOf, PriorOfDraws, UnseenPrior};
+use super::prior_sensitivity::{log_prior_of_scatter, log_student};
 use crate::model::Physics;
 use crate::shooter::{Profile, ProfileError};
 use nalgebra::Vector3;

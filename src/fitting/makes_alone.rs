@@ -14,8 +14,7 @@ use super::importance::{
 use super::landing::{CENTRE_DEPTH_M, Landing, release_of_landing};
 use super::measured_release::{MeasuredRelease, Place, Values, nominal_of};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource};
-use super::prior::{AimPrior, UnseenPrior};
-use super::prior_sensitivity::{PriorOf, PriorOfDraws};
+use super::prior::{AimPrior, PriorOf, PriorOfDraws, UnseenPrior};
 use crate::dynamics::BatchWorkspace;
 use crate::math::normal_distribution::quantile;
 use crate::math::sobol::{ScrambleKey, Sobol};

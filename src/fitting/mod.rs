@@ -36,6 +36,7 @@ mod measured_release;
 mod noise_of_tracks;
 mod other_release_height;
 mod posterior;
+mod predicted_bins;
 mod predictive_check;
 mod prior;
 mod prior_sensitivity;
@@ -85,12 +86,13 @@ pub use measured_release::{
 pub use noise_of_tracks::noise_of_tracks;
 pub use other_release_height::values_at_height;
 pub use posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, Tails, fit, pair_name};
-pub use predictive_check::{PredictedBin, PredictiveCheck, predictive_check};
+pub use predicted_bins::{PredictedBin, PredictiveCheck};
+pub use predictive_check::predictive_check;
 pub use prior::{
-    AimPrior, ConstantErrorPrior, PopulationPrior, RINGS_OF_GYMS, Spread, StudentSpread,
-    UnseenPrior,
+    AimPrior, ConstantErrorPrior, PopulationPrior, PriorOf, PriorOfDraws, RINGS_OF_GYMS, Spread,
+    StudentSpread, UnseenPrior,
 };
-pub use prior_sensitivity::{PriorOf, PriorOfDraws, PriorSensitivity};
+pub use prior_sensitivity::PriorSensitivity;
 pub use session_comparison::{
     DAILY_FORM, POWER, ProbabilityChange, SessionComparison, TWO_SIDED_95, compare_probabilities,
     compare_sessions, probability_change, share_unseen,

@@ -5,8 +5,7 @@ use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel}
 use super::importance::UnseenSample;
 use super::interval::Interval;
 use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
-use super::prior::{PopulationPrior, Spread};
-use super::prior_sensitivity::PriorOfDraws;
+use super::prior::{PopulationPrior, PriorOfDraws, Spread};
 use super::student_posterior::StudentPosterior;
 use crate::math::normal_distribution::quantile;
 use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};

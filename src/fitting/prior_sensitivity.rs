@@ -6,36 +6,8 @@
 
 use super::importance::{pareto_smoothed, student_log_density};
 use super::posterior::Draw;
-use super::prior::PopulationPrior;
+use super::prior::{PopulationPrior, PriorOf, PriorOfDraws};
 use serde::Serialize;
-
-/// What a prior is of.
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PriorOf {
-    /// The ring's restitution.
-    Ring,
-    /// A backspin that was not measured.
-    Backspin,
-    /// The constant error of the tracker.
-    ConstantError,
-    /// How far the aim lies from the best shot.
-    Aim,
-    /// The standard deviations, and the correlation of speed and pitch angle.
-    Scatter,
-    /// The aim from side to side, where the direction was not measured.
-    Direction,
-}
-
-/// The logarithm of a prior's density at each draw, but for a constant.
-#[derive(Clone, Debug)]
-pub struct PriorOfDraws {
-    /// See there.
-    pub of: PriorOf,
-    /// Draw by draw.
-    pub log_densities: Vec<f64>,
-}
 
 /// P of the current shot if a prior were weaker or stronger.
 #[cfg_attr(test, derive(schemars::JsonSchema))]

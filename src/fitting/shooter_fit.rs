@@ -12,7 +12,7 @@ use super::joint_posterior::{FlightsOf, with_unseen};
 use super::makes_alone::{CountsError, posterior_of_makes};
 use super::measured_release::{MeasuredRelease, Place, PlaceScatter, Values};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
-use super::predictive_check::PredictiveCheck;
+use super::predicted_bins::PredictiveCheck;
 use super::prior::{Spread, UnseenPrior};
 use super::session_trends::{SessionTrend, trends};
 use super::shape_comparison::ShapeScore;

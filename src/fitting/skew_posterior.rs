@@ -3,10 +3,10 @@
 //!
 //! A release is `mu + a (|u| - sqrt(2/pi)) + e` with a standard normal `u` and `e ~ N(0, K (I - g
 //! g^T) K^T)`, `a = K g`, the length of `g` below 1. With a normal error of the tracker it stays
-//! skew-normal, so the density has a closed form. The parameters are the centred ones (Arellano-Valle
-//! and Azzalini, J. Multivariate Anal. 99 (2008) 1362): mean, covariance and skewness, about which
-//! the likelihood is smooth where `g` vanishes. It serves to compare shapes: P rests on the symmetric
-//! ones.
+//! skew-normal, so the density has a closed form. The parameters are the centred ones
+//! (Arellano-Valle and Azzalini, J. Multivariate Anal. 99 (2008) 1362): mean, covariance and
+//! skewness, in which the likelihood is smooth where `g` vanishes. It serves to compare shapes: P
+//! rests on the symmetric ones.
 
 use super::dispersion_posterior::{
     Dispersion, DispersionPosterior, ReleaseModel, inverse_and_log_determinant,

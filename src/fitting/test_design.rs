@@ -120,11 +120,15 @@ fn typical_normals(shots: usize, seed: u64) -> Vec<Normals> {
     }
 }
 
-/// Moves the mean of a test to one of the six points that stand for all means of random tests:
-/// along each principal direction of speed, pitch and polar angle, the root of three standard errors
-/// to each side (a cubature formula of degree three; Stroud, *Approximate calculation of multiple
-/// integrals*, 1971, `E_n^{r^2}` 3-1).
-fn move_mean(test: &mut [MeasuredRelease], number: u64) {
+/// Points that stand for the means and the variances of speed, pitch and polar angle of all random
+/// tests.
+const POINTS: u64 = 12;
+
+/// Turns a typical test into the one of a point of the six-dimensional space of means and
+/// variances: one of them is off by the root of six standard errors to one side (a cubature formula
+/// of degree three; Stroud, *Approximate calculation of multiple integrals*, 1971). A variance of
+/// `n` shots has the relative standard error `sqrt(2/(n - 1))`.
+fn put_at_point(test: &mut [MeasuredRelease], number: u64) {
     let count = test.len() as f64;
     let values = |shot: &MeasuredRelease| SVector::<f64, 3>::from_fn(|i, _| shot.values[i]);
     let mean = test.iter().map(values).sum::<SVector<f64, 3>>() / count;
@@ -132,13 +136,25 @@ fn move_mean(test: &mut [MeasuredRelease], number: u64) {
         .iter()
         .map(|shot| (values(shot) - mean) * (values(shot) - mean).transpose())
         .sum();
-    let Some(cholesky) = (squares / (count - 1.0)).cholesky() else {
-        return;
+    let point = number % POINTS;
+    let axis = (point / 2 % 3) as usize;
+    let off = match point.is_multiple_of(2) {
+        true => 6.0_f64.sqrt(),
+        false => -6.0_f64.sqrt(),
     };
-    let side = if number % 2 == 0 { 1.0 } else { -1.0 };
-    let by = cholesky.l().column((number / 2 % 3) as usize) * (side * (3.0 / count).sqrt());
-    for shot in test {
-        (0..3).for_each(|i| shot.values[i] += by[i]);
+    if point < 6 {
+        let Some(cholesky) = (squares / (count - 1.0)).cholesky() else {
+            return;
+        };
+        let by = cholesky.l().column(axis) * (off / count.sqrt());
+        for shot in test {
+            (0..3).for_each(|i| shot.values[i] += by[i]);
+        }
+    } else {
+        let factor = (1.0 + off * (2.0 / (count - 1.0)).sqrt()).max(0.0).sqrt();
+        for shot in test {
+            shot.values[axis] = mean[axis] + factor * (shot.values[axis] - mean[axis]);
+        }
     }
 }
 
@@ -176,8 +192,8 @@ fn test_of(
 }
 
 /// Simulates tests of each size, as many as it says, and fits them. `sizes` have shots and
-/// repetitions. From [`LEAST_TYPICAL_SHOTS`] on each test is a typical one: its scatters and
-/// correlations are exactly those of the shooter, and six means stand for all.
+/// repetitions. From [`LEAST_TYPICAL_SHOTS`] on the tests are typical ones: exactly those of
+/// the shooter but for a mean or a variance, twelve of which stand for all.
 ///
 /// # Errors
 /// A fit did not converge.
@@ -211,7 +227,7 @@ pub fn design(
                 let seed = profile.search().seed ^ (repetition << 20 | shots as u64);
                 let mut test = test_of(profile, nominal, noise, &typical_normals(shots, seed));
                 if shots >= LEAST_TYPICAL_SHOTS {
-                    move_mean(&mut test, repetition);
+                    put_at_point(&mut test, repetition);
                 }
                 let options = FitOptions {
                     prior,

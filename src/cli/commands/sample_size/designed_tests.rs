@@ -15,7 +15,7 @@ use crate::units::UnitSystem;
 const LEAST_REPETITIONS: u64 = 12;
 
 /// How many times as many tests of a size that is too small to be typical.
-const MORE_OF_SMALL: u64 = 8;
+const MORE_OF_SMALL: u64 = 4;
 
 /// The size that `--target` asks for.
 pub(super) struct Target {

@@ -19,15 +19,16 @@ pub(super) struct Standing {
 /// How far the players of a team lie apart in P: the scale of a half-normal prior. Free-throw
 /// percentages of college players have a standard deviation of about 0.1 (assumed for other shots).
 const SPREAD_OF_PLAYERS: f64 = 0.1;
-/// Standard deviations between players that are averaged over, in steps of a hundredth of the scale.
+/// Standard deviations between players that are averaged over, in steps of a hundredth of the
+/// scale.
 const SPREADS: usize = 400;
 /// A smaller error is that of a profile that is taken as exact.
 const EXACT: f64 = 1e-3;
 
 /// What is known of each player if they are of one team (partial pooling: normal players with an
 /// unknown mean, flat, and an unknown spread; Gelman et al., *Bayesian Data Analysis*, 3rd edition,
-/// 2013, section 5.4): what the shots leave open is drawn towards the team's mean. Profiles that are
-/// taken as exact stay as they are.
+/// 2013, section 5.4): what the shots leave open is drawn towards the mean of the team. Profiles
+/// that are taken as exact stay as they are.
 pub(super) fn pooled(players: &[Standing]) -> Vec<Standing> {
     let measured: Vec<&Standing> = players
         .iter()
