@@ -20,6 +20,15 @@ export class Refused extends Error {
   }
 }
 
+/** The name that a file is kept under: characters that some systems have no use for become dashes. */
+function keptName(name: string): string {
+  const clean = (text: string) => text.replace(/[^\p{L}\p{N} \-_.()+]/gu, "-");
+  const dot = name.lastIndexOf(".");
+  const [stem, end] = dot > 0 ? [name.slice(0, dot), clean(name.slice(dot)).slice(0, 10)] : [name, ""];
+  const kept = clean(stem).replace(/^[^\p{L}\p{N}]+/u, "").slice(0, 60 - end.length).replace(/[. ]+$/, "");
+  return (kept || "shots") + end;
+}
+
 /** Tells this page from others of the same browser: a newer question of a page ends its older one. */
 const PAGE = Array.from(crypto.getRandomValues(new Uint8Array(8)), (byte) => byte.toString(16).padStart(2, "0")).join("");
 
@@ -58,7 +67,7 @@ export async function remove(path: string): Promise<void> {
 }
 
 export async function upload(file: File): Promise<string> {
-  const path = `/api/uploads/${encodeURIComponent(file.name)}`;
+  const path = `/api/uploads/${encodeURIComponent(keptName(file.name))}`;
   const answer = await (await send(path, { method: "PUT", body: file })).json();
   return (answer as { name: string }).name;
 }
