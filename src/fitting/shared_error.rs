@@ -1,48 +1,40 @@
 //! The part of the uncertainty of P that the players of a team have in common.
 
+use super::interval::Interval;
 use super::posterior::Draw;
-use nalgebra::{SMatrix, SVector};
+use super::prior::RINGS_OF_GYMS;
 
-/// What one gym and one sensor leave open for all players alike: the ring, and the constant errors
-/// of speed, pitch and polar angle.
-const SHARED: usize = 4;
-
-/// The standard deviation of the part of P, draw by draw, that goes with the ring and with the
-/// constant errors of the sensor (linear regression).
+/// The standard deviation of the part of P, draw by draw, that all players of one gym have in
+/// common. It goes with the ring (linear regression), as far as the ring is known by its prior: what
+/// a player's own makes say of it errs for this player alone. With a posterior of the variance `v`
+/// and a prior of `V`, the common part is `v/V` of the ring's variance.
 #[must_use]
 pub fn shared_sd(draws: &[Draw], probabilities: &[f64]) -> f64 {
-    let of_draw = |draw: &Draw| {
-        let errors = draw.constant_errors.first().copied().unwrap_or_default();
-        let ring = draw.ring_restitution.unwrap_or_default();
-        SVector::<f64, SHARED>::new(ring, errors[0], errors[1], errors[2])
-    };
-    let count = draws.len().min(probabilities.len()).max(1) as f64;
-    let shared: Vec<SVector<f64, SHARED>> = draws.iter().map(of_draw).collect();
-    let pairs = || shared.iter().zip(probabilities);
-    let mean = pairs().map(|(x, _)| *x).sum::<SVector<f64, SHARED>>() / count;
-    let p_mean = pairs().map(|(_, p)| p).sum::<f64>() / count;
-    let (mut squares, mut products) = (
-        SMatrix::<f64, SHARED, SHARED>::zeros(),
-        SVector::<f64, SHARED>::zeros(),
+    let rings: Vec<f64> = draws
+        .iter()
+        .filter_map(|draw| draw.ring_restitution)
+        .collect();
+    if rings.is_empty() || rings.len() != probabilities.len() {
+        return 0.0;
+    }
+    let (ring, p) = (
+        Interval::of(rings.clone()),
+        Interval::of(probabilities.to_vec()),
     );
-    for (x, p) in pairs() {
-        squares += (x - mean) * (x - mean).transpose() / count;
-        products += (x - mean) * ((p - p_mean) / count);
-    }
-    // What does not vary explains nothing.
-    for i in 0..SHARED {
-        squares[(i, i)] = squares[(i, i)] * (1.0 + 1e-9) + 1e-18;
-    }
-    let explained = squares
-        .cholesky()
-        .map_or(0.0, |c| products.dot(&c.solve(&products)));
-    explained.max(0.0).sqrt()
+    let pairs = rings.iter().zip(probabilities);
+    let products = pairs.map(|(x, y)| (x - ring.mean) * (y - p.mean));
+    let covariance = products.sum::<f64>() / (rings.len() as f64 - 1.0).max(1.0);
+    let slope = covariance / (ring.sd * ring.sd).max(1e-12);
+    // The variance of t with four degrees of freedom is 2.
+    let of_prior = f64::sqrt(2.0) * RINGS_OF_GYMS.scale;
+    (slope * ring.sd).abs() * (ring.sd / of_prior).min(1.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::math::normal_distribution::quantile;
+    use nalgebra::SMatrix;
 
     /// Authority: P that is a linear function of the ring and of something of the player alone, in
     /// a grid of both, so that the two parts are known and independent.
@@ -61,8 +53,10 @@ mod tests {
             probabilities.push(0.7 - 0.03 * point(i) + 0.04 * point(j));
         }
         let of_points = (0..40).map(|k| point(k) * point(k)).sum::<f64>() / 40.0;
-        let expected = 0.03 * of_points.sqrt();
-        assert!((shared_sd(&draws, &probabilities) - expected).abs() < 1e-6);
+        // The ring's standard deviation here over that of its prior, 0.07 times the root of 2.
+        let by_prior = 0.05 * of_points.sqrt() / (0.07 * f64::sqrt(2.0));
+        let expected = 0.03 * of_points.sqrt() * by_prior;
+        assert!((shared_sd(&draws, &probabilities) - expected).abs() < 1e-4);
         let without: Vec<Draw> = draws.into_iter().map(|draw| draw.with_ring(None)).collect();
         assert!(shared_sd(&without, &probabilities) < 1e-6);
     }

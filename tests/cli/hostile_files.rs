@@ -160,6 +160,29 @@ fn contract_limits_of_the_shell_end_with_a_message() {
     under("-n 12", &best).exits(0);
 }
 
+/// Waits until a process catches a signal: on a busy machine that takes a while.
+#[cfg(unix)]
+fn wait_for_handler(id: &str, signal: &str) {
+    let bit = match signal {
+        "HUP" => 0,
+        "INT" => 1,
+        _ => 14,
+    };
+    let end = Instant::now() + Duration::from_secs(20);
+    while Instant::now() < end {
+        // Elsewhere than on Linux there is no such file, and no wait.
+        let Ok(status) = fs::read_to_string(format!("/proc/{id}/status")) else {
+            return;
+        };
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        let caught = caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        if caught.is_some_and(|mask| mask & (1 << bit) != 0) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
 /// Signals end every long command within a moment, with the exit code of the table.
 #[cfg(unix)]
 #[test]
@@ -193,9 +216,10 @@ fn contract_signals_end_every_long_command() {
         let mut command = bankshot();
         let child = command.args(arguments).stdout(std::process::Stdio::piped());
         let child = child.stderr(std::process::Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(400));
-        let start = Instant::now();
         let id = child.id().to_string();
+        wait_for_handler(&id, ["INT", "TERM", "HUP"][number % 3]);
+        std::thread::sleep(Duration::from_millis(200));
+        let start = Instant::now();
         Command::new("kill")
             .args(["-s", signal, &id])
             .status()

@@ -10,7 +10,7 @@ pub(super) struct PlayerSweep {
     pub(super) places: Vec<PlaceProbabilities>,
     /// The standard deviation of P that a fitted player's shots leave; 0 for an exact profile.
     pub(super) probability_sd: f64,
-    /// The part of it that all players have in common: the ring and the sensor.
+    /// The part of it that all players have in common: the ring.
     pub(super) shared_sd: f64,
     /// What a fitted player's own shots say.
     pub(super) advice: Option<PlayerAdvice>,

@@ -8,8 +8,8 @@ const CLEAR: f64 = 0.9;
 const POINTS: usize = 2001;
 const REACH: f64 = 6.0;
 
-/// P of a player and its standard error, without what is the same for all players: the ring and the
-/// sensor, which averaging cannot make smaller.
+/// P of a player and its standard error, without what is the same for all players: the ring as far
+/// as no makes tell it, which averaging cannot make smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Standing {
     pub(super) value: f64,
