@@ -5,9 +5,9 @@ use super::posterior::Draw;
 use super::prior::RINGS_OF_GYMS;
 
 /// The standard deviation of the part of P, draw by draw, that all players of one gym have in
-/// common. It goes with the ring (linear regression), as far as the ring is known by its prior: what
-/// a player's own makes say of it errs for this player alone. With a posterior of the variance `v`
-/// and a prior of `V`, the common part is `v/V` of the ring's variance.
+/// common. It goes with the ring (linear regression), as far as the ring is known by its prior:
+/// what a player's own makes say of it errs for this player alone. With a posterior of the variance
+/// `v` and a prior of `V`, the common part is `v/V` of the ring's variance.
 #[must_use]
 pub fn shared_sd(draws: &[Draw], probabilities: &[f64]) -> f64 {
     let rings: Vec<f64> = draws
