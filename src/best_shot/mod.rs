@@ -1,6 +1,7 @@
 //! The best direct and the best bank shot from one location (Eq. 26).
 
 mod best_by_pitch;
+mod followed;
 mod found_shots;
 mod pattern_search;
 mod physics_comparison;

@@ -13,6 +13,8 @@ const SAME_SHOT: f64 = 1e-9;
 
 /// Shots to each side that are tried beside the border to the other kind.
 const BORDER_STEPS: i32 = 8;
+/// The border itself is found by so many halvings of a step.
+const BORDER_HALVINGS: u32 = 5;
 
 /// The steps of a climb, as multiples of the first step of each variable.
 const SCALES: &[f64] = &[1.0, 0.5];
@@ -211,7 +213,8 @@ impl<'a> PatternSearch<'a> {
     }
 
     /// The best of some shots of the kind along one variable after the other, where the other kind
-    /// is within reach: parabolas do not go there, and the best shot may lie at the border.
+    /// is within reach: parabolas do not go there, and the best shot may lie at the border, which
+    /// is one of them.
     pub(super) fn best_beside_other_kind(
         &self,
         start: &Start,
@@ -221,14 +224,30 @@ impl<'a> PatternSearch<'a> {
         let mut best = start.nominal;
         for &variable in &self.variables {
             let step = reach(variable) / f64::from(BORDER_STEPS);
-            let at = |k: i32| self.moved(&best, variable, f64::from(k) * step);
-            let all = (-BORDER_STEPS..=BORDER_STEPS).map(at);
-            let shots: Vec<Nominal> = all
-                .filter(|shot| ShotKind::of(self.profile, shot) == start.kind)
-                .collect();
-            if shots.len() == 2 * BORDER_STEPS as usize + 1 {
+            let at = |steps: f64| self.moved(&best, variable, steps * step);
+            let is_of_kind = |steps: &f64| ShotKind::of(self.profile, &at(*steps)) == start.kind;
+            let all: Vec<f64> = (-BORDER_STEPS..=BORDER_STEPS).map(f64::from).collect();
+            let mut of_kind: Vec<f64> = all.iter().copied().filter(is_of_kind).collect();
+            if of_kind.len() == all.len() {
                 continue;
             }
+            for pair in all.windows(2) {
+                let [inside, outside] = match [0, 1].map(|i: usize| is_of_kind(&pair[i])) {
+                    [true, false] => [pair[0], pair[1]],
+                    [false, true] => [pair[1], pair[0]],
+                    _ => continue,
+                };
+                let halved = |(inside, outside): (f64, f64), _| {
+                    let middle = 0.5 * (inside + outside);
+                    if is_of_kind(&middle) {
+                        (middle, outside)
+                    } else {
+                        (inside, middle)
+                    }
+                };
+                of_kind.push((0..BORDER_HALVINGS).fold((inside, outside), halved).0);
+            }
+            let shots: Vec<Nominal> = of_kind.into_iter().map(at).collect();
             let each = shots.iter().zip(values(&shots));
             if let Some((shot, _)) = each.max_by(|a, b| a.1.total_cmp(&b.1)) {
                 best = *shot;

@@ -1,12 +1,13 @@
 //! How much of an answer rests on the physics: best shots under other physics.
 
+use super::followed::{Starts, carried};
 use super::found_shots::{BestShot, BestShotError, NoShot};
-use super::search::find_kinds;
+use super::search::{Found, find_from};
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::sensitivity::SensitivityTopics;
 use crate::model::{Air, PRESETS, Physics, Preset, SolidId};
 use crate::probability::{Progress, Sampler, Silent};
-use crate::shooter::{Profile, ShotKind};
+use crate::shooter::{Nominal, Profile, ShotKind};
 use crate::units::FOOT_M;
 use std::mem::{Discriminant, discriminant};
 
@@ -375,7 +376,8 @@ pub fn physics_variants(own: &Physics, own_is: PhysicsOf) -> Vec<PhysicsVariant>
 const NCAA: &str = "ncaa";
 
 /// The best shots of a profile under each physics. One under which the profile is not valid is left
-/// out.
+/// out. The first physics with air and the first without are searched; the others follow the optima
+/// of these.
 ///
 /// # Errors
 /// There is no plan under the first of them.
@@ -389,14 +391,34 @@ pub fn compare_physics(
         .nominal_overrides()
         .whole_shot(profile.location().angle_rad);
     let mut first = None;
+    let mut searched: Vec<(Profile, Vec<Nominal>)> = Vec::new();
+    let has_air = |profile: &Profile| profile.physics().air.density_kg_m3 > 0.0;
     progress.begin("comparing physics", variants.len() as u64);
     for variant in variants {
         progress.advance(u64::from(!rows.is_empty()));
         let other = profile.with(|settings| settings.physics = variant.physics.clone());
         let Ok(other) = other else { continue };
-        let found = find_kinds(&other, &ShotKind::ALL, SensitivityTopics::NONE, &Silent);
+        let near = searched
+            .iter()
+            .find(|(near, _)| has_air(near) == has_air(&other));
+        let starts: Vec<Nominal> = near.map_or(Vec::new(), |(near, optima)| {
+            let optima = optima.iter();
+            optima.map(|shot| carried(near, &other, shot)).collect()
+        });
+        let found = find_from(
+            (&other, Starts::of(&starts)),
+            &ShotKind::ALL,
+            SensitivityTopics::NONE,
+            &Silent,
+            &|_| (),
+        );
         let mut shots = match found {
-            Ok((_, shots)) => shots,
+            Ok(Found { shots, optima, .. }) => {
+                if near.is_none() {
+                    searched.push((other.clone(), optima));
+                }
+                shots
+            }
             Err(error) if rows.is_empty() => {
                 progress.end();
                 return Err(error);
@@ -439,12 +461,15 @@ pub fn compare_physics(
         });
     }
     progress.end();
-    let has_air = profile.physics().air.density_kg_m3 > 0.0;
     let ncaa = rows
         .iter()
         .position(|row| row.of == PhysicsOf::Preset(NCAA));
     Ok(PhysicsComparison {
-        base: if has_air { 0 } else { ncaa.unwrap_or(0) },
+        base: if has_air(profile) {
+            0
+        } else {
+            ncaa.unwrap_or(0)
+        },
         rows,
         same_shot: if own.is_some() {
             SameShot::OfProfile

@@ -11,6 +11,7 @@
 //! the winner is computed again with independent scrambles, so it is not the largest of many noisy
 //! values.
 
+use super::followed::Starts;
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
 use super::pattern_search::{PatternSearch, Start, first_step};
 use super::table_maxima::{Candidate, maxima_by_pitch, maxima_by_speed, separated};
@@ -35,6 +36,14 @@ const MOST_OPTIMA: usize = 3;
 /// Parabolas are taken about an optimum that reaches P of the best one but for this: so much may
 /// the few points of a climb hide.
 const PROMISING_MARGIN: f64 = 0.03;
+/// What else may grow to the best optimum nearby: optima that reach P of the best one but for this,
+/// at most so many of a kind.
+const FOLLOWED_MARGIN: f64 = 0.08;
+/// See [`FOLLOWED_MARGIN`].
+const MOST_FOLLOWED: usize = 4;
+/// P of the other kind, which is said beside the best shot, may have so many times the standard
+/// error of the search.
+const ERROR_OF_OTHER_KIND: f64 = 3.0;
 /// Two optima nearer than this, in pitch, are taken for the same one.
 const SAME_OPTIMUM_RAD: f64 = 0.05;
 /// Optima this near are one where the pitch angle is fixed: in direction, and relative in speed.
@@ -93,7 +102,15 @@ pub fn find_with_draft(
     draft: &dyn Fn(&[DraftShot]),
 ) -> Result<BestShots, BestShotError> {
     let topics = SensitivityTopics::ALL;
-    let (plan, mut shots) = find_kinds_with(profile, &ShotKind::ALL, topics, progress, draft)?;
+    let Found {
+        plan, mut shots, ..
+    } = find_from(
+        (profile, Starts::Table),
+        &ShotKind::ALL,
+        topics,
+        progress,
+        draft,
+    )?;
     let none = |kind| Err(NoShot::Impossible(kind));
     let bank = shots.pop().unwrap_or_else(|| none(ShotKind::Bank));
     let direct = shots.pop().unwrap_or_else(|| none(ShotKind::Direct));
@@ -111,45 +128,73 @@ pub fn find_kinds(
     topics: SensitivityTopics,
     progress: &dyn Progress,
 ) -> Result<(TablePlan, Vec<Result<BestShot, NoShot>>), BestShotError> {
-    find_kinds_with(profile, kinds, topics, progress, &|_| ())
+    let found = find_from((profile, Starts::Table), kinds, topics, progress, &|_| ())?;
+    Ok((found.plan, found.shots))
 }
 
-fn find_kinds_with(
-    profile: &Profile,
+/// What a search finds.
+pub(super) struct Found {
+    plan: TablePlan,
+    /// The best shots of the kinds.
+    pub(super) shots: Vec<Result<BestShot, NoShot>>,
+    /// The local optima of the kinds that [`Starts::Optima`] takes.
+    pub(super) optima: Vec<Nominal>,
+}
+
+/// As [`find_kinds`], with climbs from `starts`.
+///
+/// # Errors
+/// As [`find`].
+pub(super) fn find_from(
+    (profile, starts): (&Profile, Starts),
     kinds: &[ShotKind],
     topics: SensitivityTopics,
     progress: &dyn Progress,
     draft: &dyn Fn(&[DraftShot]),
-) -> Result<(TablePlan, Vec<Result<BestShot, NoShot>>), BestShotError> {
+) -> Result<Found, BestShotError> {
     let plan = TablePlan::for_search(profile)?;
     let search = BestShotSearch::new(profile, &plan, topics, progress);
-    let optima = search.optima(&search.starts(kinds)?, draft);
+    let LocalOptima { highest, followed } = search.optima(&search.starts(kinds, starts)?, draft);
     let shots = kinds
         .par_iter()
-        .map(|&kind| search.best(kind, optima[kind.index()]))
+        .map(|&kind| search.best(kind, highest[kind.index()]))
         .collect::<Result<_, _>>()?;
-    Ok((plan, shots))
+    Ok(Found {
+        plan,
+        shots,
+        optima: followed,
+    })
 }
 
-/// The best shot of a kind without its sensitivity, and P of the optimum of the other kind
-/// that climbs alone find; `None` where no shot of that kind is made.
+/// The best shot of a kind without its sensitivity, P of the optimum of the other kind that
+/// climbs alone find (`None` where no shot of that kind is made), and the local optima of both.
+pub(super) struct FoundBesideOtherKind {
+    pub(super) shot: Result<BestShot, NoShot>,
+    pub(super) other_kind: Option<Estimate>,
+    pub(super) optima: Vec<Nominal>,
+}
+
+/// See [`FoundBesideOtherKind`].
 ///
 /// # Errors
 /// As [`find`].
 pub(super) fn find_beside_other_kind(
-    profile: &Profile,
+    (profile, starts): (&Profile, Starts),
     kind: ShotKind,
     progress: &dyn Progress,
-) -> Result<(Result<BestShot, NoShot>, Option<Estimate>), BestShotError> {
+) -> Result<FoundBesideOtherKind, BestShotError> {
     let plan = TablePlan::for_search(profile)?;
     let search = BestShotSearch::new(profile, &plan, SensitivityTopics::NONE, progress);
-    let optima = search.optima(&search.starts(&ShotKind::ALL)?, &|_| ());
-    let best = search.best(kind, optima[kind.index()])?;
-    let other = optima[kind.other().index()];
-    Ok((
-        best,
-        other.map(|nominal| search.estimate(&nominal, &Silent)),
-    ))
+    let LocalOptima { highest, followed } =
+        search.optima(&search.starts(&ShotKind::ALL, starts)?, &|_| ());
+    let settings = profile.search();
+    let error = ERROR_OF_OTHER_KIND * settings.standard_error;
+    let roughly = |nominal| (search.sampler).estimate(&nominal, error, settings.seed, &Silent);
+    Ok(FoundBesideOtherKind {
+        shot: search.best(kind, highest[kind.index()])?,
+        other_kind: highest[kind.other().index()].map(roughly),
+        optima: followed,
+    })
 }
 
 /// The optimum of a kind that climbs from some shots reach, and its P; `None` where none of the
@@ -164,12 +209,9 @@ pub(super) fn climb_from_shots(
 ) -> Result<Option<(Nominal, Estimate)>, BestShotError> {
     let plan = TablePlan::for_search(profile)?;
     let search = BestShotSearch::new(profile, &plan, SensitivityTopics::NONE, &Silent);
-    let starts: Vec<Start> = shots
-        .iter()
-        .filter(|shot| ShotKind::of(profile, shot) == kind)
-        .map(|&nominal| Start { kind, nominal })
-        .collect();
-    let optimum = search.optima(&starts, &|_| ())[kind.index()];
+    let mut starts = search.starts_among(shots);
+    starts.retain(|start| start.kind == kind);
+    let optimum = search.optima(&starts, &|_| ()).highest[kind.index()];
     Ok(optimum.map(|nominal| (nominal, search.estimate(&nominal, &Silent))))
 }
 
@@ -194,6 +236,14 @@ struct Top {
 
 /// The optimum of a climb, after its number of made shots.
 type Optimum = (u64, Nominal);
+
+/// What climbs and parabolas find.
+struct LocalOptima {
+    /// The highest optimum of each kind; `None` where no shot of it is made.
+    highest: [Option<Nominal>; 2],
+    /// Optima of all kinds that may be the highest ones nearby.
+    followed: Vec<Nominal>,
+}
 
 struct BestShotSearch<'a> {
     profile: &'a Profile,
@@ -227,9 +277,47 @@ impl<'a> BestShotSearch<'a> {
         }
     }
 
-    /// The starts of the climbs of some kinds: the best shots of the coarse table, far apart.
-    fn starts(&self, kinds: &[ShotKind]) -> Result<Vec<Start>, PlanError> {
+    /// The starts of the climbs of some kinds.
+    fn starts(&self, kinds: &[ShotKind], from: Starts) -> Result<Vec<Start>, PlanError> {
+        let known = match from {
+            Starts::Table => Vec::new(),
+            Starts::Optima(shots) => self.starts_among(shots),
+        };
+        let is_known = |kind: &ShotKind| known.iter().any(|start| start.kind == *kind);
+        let new: Vec<ShotKind> = kinds
+            .iter()
+            .copied()
+            .filter(|kind| !is_known(kind))
+            .collect();
+        let mut starts = self.starts_of_table(&new)?;
+        starts.extend(
+            known
+                .into_iter()
+                .filter(|start| kinds.contains(&start.kind)),
+        );
+        Ok(starts)
+    }
+
+    /// Starts at those of some shots that are not the same optimum as one before, each of its kind.
+    fn starts_among(&self, shots: &[Nominal]) -> Vec<Start> {
+        let mut starts: Vec<Start> = Vec::new();
+        for &nominal in shots {
+            let kind = ShotKind::of(self.profile, &nominal);
+            let is_other =
+                |start: &Start| start.kind != kind || self.are_apart(&start.nominal, &nominal);
+            if starts.iter().all(is_other) {
+                starts.push(Start { kind, nominal });
+            }
+        }
+        starts
+    }
+
+    /// The best shots of the coarse table, far apart.
+    fn starts_of_table(&self, kinds: &[ShotKind]) -> Result<Vec<Start>, PlanError> {
         let mut starts = Vec::new();
+        if kinds.is_empty() {
+            return Ok(starts);
+        }
         for side_spin_rad_s in start_side_spins(self.profile, self.plan) {
             let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
             let table = self.table(&plan);
@@ -314,24 +402,25 @@ impl<'a> BestShotSearch<'a> {
     }
 
     /// The shot with its P; aimed straight at the hoop's centre if left and right are mirror images
-    /// and P is the same but for its error.
+    /// and the same points tell no difference in P.
     fn straight_if_as_good(&self, kind: ShotKind, nominal: &Nominal) -> (Nominal, Estimate) {
-        let with_estimate = |nominal| (nominal, self.estimate(&nominal, self.progress));
-        let found = with_estimate(*nominal);
         let straight = Nominal {
             polar_rad: self.profile.location().angle_rad,
             ..*nominal
         };
         let is_other = self.plan.mirrored && straight.polar_rad != nominal.polar_rad;
-        if !is_other || ShotKind::of(self.profile, &straight) != kind || !self.is_made(&straight) {
-            return found;
-        }
-        let straight = with_estimate(straight);
-        if straight.1.probability >= found.1.probability - found.1.standard_error {
-            straight
-        } else {
-            found
-        }
+        let is_as_good = || {
+            let points = NEIGHBOURHOOD_FACTOR * self.points();
+            let made = self.made(&[straight, *nominal], points);
+            let lost = made[1] as f64 - made[0] as f64;
+            lost <= self.profile.search().standard_error * f64::from(points)
+        };
+        let goes_straight = is_other
+            && ShotKind::of(self.profile, &straight) == kind
+            && self.is_made(&straight)
+            && is_as_good();
+        let nominal = if goes_straight { straight } else { *nominal };
+        (nominal, self.estimate(&nominal, self.progress))
     }
 
     fn is_made(&self, nominal: &Nominal) -> bool {
@@ -359,9 +448,8 @@ impl<'a> BestShotSearch<'a> {
             })
     }
 
-    /// The highest optimum of each kind that is reached from some starts. `None` where no shot of
-    /// it is made.
-    fn optima(&self, starts: &[Start], draft: &dyn Fn(&[DraftShot])) -> [Option<Nominal>; 2] {
+    /// The optima that are reached from some starts.
+    fn optima(&self, starts: &[Start], draft: &dyn Fn(&[DraftShot])) -> LocalOptima {
         let points = self.points();
         let few = (points / CLIMB_PART).max(CLIMB_LEAST);
         self.progress.begin("climbing", starts.len() as u64);
@@ -369,6 +457,7 @@ impl<'a> BestShotSearch<'a> {
         self.progress.end();
         let made = self.made(&nominals, points);
         let mut promising: Vec<Start> = Vec::new();
+        let mut climbed: Vec<Nominal> = Vec::new();
         let mut drafts: Vec<DraftShot> = Vec::new();
         for kind in ShotKind::ALL {
             let mut optima: Vec<Optimum> = (starts.iter().zip(made.iter().zip(&nominals)))
@@ -381,27 +470,31 @@ impl<'a> BestShotSearch<'a> {
                 nominal,
                 probability: made as f64 / f64::from(points),
             }));
-            promising.extend(
-                self.promising(&optima)
-                    .map(|nominal| Start { kind, nominal }),
-            );
+            let near = self.apart(&optima, PROMISING_MARGIN, MOST_OPTIMA);
+            promising.extend(near.into_iter().map(|nominal| Start { kind, nominal }));
+            climbed.extend(self.apart(&optima, FOLLOWED_MARGIN, MOST_FOLLOWED));
         }
         draft(&drafts);
-        self.highest_tops(&promising)
+        let highest = self.highest_tops(&promising);
+        let tops = highest.iter().flatten().copied();
+        LocalOptima {
+            followed: tops.chain(climbed).collect(),
+            highest,
+        }
     }
 
-    /// Those of some optima, the best first, that are near it in P and far from each other.
-    fn promising(&self, optima: &[Optimum]) -> impl Iterator<Item = Nominal> {
-        let points = f64::from(self.points());
-        let least = |best: &Optimum| best.0 as f64 - PROMISING_MARGIN * points;
+    /// At most so many of some optima, the best first, that reach P of the first but for a margin
+    /// and are far from each other.
+    fn apart(&self, optima: &[Optimum], margin: f64, most: usize) -> Vec<Nominal> {
+        let least = |best: &Optimum| best.0 as f64 - margin * f64::from(self.points());
         let least = optima.first().map_or(0.0, least);
         let mut chosen: Vec<Nominal> = Vec::new();
         for (_, optimum) in optima.iter().filter(|(made, _)| *made as f64 >= least) {
-            if chosen.len() < MOST_OPTIMA && chosen.iter().all(|c| self.are_apart(optimum, c)) {
+            if chosen.len() < most && chosen.iter().all(|c| self.are_apart(optimum, c)) {
                 chosen.push(*optimum);
             }
         }
-        chosen.into_iter()
+        chosen
     }
 
     /// Whether two optima are not the same one: apart in side spin, or in pitch; where the pitch
@@ -419,8 +512,12 @@ impl<'a> BestShotSearch<'a> {
     }
 
     /// The highest top of each kind of the parabolas about some optima; `None` where no shot of it
-    /// is made.
-    fn highest_tops(&self, starts: &[Start]) -> [Option<Nominal>; 2] {
+    /// is made. A single optimum of a kind is taken as it is: parabolas are taken about the highest
+    /// one later, too.
+    fn highest_tops(&self, optima: &[Start]) -> [Option<Nominal>; 2] {
+        let of_kind = |kind: ShotKind| optima.iter().filter(move |start| start.kind == kind);
+        let (alone, starts): (Vec<Start>, Vec<Start>) =
+            (optima.iter()).partition(|start| of_kind(start.kind).count() == 1);
         let points = self.points();
         self.progress.begin("refining", starts.len() as u64);
         let nominals: Vec<Nominal> = starts
@@ -434,6 +531,11 @@ impl<'a> BestShotSearch<'a> {
         self.progress.end();
         let made = self.made(&nominals, self.compared_points());
         ShotKind::ALL.map(|kind| {
+            if let Some(only) = alone.iter().find(|start| start.kind == kind) {
+                let some = [points, self.compared_points()];
+                let is_made = |points| self.made(&[only.nominal], points)[0] > 0;
+                return some.into_iter().any(is_made).then_some(only.nominal);
+            }
             let highest = (starts.iter().zip(made.iter().zip(&nominals)))
                 .filter(|(start, (made, _))| start.kind == kind && **made > 0)
                 .map(|(_, optimum)| optimum)

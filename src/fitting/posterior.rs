@@ -24,6 +24,8 @@ const BURN_IN: usize = 300;
 const FIRST_STEPS: usize = 500;
 /// How often the kept steps are doubled before the sampler gives up.
 const DOUBLINGS: u32 = 5;
+/// Convergence is judged by every fourth step: neighbours hardly differ.
+const THINNING: usize = 4;
 /// What a converged sample has.
 const LARGEST_R_HAT: f64 = 1.02;
 const LEAST_EFFECTIVE_SIZE: f64 = 1000.0;
@@ -492,14 +494,21 @@ impl Sampled {
         walks(&self.chains, self.walkers).collect()
     }
 
-    fn convergence_of(chains: &[Vec<Vec<f64>>], walkers: usize, steps: usize) -> Convergence {
+    fn convergence_of(chains: &[Vec<Vec<f64>>], walkers: usize) -> Convergence {
         let of_parameter = |parameter: usize| {
+            let walks: Vec<Vec<f64>> = chains
+                .iter()
+                .flat_map(|chain| (0..walkers).map(move |w| chain.iter().skip(w)))
+                .map(|walk| {
+                    walk.step_by(THINNING * walkers)
+                        .map(|point| point[parameter])
+                })
+                .map(Iterator::collect)
+                .collect();
             ParameterChains {
-                values: walks(chains, walkers)
-                    .map(|point| point[parameter])
-                    .collect(),
+                steps: walks[0].len(),
+                values: walks.concat(),
                 chains: CHAINS,
-                steps,
             }
             .convergence()
         };
@@ -556,7 +565,7 @@ pub(super) fn sampled<const D: usize, M: ReleaseModel<D>>(
                 chain
             })
             .collect();
-        let convergence = Sampled::convergence_of(&chains, walkers, steps);
+        let convergence = Sampled::convergence_of(&chains, walkers);
         let Convergence {
             r_hat,
             bulk_size,

@@ -170,20 +170,20 @@ fn contract_sessions_are_in_the_order_of_time() {
         let pitch = all.iter().find(name).unwrap_or_else(|| panic!("{json:#}"));
         pitch["change"]["mean"].as_f64().unwrap() > 2.0
     };
-    for (dates, flags) in [
+    // Every second file has its rows newest first.
+    for (number, (dates, flags)) in [
         (["10/14/2025", "03/02/2026"], &[][..]),
         (["14.10.2025", "2.3.2026"], &[]),
         (["\"Oct 14, 2025\"", "\"Mar 2, 2026\""], &[]),
         (["2025-10-14", "2026-03-02"], &[]),
         (["45944", "46083"], &[]),
         (["04/03/2025", "05/03/2025"], &["--dates", "dmy"]),
-    ] {
-        for newest_first in [false, true] {
-            assert!(
-                pitch_grew(&shots(dates, newest_first), flags),
-                "{dates:?} {newest_first}"
-            );
-        }
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let file = shots(dates, number % 2 == 1);
+        assert!(pitch_grew(&file, flags), "{dates:?}");
     }
     let out = folder.path().join("out");
     fit(

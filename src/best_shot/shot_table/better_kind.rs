@@ -4,6 +4,7 @@ use super::cells::Cell;
 use super::interpolation_check::{BestKnown, PlacedShot, check};
 use super::lookup::{ShotTable, TableKind, TableShot};
 use super::shot_at_place::{ShotTableError, best};
+use crate::best_shot::followed::Starts;
 use crate::probability::Silent;
 use crate::shooter::{Location, Profile, ShotKind};
 use std::ops::RangeInclusive;
@@ -46,7 +47,8 @@ pub(super) fn merged(
                     distance_m,
                     angle_rad,
                 })?;
-                Ok::<_, ShotTableError>((distance_m, best(&here, stretch.kind, &Silent)?.ok()))
+                let found = best((&here, Starts::Table), stretch.kind, &Silent)?;
+                Ok::<_, ShotTableError>((distance_m, found.shot.ok()))
             }
         };
         nodes.push(end(first, stretch.from_m)?);
@@ -220,7 +222,10 @@ impl ShotTable {
                     continue;
                 };
                 let shot = PlacedShot { location, nominal };
-                let found = best(&profile.moved_to(location)?, stretch.kind, &Silent)?.ok();
+                let here = profile.moved_to(location)?;
+                let found = best((&here, Starts::Table), stretch.kind, &Silent)?
+                    .shot
+                    .ok();
                 let known = BestKnown::Searched(found.map(|shot| shot.probability));
                 checks.push(check(profile, stretch.kind, (shot, looked_up), known)?);
             }

@@ -5,9 +5,8 @@ use super::better_kind::merged;
 use super::cells::{Cell, grid};
 use super::interpolation_check::{PlacedShot, moved};
 use super::lookup::{ShotTable, TableKind, TableShot};
-use super::shot_at_place::{ShotTableError, best, table_shot};
+use super::shot_at_place::{ShotTableError, table_shot};
 use super::table_search::{TableFinding, TableLog, TableSearch};
-use crate::best_shot::found_shots::NoShot;
 use crate::best_shot::search::climb_from_shots;
 use crate::probability::{Progress, Sampler, Silent};
 use crate::shooter::{
@@ -183,25 +182,26 @@ impl ShotTable {
         stage: &str,
     ) -> Result<(), ShotTableError> {
         let nodes = grid(&self.distances_m, &self.angles_rad);
-        search.find_shots(nodes.iter(), stage)?;
+        let alone = nodes.iter().map(|node| (*node, Vec::new()));
+        search.find_shots(alone, stage)?;
         let shots = nodes.iter().map(|node| search.shot_at(node).cloned());
         self.shots = shots.collect();
         Ok(())
     }
 
-    /// Finds the shots in the middles of those cells that can be looked up there.
+    /// Finds the shots in the middles of those cells that can be looked up there, from the optima
+    /// of their corners.
     fn find_middles(
         &self,
         search: &mut TableSearch<'_>,
         cells: &[Cell],
         stage: &str,
     ) -> Result<(), ShotTableError> {
-        let middles: Vec<Location> = cells
+        let middles = cells
             .iter()
-            .map(Cell::middle)
-            .filter(|&middle| self.interpolated(middle).is_some())
-            .collect();
-        search.find_shots(middles.iter(), stage)
+            .map(|cell| (cell.middle(), cell.corners()))
+            .filter(|&(middle, _)| self.interpolated(middle).is_some());
+        search.find_shots(middles, stage)
     }
 
     fn find_checks(
@@ -357,17 +357,8 @@ fn stages_of_round(round: usize) -> [String; 3] {
         .map(|stage| format!("{stage}, round {round} of {most} at most"))
 }
 
-/// The best shot of a kind with values that the search leaves as they are.
-pub(crate) fn best_with_fixed(
-    profile: &Profile,
-    kind: ShotKind,
-    fixed: &[(NominalVariable, f64)],
-) -> Result<Result<TableShot, NoShot>, ShotTableError> {
-    Ok(best(&with_fixed(profile, fixed)?, kind, &Silent)?)
-}
-
 /// The profile with values that the search leaves as they are.
-fn with_fixed(
+pub(in crate::best_shot) fn with_fixed(
     profile: &Profile,
     fixed: &[(NominalVariable, f64)],
 ) -> Result<Profile, ProfileError> {

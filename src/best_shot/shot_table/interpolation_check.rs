@@ -1,10 +1,10 @@
 //! What interpolation between the nodes of a table of best shots costs.
 
-use crate::analysis::aim_past_hoop::centre_speed_m_s;
+use crate::best_shot::followed::carried;
 use crate::best_shot::found_shots::BestShotError;
 use crate::best_shot::search::climb_from_shots;
 use crate::probability::{MAX_SHOTS, Sampler, Silent};
-use crate::shooter::{Location, Nominal, NominalVariable, Profile, ProfileError, ShotKind};
+use crate::shooter::{Location, Nominal, Profile, ProfileError, ShotKind};
 use serde::{Deserialize, Serialize};
 
 /// Parts of a cell's width at which interpolation is checked.
@@ -88,24 +88,14 @@ pub(super) fn check(
     })
 }
 
-/// A shot with its aim beside the hoop's centre kept, and with its difference from the speed
-/// through the centre, at another place.
+/// A shot as a start at another place.
 pub(super) fn moved(
     profile: &Profile,
     here: &Profile,
     shot: &PlacedShot,
 ) -> Result<Nominal, ProfileError> {
-    let mut nominal = shot.nominal;
-    nominal.polar_rad += here.location().angle_rad - shot.location.angle_rad;
-    if here.search().choice.includes(NominalVariable::Speed) {
-        let there = profile.moved_to(shot.location)?;
-        let speeds = centre_speed_m_s(&there, nominal.pitch_rad)
-            .zip(centre_speed_m_s(here, nominal.pitch_rad));
-        if let Some((there_m_s, here_m_s)) = speeds {
-            nominal.speed_m_s += here_m_s - there_m_s;
-        }
-    }
-    Ok(nominal)
+    let there = profile.moved_to(shot.location)?;
+    Ok(carried(&there, here, &shot.nominal))
 }
 
 /// Why a place could not be checked.

@@ -9,9 +9,10 @@ mod lookup;
 mod shot_at_place;
 mod table_search;
 
-pub(super) use build::best_with_fixed;
+pub(super) use build::with_fixed;
 pub use build::{MOST_HALVINGS, MOST_NODES, ShotTableRequest};
 pub use interpolation_check::InterpolationCheck;
 pub use lookup::{ShotTable, TableKind, TableShot};
 pub use shot_at_place::ShotTableError;
+pub(super) use shot_at_place::{FoundAtPlace, best};
 pub use table_search::TableFinding;

@@ -3,8 +3,9 @@
 use super::interpolation_check::CheckError;
 use super::lookup::TableShot;
 use crate::analysis::sensitivity::{self, SensitivityTopics};
+use crate::best_shot::followed::Starts;
 use crate::best_shot::found_shots::{BestShotError, NoShot};
-use crate::best_shot::search::find_beside_other_kind;
+use crate::best_shot::search::{FoundBesideOtherKind, find_beside_other_kind};
 use crate::dynamics::{Event, EventKind, Outcome};
 use crate::model::SolidId;
 use crate::probability::{Estimate, Progress, Pulse, Silent};
@@ -39,28 +40,44 @@ impl From<CheckError> for ShotTableError {
     }
 }
 
-/// The best shot of a kind, if there is a clean one.
-pub(super) fn best(
-    profile: &Profile,
+/// What is found at one place.
+pub(in crate::best_shot) struct FoundAtPlace {
+    /// The best shot of the kind, if there is a clean one.
+    pub(in crate::best_shot) shot: Result<TableShot, NoShot>,
+    /// Local optima of both kinds, to start from at places nearby.
+    pub(in crate::best_shot) optima: Vec<Nominal>,
+}
+
+/// The best shot of a kind.
+pub(in crate::best_shot) fn best(
+    (profile, starts): (&Profile, Starts),
     kind: ShotKind,
     progress: &dyn Progress,
-) -> Result<Result<TableShot, NoShot>, BestShotError> {
-    let (shot, other) = match find_beside_other_kind(profile, kind, &Pulse(progress)) {
+) -> Result<FoundAtPlace, BestShotError> {
+    let FoundBesideOtherKind {
+        shot,
+        other_kind,
+        optima,
+    } = match find_beside_other_kind((profile, starts), kind, &Pulse(progress)) {
         Ok(found) => found,
         Err(BestShotError::Plan(PlanError::OutOfReach { .. })) => {
-            return Ok(Err(NoShot::Impossible(kind)));
+            return Ok(FoundAtPlace {
+                shot: Err(NoShot::Impossible(kind)),
+                optima: Vec::new(),
+            });
         }
         Err(error) => return Err(error),
     };
-    Ok(shot.map(|shot| TableShot {
-        other_kind: other.map(|estimate| estimate.probability),
+    let shot = shot.map(|shot| TableShot {
+        other_kind: other_kind.map(|estimate| estimate.probability),
         ..table_shot(
             (profile, kind),
             &shot.nominal,
             &shot.estimate,
             &shot.outcome,
         )
-    }))
+    });
+    Ok(FoundAtPlace { shot, optima })
 }
 
 /// A shot of a table, without P of the other kind.

@@ -5,8 +5,9 @@ use super::cells::Cell;
 use super::interpolation_check::{BestKnown, InterpolationCheck, PlacedShot, check};
 use super::lookup::{ShotTable, TableShot};
 use super::shot_at_place::{ShotTableError, best};
+use crate::best_shot::followed::{Starts, carried};
 use crate::probability::Progress;
-use crate::shooter::{Location, Profile, ShotKind};
+use crate::shooter::{Location, Nominal, Profile, ShotKind};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -25,6 +26,8 @@ pub enum TableFinding {
         place: Location,
         /// `None` where there is no clean one.
         shot: Option<TableShot>,
+        /// Local optima of both kinds, from which the search nearby starts.
+        optima: Vec<Nominal>,
     },
     /// The checks between some nodes.
     Checks {
@@ -50,7 +53,7 @@ pub(super) struct TableLog<'a> {
 pub(super) struct TableSearch<'a> {
     pub(super) profile: &'a Profile,
     pub(super) kind: ShotKind,
-    shots: HashMap<[u64; 2], Option<TableShot>>,
+    shots: HashMap<[u64; 2], (Option<TableShot>, Vec<Nominal>)>,
     checks: HashMap<[u64; 4], Vec<InterpolationCheck>>,
     found: &'a mut dyn FnMut(&TableFinding),
     progress: &'a dyn Progress,
@@ -63,8 +66,13 @@ impl<'a> TableSearch<'a> {
         let mut checked = HashMap::new();
         for finding in log.known {
             match finding {
-                TableFinding::Shot { kind, place, shot } if *kind == wanted => {
-                    shots.insert(key(place), shot.clone());
+                TableFinding::Shot {
+                    kind,
+                    place,
+                    shot,
+                    optima,
+                } if *kind == wanted => {
+                    shots.insert(key(place), (shot.clone(), optima.clone()));
                 }
                 TableFinding::Checks {
                     kind,
@@ -93,7 +101,23 @@ impl<'a> TableSearch<'a> {
 
     /// The best shot at a place; `None` where there is no clean one, or it was not searched.
     pub(super) fn shot_at(&self, place: &Location) -> Option<&TableShot> {
-        self.shots.get(&key(place))?.as_ref()
+        self.shots.get(&key(place))?.0.as_ref()
+    }
+
+    /// The local optima of some places as starts from `here`.
+    fn optima_around(
+        &self,
+        places: &[Location],
+        here: &Profile,
+    ) -> Result<Vec<Nominal>, ShotTableError> {
+        let mut starts = Vec::new();
+        for place in places {
+            if let Some((_, optima)) = self.shots.get(&key(place)) {
+                let there = self.profile.moved_to(*place)?;
+                starts.extend(optima.iter().map(|shot| carried(&there, here, shot)));
+            }
+        }
+        Ok(starts)
     }
 
     /// The checks of a cell.
@@ -106,26 +130,31 @@ impl<'a> TableSearch<'a> {
         self.progress.begin(&stage, total as u64);
     }
 
-    /// Finds the shots of those places that have none yet.
-    pub(super) fn find_shots<'p>(
+    /// Finds the shots of those places that have none yet: from the optima of the places around
+    /// each, or from scratch where there are none.
+    pub(super) fn find_shots(
         &mut self,
-        places: impl Iterator<Item = &'p Location>,
+        places: impl Iterator<Item = (Location, Vec<Location>)>,
         stage: &str,
     ) -> Result<(), ShotTableError> {
-        let is_new = |place: &&Location| !self.shots.contains_key(&key(place));
-        let new: Vec<&Location> = places.filter(is_new).collect();
+        let is_new = |(place, _): &(Location, _)| !self.shots.contains_key(&key(place));
+        let new: Vec<(Location, Vec<Location>)> = places.filter(is_new).collect();
         if new.is_empty() {
             return Ok(());
         }
         self.begin(stage, new.len());
-        for &place in new {
-            let shot = best(&self.profile.moved_to(place)?, self.kind, self.progress)?.ok();
+        for (place, around) in &new {
+            let here = self.profile.moved_to(*place)?;
+            let starts = self.optima_around(around, &here)?;
+            let found = best((&here, Starts::of(&starts)), self.kind, self.progress)?;
+            let (shot, optima) = (found.shot.ok(), found.optima);
             (self.found)(&TableFinding::Shot {
                 kind: self.kind,
-                place,
+                place: *place,
                 shot: shot.clone(),
+                optima: optima.clone(),
             });
-            self.shots.insert(key(&place), shot);
+            self.shots.insert(key(place), (shot, optima));
             self.progress.advance(1);
         }
         self.progress.end();
@@ -144,11 +173,11 @@ impl<'a> TableSearch<'a> {
         let places: usize = new.iter().map(|cell| cell.checked_places().len()).sum();
         self.begin(stage, places);
         for cell in new {
-            let around: Vec<PlacedShot> = cell
-                .corners()
-                .into_iter()
-                .chain([cell.middle()])
-                .filter_map(|location| {
+            let mut known = cell.corners();
+            known.push(cell.middle());
+            let around: Vec<PlacedShot> = known
+                .iter()
+                .filter_map(|&location| {
                     let nominal = self.shot_at(&location)?.nominal;
                     Some(PlacedShot { location, nominal })
                 })
@@ -156,15 +185,17 @@ impl<'a> TableSearch<'a> {
             let mut checks = Vec::new();
             for location in cell.checked_places() {
                 if let Some((nominal, looked_up)) = table.interpolated(location) {
-                    // Climbs can miss an optimum that a search finds. Between rows of several court
-                    // angles there are too many places to search them all.
+                    // Climbs from the best shots around can miss an optimum. Between rows of several
+                    // court angles there are too many places to follow all optima to each.
                     let best = if location == cell.middle() {
                         let shot = self.shot_at(&location);
                         BestKnown::Searched(shot.map(|shot| shot.probability))
                     } else if table.angles_rad.len() == 1 {
-                        let shot =
-                            best(&self.profile.moved_to(location)?, self.kind, self.progress)?.ok();
-                        BestKnown::Searched(shot.map(|shot| shot.probability))
+                        let here = self.profile.moved_to(location)?;
+                        let mut starts = self.optima_around(&known, &here)?;
+                        starts.push(nominal);
+                        let found = best((&here, Starts::of(&starts)), self.kind, self.progress)?;
+                        BestKnown::Searched(found.shot.ok().map(|shot| shot.probability))
                     } else {
                         BestKnown::Climbed(&around)
                     };
@@ -198,7 +229,8 @@ impl<'a> TableSearch<'a> {
             angle_rad,
         };
         let places: Vec<Location> = distances_m.iter().copied().map(at).collect();
-        self.find_shots(places.iter(), STAGE)?;
+        let alone = |place: &Location| (*place, Vec::new());
+        self.find_shots(places.iter().map(alone), STAGE)?;
         let mut ends = Vec::new();
         for pair in places.windows(2) {
             let has_shot = [0, 1].map(|i: usize| self.shot_at(&pair[i]).is_some());
@@ -209,7 +241,7 @@ impl<'a> TableSearch<'a> {
                 [has_shot[0], !has_shot[0]].map(|first| pair[usize::from(!first)].distance_m);
             for _ in 0..END_HALVINGS {
                 let middle = at(0.5 * (with_m + without_m));
-                self.find_shots(std::iter::once(&middle), STAGE)?;
+                self.find_shots(std::iter::once(alone(&middle)), STAGE)?;
                 if self.shot_at(&middle).is_some() {
                     with_m = middle.distance_m;
                     ends.push(with_m);

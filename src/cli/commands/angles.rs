@@ -38,7 +38,7 @@ const DEFAULT_PITCHES_DEG: (f64, f64, f64) = (40.0, 65.0, 2.5);
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each angle takes one or two seconds on two cores. Near the best angle the makes hardly change, so `bankshot best` can differ by a degree or two. Speed and direction are optimised at each angle; for a fixed speed see `bankshot shot PROFILE --vary 'pitch=..'`.
+An angle takes a quarter of a second. Near the best angle the makes hardly change, so `bankshot best` can differ by a degree or two. Speed and direction are optimised at each angle; for a fixed speed see `bankshot shot PROFILE --vary 'pitch=..'`.
 
 Examples:
   bankshot angles configs/free_throw.toml
@@ -282,12 +282,8 @@ fn run_from_distances(
     bars.begin("pitch angles and distances", searches as u64);
     let mut from = Vec::new();
     for profile in profiles {
-        let mut shots = Vec::new();
-        for pitch_rad in pitches_rad {
-            let pitch_rad = std::slice::from_ref(pitch_rad);
-            shots.extend(best_by_pitch(&profile, kind, pitch_rad, &Silent)?);
-            bars.advance(1);
-        }
+        let shots = best_by_pitch(&profile, kind, pitches_rad, &Silent)?;
+        bars.advance(pitches_rad.len() as u64);
         from.push(DistanceShots { profile, shots });
     }
     bars.end();

@@ -35,9 +35,9 @@ use std::time::Instant;
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Distances and angles are a list, or a range with a step. Start with --draft: a second or two for each place.
+Distances and angles are a list, or a range with a step. Start with --draft: half a second for each place.
 
-Without --draft the table is checked between its rows, where a machine interpolates. Where that costs more than --max-loss, rows are added halfway. Fifteen distances with a fixed angle take one to four minutes on two cores. With --kind best it takes twice as long; with --max-loss 1, half as long. --least-probability 0.6 skips the places where fewer than 60 of 100 go in.
+Without --draft the table is checked between its rows, where a machine interpolates. Where that costs more than --max-loss, rows are added halfway. Fifteen distances with a fixed angle take ten seconds to a minute on two cores. With --kind best it takes twice as long; with --max-loss 1, half as long. --least-probability 0.6 skips the places where fewer than 60 of 100 go in.
 
 With --output a stopped table is not lost: its results are kept beside the file, and the same command continues.
 

@@ -7,6 +7,7 @@ mod edge_contact_phase;
 mod flight_block;
 mod instruction_set;
 mod lane_block;
+mod lift_flight;
 mod parabola_flight_phase;
 mod ring_contact_phase;
 mod scheduler;

@@ -1,8 +1,8 @@
-//! The free flights of a batch in segments: with drag, or at solids with edges and bracket.
-//! (Flights with lift are left to the scalar code.)
+//! The free flights of a batch in segments: in air, or at solids with edges and bracket.
 
 use super::batch_state::Batch;
 use super::flight_block::{FlightBlock, FlyingShots};
+use super::lift_flight::lift_segments;
 use super::parabola_flight_phase::FlightEnd;
 use super::workspace::Phase;
 use crate::dynamics::end_rules::rose_to_ring;
@@ -51,11 +51,6 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
                 &mut first_flights
             } else {
                 queue.append(self.workspace.queue_mut(Phase::Flight));
-                if params.ball.has_lift {
-                    for slot in queue.drain(..) {
-                        self.run_scalar(slot);
-                    }
-                }
                 let free = T::ALL & !later_flights.lanes.occupied();
                 let shots_in_progress = &mut self.workspace.slots;
                 later_flights.fill(free, self.params, shots_in_progress, || queue.pop());
@@ -69,9 +64,7 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
             if at_release {
                 self.fly_far_segments(params, &mut shots);
             }
-            if !params.ball.has_lift {
-                self.fly_one_segment(params, &mut shots, &mut flight);
-            }
+            self.fly_one_segment(params, &mut shots, &mut flight);
             let end = flight.end(params, &shots);
             block.store(params, &shots, end.ring_motions() & !end.needs_scalar);
             let ended = !T::mask_to_bits(flight.flying);
@@ -117,7 +110,11 @@ impl<S: Simd, const WIDTH: u8> Batch<'_, S, WIDTH> {
         flight: &mut SegmentedFlight<T>,
     ) {
         let flying = flight.flying;
-        let segment = drag_segment(params, &shots.state);
+        let segment = if params.ball.has_lift {
+            lift_segments(self.simd, params, &shots.state)
+        } else {
+            drag_segment(params, &shots.state)
+        };
         let dt = segment.dt.select(flying, params.zero());
         shots.crossing.after_segment(&segment, flying);
         shots.state = segment.end.select(flying, shots.state);

@@ -53,7 +53,7 @@ const BOUND_DISTANCE_FRACTION: f64 = 0.8;
 
 /// The segment that starts at `state`.
 #[inline(always)]
-pub(super) fn lift_segment<T: Real>(
+pub(crate) fn lift_segment<T: Real>(
     params: &ModelParams<T>,
     state: &BallState<T>,
 ) -> FlightSegment<T> {

@@ -20,6 +20,7 @@ mod undisturbed_flight;
 pub(crate) use drag_segment::{drag_segment, far_segment, is_far};
 pub(crate) use flight_path::FlightPath;
 pub(crate) use flight_segment::FlightSegment;
+pub(crate) use lift_segment::lift_segment;
 pub(crate) use next_segment::next_segment;
 pub(crate) use parabola_events::FlightEvents;
 pub(crate) use undisturbed_flight::{

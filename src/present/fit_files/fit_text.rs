@@ -339,12 +339,19 @@ impl FitText<'_> {
             add(self.chances());
         }
         let [speed, pitch, polar, _] = posterior.prior_weights.map(|weight| 100.0 * weight);
+        let bulk = posterior.bulk_effective_sample_size;
+        let sizes = match source.kind {
+            // The weights of the draws have one size alone.
+            Source::Makes => format!("{bulk:.0}"),
+            _ => {
+                let tails = posterior.tail_effective_sample_size;
+                format!("{bulk:.0} of the middle and {tails:.0} of the tails")
+            }
+        };
         add(format!(
-            "Sampler: {} draws, R-hat {:.3}, effective sample size {:.0} of the middle and {:.0} of the tails. Weight of the prior: {speed:.0} % (speed), {pitch:.0} % (angle), {polar:.0} % (direction).",
+            "Sampler: {} draws, R-hat {:.3}, effective sample size {sizes}. Weight of the prior: {speed:.0} % (speed), {pitch:.0} % (angle), {polar:.0} % (direction).",
             posterior.draws.len(),
             posterior.r_hat,
-            posterior.bulk_effective_sample_size,
-            posterior.tail_effective_sample_size
         ));
         if let Some(unseen) = posterior.unseen {
             add(format!(

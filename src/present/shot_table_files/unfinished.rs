@@ -153,7 +153,7 @@ impl UnfinishedTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shooter::{Location, ShotKind};
+    use crate::shooter::{Location, Nominal, ShotKind};
 
     fn finding(distance_m: f64) -> TableFinding {
         TableFinding::Shot {
@@ -163,6 +163,7 @@ mod tests {
                 angle_rad: 0.1,
             },
             shot: None,
+            optima: vec![Nominal::default()],
         }
     }
 

@@ -54,8 +54,8 @@ pub(crate) struct SampleSizeOptions {
     /// Print one JSON object.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Simulated tests of each size, best a multiple of 12; of less than 20 shots four times as
-    /// many.
+    /// Simulated tests of each size, best a multiple of 12; of fewer than 20 shots four times
+    /// as many.
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u64).range(4..=10_000))]
     pub(crate) repetitions: u64,
 }
