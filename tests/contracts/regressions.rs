@@ -31,11 +31,11 @@ const PROBABILITIES: [u64; 3] = [
 /// Speed, pitch angle, polar angle, backspin and P: direct, bank.
 const BEST_SHOTS: [[u64; 5]; 2] = [
     [
-        0x401b_8373_de29_96d1,
-        0x3fef_8f4e_ca36_5a7b,
-        0x3feb_efb2_4113_f205,
+        0x401b_8122_ae0b_304a,
+        0x3fef_81c9_5ed4_8f23,
+        0x3feb_eead_d8bf_6086,
         0x4032_d97c_7f33_21d2,
-        0x3fe6_bd00_0000_0000,
+        0x3fe6_c400_0000_0000,
     ],
     [
         0x401c_ba48_6411_f0bd,

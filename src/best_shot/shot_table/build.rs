@@ -358,7 +358,7 @@ fn stages_of_round(round: usize) -> [String; 3] {
 }
 
 /// The profile with values that the search leaves as they are.
-pub(in crate::best_shot) fn with_fixed(
+pub(crate) fn with_fixed(
     profile: &Profile,
     fixed: &[(NominalVariable, f64)],
 ) -> Result<Profile, ProfileError> {

@@ -41,15 +41,15 @@ impl From<CheckError> for ShotTableError {
 }
 
 /// What is found at one place.
-pub(in crate::best_shot) struct FoundAtPlace {
+pub(crate) struct FoundAtPlace {
     /// The best shot of the kind, if there is a clean one.
-    pub(in crate::best_shot) shot: Result<TableShot, NoShot>,
+    pub(crate) shot: Result<TableShot, NoShot>,
     /// Local optima of both kinds, to start from at places nearby.
-    pub(in crate::best_shot) optima: Vec<Nominal>,
+    pub(crate) optima: Vec<Nominal>,
 }
 
 /// The best shot of a kind.
-pub(in crate::best_shot) fn best(
+pub(crate) fn best(
     (profile, starts): (&Profile, Starts),
     kind: ShotKind,
     progress: &dyn Progress,

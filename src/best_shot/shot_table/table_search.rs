@@ -185,8 +185,8 @@ impl<'a> TableSearch<'a> {
             let mut checks = Vec::new();
             for location in cell.checked_places() {
                 if let Some((nominal, looked_up)) = table.interpolated(location) {
-                    // Climbs from the best shots around can miss an optimum. Between rows of several
-                    // court angles there are too many places to follow all optima to each.
+                    // Climbs from the best shots alone can miss an optimum. Between rows of several
+                    // angles there are too many places to follow all optima to each.
                     let best = if location == cell.middle() {
                         let shot = self.shot_at(&location);
                         BestKnown::Searched(shot.map(|shot| shot.probability))
