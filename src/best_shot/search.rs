@@ -23,7 +23,7 @@ use crate::probability::{
     Counts, Estimate, Neighbourhood, NominalProbabilities, NominalTable, Progress, Sampler, Silent,
 };
 use crate::search_space::{PlanError, TablePlan};
-use crate::shooter::{LEAST_WIDE_SPIN_RAD_S, Nominal, NominalVariable, Profile, ShotKind};
+use crate::shooter::{LEAST_WIDE_SPIN_RAD_S, Nominal, NominalVariable, Profile, Search, ShotKind};
 use rayon::prelude::*;
 
 /// A climb has this part of the Sobol points of the parabolas through its optimum, and at least so
@@ -402,7 +402,7 @@ impl<'a> BestShotSearch<'a> {
     }
 
     /// The shot with its P; aimed straight at the hoop's centre if left and right are mirror images
-    /// and the same points tell no difference in P.
+    /// and P is the same but for its error, by points that the search has not seen.
     fn straight_if_as_good(&self, kind: ShotKind, nominal: &Nominal) -> (Nominal, Estimate) {
         let straight = Nominal {
             polar_rad: self.profile.location().angle_rad,
@@ -410,10 +410,17 @@ impl<'a> BestShotSearch<'a> {
         };
         let is_other = self.plan.mirrored && straight.polar_rad != nominal.polar_rad;
         let is_as_good = || {
+            let Search {
+                seed,
+                standard_error,
+                ..
+            } = *self.profile.search();
+            let replicate = u64::MAX - 1;
+            let fresh = self.sampler.scramble(ScrambleKey { seed, replicate });
             let points = NEIGHBOURHOOD_FACTOR * self.points();
-            let made = self.made(&[straight, *nominal], points);
-            let lost = made[1] as f64 - made[0] as f64;
-            lost <= self.profile.search().standard_error * f64::from(points)
+            let [straight, found] =
+                [straight, *nominal].map(|shot| self.made_with(&fresh, &[shot], points)[0] as f64);
+            found - straight <= standard_error * f64::from(points)
         };
         let goes_straight = is_other
             && ShotKind::of(self.profile, &straight) == kind
@@ -643,7 +650,11 @@ impl<'a> BestShotSearch<'a> {
 
     /// The numbers of made shots under the first points of the search's scramble.
     fn made(&self, nominals: &[Nominal], points: u32) -> Vec<u64> {
-        let shots: Vec<_> = nominals.iter().map(|n| (n, &self.scramble)).collect();
+        self.made_with(&self.scramble, nominals, points)
+    }
+
+    fn made_with(&self, scramble: &Scramble, nominals: &[Nominal], points: u32) -> Vec<u64> {
+        let shots: Vec<_> = nominals.iter().map(|n| (n, scramble)).collect();
         let counts = self.sampler.counts(&shots, (0, points), &Silent);
         counts.iter().map(Counts::made).collect()
     }
