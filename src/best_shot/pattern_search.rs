@@ -282,6 +282,16 @@ impl<'a> PatternSearch<'a> {
         to
     }
 
+    /// A shot of another profile, kept within the limits of this one.
+    pub(super) fn within_limits(&self, shot: &Nominal) -> Nominal {
+        let mut within = *shot;
+        for &variable in &self.variables {
+            let (low, high) = self.limits(variable);
+            *within.get_mut(variable) = shot.get(variable).clamp(low, high);
+        }
+        within
+    }
+
     /// The allowed values of a variable.
     fn limits(&self, variable: NominalVariable) -> (f64, f64) {
         let search = self.profile.search();

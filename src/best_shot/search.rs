@@ -300,8 +300,10 @@ impl<'a> BestShotSearch<'a> {
 
     /// Starts at those of some shots that are not the same optimum as one before, each of its kind.
     fn starts_among(&self, shots: &[Nominal]) -> Vec<Start> {
+        let search = self.pattern_search();
         let mut starts: Vec<Start> = Vec::new();
-        for &nominal in shots {
+        for shot in shots {
+            let nominal = search.within_limits(shot);
             let kind = ShotKind::of(self.profile, &nominal);
             let is_other =
                 |start: &Start| start.kind != kind || self.are_apart(&start.nominal, &nominal);

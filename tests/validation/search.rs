@@ -253,7 +253,31 @@ fn val_optima_that_are_followed_are_those_of_full_searches() {
     assert!(least > -0.005, "{gains:?}");
 }
 
-/// As above, for nine shooters, all pitch angles and every change of the physics.
+/// A speed limit holds where shots are followed, too: those of steep and flat angles are faster.
+#[test]
+fn contract_followed_shots_keep_the_limits() {
+    let most_m_s = 24.6 * FOOT_M;
+    let limited = load("free_throw").with(|settings| {
+        settings.search.speed_max_m_s = Some(most_m_s);
+        settings.search.standard_error = Some(0.005);
+    });
+    let pitches = [50.0, 54.0, 58.0, 62.0_f64].map(f64::to_radians);
+    let kind = TableKind::One(ShotKind::Direct);
+    let rows = best_by_pitch(&limited.unwrap(), kind, &pitches, &Silent).unwrap();
+    let speeds: Vec<f64> = rows
+        .iter()
+        .map(|row| {
+            let clean = row.shot.as_ref().map(|shot| shot.nominal);
+            let any = clean.or(row.not_clean.map(|shot| shot.nominal));
+            any.map_or(0.0, |shot| shot.speed_m_s)
+        })
+        .collect();
+    assert!(speeds.iter().all(|speed| *speed <= most_m_s), "{speeds:?}");
+    // At 58 deg 24.7 ft/s are best.
+    assert!(speeds[2] > 0.999 * most_m_s, "{speeds:?}");
+}
+
+/// As the optima above, for nine shooters, all pitch angles and every change of the physics.
 #[test]
 #[ignore = "six minutes: cargo test --test validation campaign_followed -- --ignored --nocapture"]
 fn campaign_followed_optima_are_those_of_full_searches() {
