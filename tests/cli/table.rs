@@ -496,7 +496,7 @@ fn contract_wrong_ranges_are_refused() {
 /// Looks at the eighths between the nodes, none of which the program checks itself, and finds P
 /// with `probability`, and the best P with a table of that place alone.
 #[test]
-#[ignore = "six minutes: five launchers with the full search, every foot from 6 to 20 ft"]
+#[ignore = "four minutes: five launchers with the full search, every foot from 6 to 20 ft"]
 fn campaign_interpolation_of_launchers() {
     let folder = TempDir::new().unwrap();
     let full = ROBOT.split("[grid]").next().unwrap();
