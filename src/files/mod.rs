@@ -7,6 +7,8 @@ pub mod csv_text;
 pub mod file_kind;
 mod header_row;
 mod json_rows;
+mod library_panics;
+mod parquet_headers;
 mod parquet_pages;
 pub mod parquet_rows;
 pub mod table_rows;

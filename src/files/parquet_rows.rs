@@ -1,6 +1,8 @@
 //! Rows of text cells from and to Parquet files. Columns that are carried through keep their types.
 
 use super::csv_records::{MAX_RECORD_BYTES, Row};
+use super::library_panics::without_panic;
+use super::parquet_headers::CheckedFile;
 use super::parquet_pages::CheckedPages;
 use csv::ByteRecord;
 use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
@@ -13,11 +15,9 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
-use std::cell::Cell;
 use std::fs::File;
 use std::io::Write;
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Arc, Once};
+use std::sync::Arc;
 
 /// Rows of one row group of an output file.
 const GROUP_ROWS: usize = 1 << 16;
@@ -32,7 +32,7 @@ const ROWS_OF_NO_BYTES: u64 = 100_000;
 
 /// The rows of a Parquet file.
 pub struct ParquetRows {
-    file: SerializedFileReader<File>,
+    file: SerializedFileReader<CheckedFile>,
     columns: Vec<TypePtr>,
     /// The next row group.
     group: usize,
@@ -48,12 +48,12 @@ impl ParquetRows {
     /// # Errors
     /// It is no Parquet file, or has a column that is nested or of an unsupported type.
     pub fn open(file: File) -> Result<Self> {
-        without_panic(|| Self::open_file(file))
+        checked(|| Self::open_file(file))
     }
 
     fn open_file(file: File) -> Result<Self> {
         let bytes = file.metadata()?.len();
-        let file = SerializedFileReader::new(file)?;
+        let file = SerializedFileReader::new(CheckedFile(file))?;
         check_chunks(&file, bytes)?;
         let columns: Vec<TypePtr> = file
             .metadata()
@@ -112,7 +112,7 @@ impl ParquetRows {
         let mut read = 0;
         while rows.len() < most && read < bytes {
             let count = BLOCK_ROWS.min(most - rows.len());
-            let more = without_panic(|| self.next_block(count))?;
+            let more = checked(|| self.next_block(count))?;
             if more.is_empty() {
                 break;
             }
@@ -160,32 +160,15 @@ impl ParquetRows {
     }
 }
 
-thread_local! {
-    /// This thread is in the Parquet library.
-    static IN_LIBRARY: Cell<bool> = const { Cell::new(false) };
-}
-
-/// Runs a part of the Parquet library, which panics at some damaged files; that is an error here.
-/// The message of such a panic is not printed.
-fn without_panic<T>(read: impl FnOnce() -> Result<T>) -> Result<T> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let usual = panic::take_hook();
-        panic::set_hook(Box::new(move |about| {
-            if !IN_LIBRARY.get() {
-                usual(about);
-            }
-        }));
-    });
-    IN_LIBRARY.set(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(read));
-    IN_LIBRARY.set(false);
-    result.unwrap_or_else(|_| Err(ParquetError::General("the file is damaged".into())))
+/// Runs a part of the Parquet library, which panics at some damaged files.
+fn checked<T>(read: impl FnOnce() -> Result<T>) -> Result<T> {
+    let damaged = || Err(ParquetError::General("the file is damaged".into()));
+    without_panic(read).unwrap_or_else(damaged)
 }
 
 /// Refuses a file whose chunks are compressed in a way that is not supported, or do not lie within
 /// the file.
-fn check_chunks(file: &SerializedFileReader<File>, bytes: u64) -> Result<()> {
+fn check_chunks(file: &SerializedFileReader<CheckedFile>, bytes: u64) -> Result<()> {
     let lies_within = |offset: i64, length: i64| {
         let (offset, length) = (u64::try_from(offset).ok(), u64::try_from(length).ok());
         let end = offset.zip(length).and_then(|(a, b)| a.checked_add(b));

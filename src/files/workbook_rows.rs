@@ -1,6 +1,7 @@
 //! The first sheet of a workbook that has a table, as rows of cells.
 
 use super::header_row::{ROWS_LOOKED_AT, header_row};
+use super::library_panics::without_panic;
 use calamine::{Cell, Data, DataRef, Range, Reader, Sheets, open_workbook_auto_from_rs};
 use csv::ByteRecord;
 use std::collections::BTreeMap;
@@ -25,6 +26,11 @@ pub(super) struct Sheet {
 /// # Errors
 /// It is none, or no sheet has two columns.
 pub(super) fn workbook_rows(bytes: Vec<u8>) -> Result<Sheet, String> {
+    let damaged = || Err("is a damaged workbook: save the sheet as CSV".to_owned());
+    without_panic(|| first_sheet(bytes)).unwrap_or_else(damaged)
+}
+
+fn first_sheet(bytes: Vec<u8>) -> Result<Sheet, String> {
     let is_zip = bytes.starts_with(b"PK");
     if is_zip && unpacked_bytes(&bytes).is_some_and(|unpacked| unpacked > MAX_UNPACKED) {
         return Err("is too large a workbook: save the sheet as CSV".to_owned());
