@@ -410,7 +410,7 @@ pub fn compare_physics(
             &ShotKind::ALL,
             SensitivityTopics::NONE,
             &Silent,
-            &|_| (),
+            None,
         );
         let mut shots = match found {
             Ok(Found { shots, optima, .. }) => {

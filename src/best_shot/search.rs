@@ -75,7 +75,7 @@ const NEIGHBOURHOOD: f64 = 1.5;
 /// # Errors
 /// The table would be too large, or no release reaches the hoop.
 pub fn find(profile: &Profile, progress: &dyn Progress) -> Result<BestShots, BestShotError> {
-    find_with_draft(profile, progress, &|_| ())
+    find_both(profile, progress, None)
 }
 
 /// What a search knows of the best shot of a kind before it refines it.
@@ -91,8 +91,11 @@ pub struct DraftShot {
     pub probability: f64,
 }
 
-/// As [`find`]. `draft` gets the best shot of each kind that climbs alone find, in a fraction of
-/// the time.
+/// What takes drafts.
+type Draft<'a> = Option<&'a dyn Fn(&[DraftShot])>;
+
+/// As [`find`]. `draft` gets the best shot of each kind early: of the coarse table after a fifth of
+/// the time, and then what climbs alone find.
 ///
 /// # Errors
 /// As [`find`].
@@ -100,6 +103,14 @@ pub fn find_with_draft(
     profile: &Profile,
     progress: &dyn Progress,
     draft: &dyn Fn(&[DraftShot]),
+) -> Result<BestShots, BestShotError> {
+    find_both(profile, progress, Some(draft))
+}
+
+fn find_both(
+    profile: &Profile,
+    progress: &dyn Progress,
+    draft: Draft<'_>,
 ) -> Result<BestShots, BestShotError> {
     let topics = SensitivityTopics::ALL;
     let Found {
@@ -128,7 +139,7 @@ pub fn find_kinds(
     topics: SensitivityTopics,
     progress: &dyn Progress,
 ) -> Result<(TablePlan, Vec<Result<BestShot, NoShot>>), BestShotError> {
-    let found = find_from((profile, Starts::Table), kinds, topics, progress, &|_| ())?;
+    let found = find_from((profile, Starts::Table), kinds, topics, progress, None)?;
     Ok((found.plan, found.shots))
 }
 
@@ -150,7 +161,7 @@ pub(super) fn find_from(
     kinds: &[ShotKind],
     topics: SensitivityTopics,
     progress: &dyn Progress,
-    draft: &dyn Fn(&[DraftShot]),
+    draft: Draft<'_>,
 ) -> Result<Found, BestShotError> {
     let plan = TablePlan::for_search(profile)?;
     let search = BestShotSearch::new(profile, &plan, topics, progress);
@@ -186,7 +197,7 @@ pub(super) fn find_beside_other_kind(
     let plan = TablePlan::for_search(profile)?;
     let search = BestShotSearch::new(profile, &plan, SensitivityTopics::NONE, progress);
     let LocalOptima { highest, followed } =
-        search.optima(&search.starts(&ShotKind::ALL, starts)?, &|_| ());
+        search.optima(&search.starts(&ShotKind::ALL, starts)?, None);
     let settings = profile.search();
     let error = ERROR_OF_OTHER_KIND * settings.standard_error;
     let roughly = |nominal| (search.sampler).estimate(&nominal, error, settings.seed, &Silent);
@@ -211,7 +222,7 @@ pub(super) fn climb_from_shots(
     let search = BestShotSearch::new(profile, &plan, SensitivityTopics::NONE, &Silent);
     let mut starts = search.starts_among(shots);
     starts.retain(|start| start.kind == kind);
-    let optimum = search.optima(&starts, &|_| ()).highest[kind.index()];
+    let optimum = search.optima(&starts, None).highest[kind.index()];
     Ok(optimum.map(|nominal| (nominal, search.estimate(&nominal, &Silent))))
 }
 
@@ -458,38 +469,61 @@ impl<'a> BestShotSearch<'a> {
     }
 
     /// The optima that are reached from some starts.
-    fn optima(&self, starts: &[Start], draft: &dyn Fn(&[DraftShot])) -> LocalOptima {
+    fn optima(&self, starts: &[Start], draft: Draft<'_>) -> LocalOptima {
         let points = self.points();
         let few = (points / CLIMB_PART).max(CLIMB_LEAST);
+        if let Some(draft) = draft {
+            let nominals: Vec<Nominal> = starts.iter().map(|start| start.nominal).collect();
+            draft(&self.drafts(&self.by_kind(starts, &nominals)));
+        }
         self.progress.begin("climbing", starts.len() as u64);
         let nominals = self.climb(starts, few);
         self.progress.end();
-        let made = self.made(&nominals, points);
+        let optima = self.by_kind(starts, &nominals);
+        if let Some(draft) = draft {
+            draft(&self.drafts(&optima));
+        }
         let mut promising: Vec<Start> = Vec::new();
         let mut climbed: Vec<Nominal> = Vec::new();
-        let mut drafts: Vec<DraftShot> = Vec::new();
-        for kind in ShotKind::ALL {
-            let mut optima: Vec<Optimum> = (starts.iter().zip(made.iter().zip(&nominals)))
-                .filter_map(|(start, (&m, &n))| (start.kind == kind).then_some((m, n)))
-                .collect();
-            // The best first. (Sorting is stable: of two that are level the first start's.)
-            optima.sort_by_key(|(made, _)| std::cmp::Reverse(*made));
-            drafts.extend(optima.first().map(|&(made, nominal)| DraftShot {
-                kind,
-                nominal,
-                probability: made as f64 / f64::from(points),
-            }));
-            let near = self.apart(&optima, PROMISING_MARGIN, MOST_OPTIMA);
+        for (kind, optima) in ShotKind::ALL.into_iter().zip(&optima) {
+            let near = self.apart(optima, PROMISING_MARGIN, MOST_OPTIMA);
             promising.extend(near.into_iter().map(|nominal| Start { kind, nominal }));
-            climbed.extend(self.apart(&optima, FOLLOWED_MARGIN, MOST_FOLLOWED));
+            climbed.extend(self.apart(optima, FOLLOWED_MARGIN, MOST_FOLLOWED));
         }
-        draft(&drafts);
         let highest = self.highest_tops(&promising);
         let tops = highest.iter().flatten().copied();
         LocalOptima {
             followed: tops.chain(climbed).collect(),
             highest,
         }
+    }
+
+    /// The shots that some starts led to, by kind, the best first.
+    fn by_kind(&self, starts: &[Start], nominals: &[Nominal]) -> [Vec<Optimum>; 2] {
+        let made = self.made(nominals, self.points());
+        ShotKind::ALL.map(|kind| {
+            let mut optima: Vec<Optimum> = (starts.iter().zip(made.iter().zip(nominals)))
+                .filter_map(|(start, (&m, &n))| (start.kind == kind).then_some((m, n)))
+                .collect();
+            // (Sorting is stable: of two that are level the first start's.)
+            optima.sort_by_key(|(made, _)| std::cmp::Reverse(*made));
+            optima
+        })
+    }
+
+    fn drafts(&self, optima: &[Vec<Optimum>; 2]) -> Vec<DraftShot> {
+        let best = |(kind, optima): (ShotKind, &Vec<Optimum>)| {
+            optima.first().map(|&(made, nominal)| DraftShot {
+                kind,
+                nominal,
+                probability: made as f64 / f64::from(self.points()),
+            })
+        };
+        ShotKind::ALL
+            .into_iter()
+            .zip(optima)
+            .filter_map(best)
+            .collect()
     }
 
     /// At most so many of some optima, the best first, that reach P of the first but for a margin

@@ -134,10 +134,11 @@ fn contract_a_fit_replaces_the_older_one() {
 #[test]
 fn contract_sessions_are_in_the_order_of_time() {
     let folder = TempDir::new().unwrap();
-    let shots = |dates: [&str; 2], newest_first: bool| {
+    let shots = |dates: &[&str], newest_first: bool| {
         let text = fs::read_to_string("docs/data/lab.csv").unwrap();
         let mut lines = text.lines();
         let header = format!("{},date\n", lines.next().unwrap());
+        let of_a_day = 60 / dates.len();
         let mut rows: Vec<String> = lines
             .enumerate()
             .map(|(row, line)| {
@@ -145,7 +146,7 @@ fn contract_sessions_are_in_the_order_of_time() {
                 if row >= 30 {
                     cells[1] = format!("{:.2}", cells[1].parse::<f64>().unwrap() + 4.0);
                 }
-                format!("{},{}\n", cells.join(","), dates[row / 30])
+                format!("{},{}\n", cells.join(","), dates[row / of_a_day])
             })
             .collect();
         if newest_first {
@@ -153,41 +154,50 @@ fn contract_sessions_are_in_the_order_of_time() {
         }
         write_file(&folder, "days.csv", header + &rows.concat())
     };
-    let pitch_grew = |file: &Path, flags: &[&str]| {
+    let compare = |file: &Path, flags: &[&str]| {
         let mut command = bankshot();
         command
             .arg("compare-sessions")
             .arg(file)
             .args(["--map", "session=date", "--json"]);
-        let json = Answer::of(command.args(flags)).exits(0).json();
-        let quantities = json["quantities"].as_array().or(json["changes"].as_array());
-        let all = quantities.unwrap_or_else(|| panic!("{json:#}"));
-        let name = |q: &&serde_json::Value| {
-            q["name"]
-                .as_str()
-                .is_some_and(|n| n.starts_with("pitch_mean"))
-        };
-        let pitch = all.iter().find(name).unwrap_or_else(|| panic!("{json:#}"));
-        pitch["change"]["mean"].as_f64().unwrap() > 2.0
+        Answer::of(command.args(flags))
     };
-    // Every second file has its rows newest first.
-    for (number, (dates, flags)) in [
-        (["10/14/2025", "03/02/2026"], &[][..]),
-        (["14.10.2025", "2.3.2026"], &[]),
-        (["\"Oct 14, 2025\"", "\"Mar 2, 2026\""], &[]),
-        (["2025-10-14", "2026-03-02"], &[]),
-        (["45944", "46083"], &[]),
-        (["04/03/2025", "05/03/2025"], &["--dates", "dmy"]),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let file = shots(dates, number % 2 == 1);
-        assert!(pitch_grew(&file, flags), "{dates:?}");
+    // Which is the later one: the shots of March are steeper.
+    let file = shots(&["2025-10-14", "2026-03-02"], true);
+    let json = compare(&file, &[]).exits(0).json();
+    let quantities = json["quantities"].as_array().or(json["changes"].as_array());
+    let all = quantities.unwrap_or_else(|| panic!("{json:#}"));
+    let name = |q: &&serde_json::Value| {
+        q["name"]
+            .as_str()
+            .is_some_and(|n| n.starts_with("pitch_mean"))
+    };
+    let pitch = all.iter().find(name).unwrap_or_else(|| panic!("{json:#}"));
+    assert!(pitch["change"]["mean"].as_f64().unwrap() > 2.0, "{json:#}");
+    // Three sessions are named in the order of time, however the file has them.
+    for (dates, flags) in [
+        (["10/14/2025", "01/05/2026", "03/02/2026"], &[][..]),
+        (["14.10.2025", "5.1.2026", "2.3.2026"], &[]),
+        (
+            ["\"Oct 14, 2025\"", "\"Jan 5, 2026\"", "\"Mar 2, 2026\""],
+            &[],
+        ),
+        (["2025-10-14", "2026-01-05", "2026-03-02"], &[]),
+        (["45944", "46027", "46083"], &[]),
+        (
+            ["14/10/2025", "05/01/2026", "02/03/2026"],
+            &["--dates", "dmy"],
+        ),
+    ] {
+        for newest_first in [false, true] {
+            compare(&shots(&dates, newest_first), flags)
+                .exits(2)
+                .says("has 3 sessions (2025-10-14, 2026-01-05, 2026-03-02)");
+        }
     }
     let out = folder.path().join("out");
     fit(
-        &shots(["04/03/2025", "05/03/2025"], false),
+        &shots(&["04/03/2025", "05/03/2025"], false),
         &out,
         &["--map", "session=date"],
     )
