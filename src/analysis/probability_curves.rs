@@ -38,8 +38,8 @@ pub struct ProbabilityCurve {
     pub points: Vec<CurvePoint>,
 }
 
-/// Curves about a nominal shot, twice as far as a window about it. Of a variable with an error they
-/// are from one weighted sample, of another one each value has shots of its own.
+/// Curves about a nominal shot, twice as far as a window about it. Values near it are told by one
+/// weighted sample; those far from it, as the errors go, have shots of their own.
 pub(crate) fn about(
     profile: &Profile,
     (sampler, scramble): (&Sampler<'_>, &Scramble),
@@ -77,11 +77,10 @@ pub(crate) fn about(
                 .shooter()
                 .dispersion
                 .sigma(variable.as_release_variable(), nominal);
-            let is_weighed = low >= nominal.get(variable) - FARTHEST * sigma
-                && high <= nominal.get(variable) + FARTHEST * sigma;
             let points = values.map(|value| {
                 let shot = nominal.with(variable, value);
-                let (probability, standard_error) = if is_weighed {
+                let is_near = (value - nominal.get(variable)).abs() < FARTHEST * sigma;
+                let (probability, standard_error) = if is_near {
                     let weighed = near.probability(&shot);
                     (weighed.probability, weighed.standard_error)
                 } else {

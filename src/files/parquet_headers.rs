@@ -4,7 +4,9 @@
 //!
 //! Headers are Thrift structures in the compact protocol
 //! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>). Each
-//! element of a list has a byte at least, so a header has no more elements than bytes.
+//! element of a list has a byte at least, so a header has no more elements than bytes. The library
+//! reads a field that it knows by its number, whatever type the file gives it; so these must have
+//! their types, those of <https://github.com/apache/parquet-format>, `parquet.thrift`.
 
 use bytes::Bytes;
 use parquet::errors::{ParquetError, Result};
@@ -48,7 +50,7 @@ impl ChunkReader for CheckedFile {
             file.take(most).read_to_end(&mut bytes)?;
             let header = match left {
                 END_BYTES => Ok(()),
-                _ => is_possible(&bytes),
+                _ => is_possible(&bytes, PAGE),
             };
             match header {
                 Err(Fault::Ends) if most < left => most *= 16,
@@ -62,7 +64,7 @@ impl ChunkReader for CheckedFile {
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
         let bytes = self.0.get_bytes(start, length)?;
         let is_metadata = start.saturating_add(length as u64 + END_BYTES) == Length::len(self);
-        if is_metadata && is_possible(&bytes).is_err() {
+        if is_metadata && is_possible(&bytes, FILE).is_err() {
             return Err(damaged());
         }
         Ok(bytes)
@@ -85,6 +87,203 @@ impl Read for Header {
     }
 }
 
+/// The type of a field that the library knows.
+#[derive(Clone, Copy)]
+enum Of {
+    Bool,
+    Byte,
+    /// An integer of any size.
+    Number,
+    /// The number of bytes of a page, unpacked.
+    PageBytes,
+    Double,
+    Bytes,
+    List(&'static Of),
+    Fields(Fields),
+}
+
+/// The numbers and types of the fields of a structure that the library knows.
+type Fields = &'static [(i16, Of)];
+
+const EMPTY: Of = Of::Fields(&[]);
+const STATISTICS: Of = Of::Fields(&[
+    (1, Of::Bytes),
+    (2, Of::Bytes),
+    (3, Of::Number),
+    (4, Of::Number),
+    (5, Of::Bytes),
+    (6, Of::Bytes),
+    (7, Of::Bool),
+    (8, Of::Bool),
+    (9, Of::Number),
+]);
+/// `PageHeader`.
+const PAGE: Fields = &[
+    (1, Of::Number),
+    (2, Of::PageBytes),
+    (3, Of::Number),
+    (4, Of::Number),
+    (
+        5,
+        Of::Fields(&[
+            (1, Of::Number),
+            (2, Of::Number),
+            (3, Of::Number),
+            (4, Of::Number),
+            (5, STATISTICS),
+        ]),
+    ),
+    (6, EMPTY),
+    (
+        7,
+        Of::Fields(&[(1, Of::Number), (2, Of::Number), (3, Of::Bool)]),
+    ),
+    (
+        8,
+        Of::Fields(&[
+            (1, Of::Number),
+            (2, Of::Number),
+            (3, Of::Number),
+            (4, Of::Number),
+            (5, Of::Number),
+            (6, Of::Number),
+            (7, Of::Bool),
+            (8, STATISTICS),
+        ]),
+    ),
+];
+/// `TimeType` and `TimestampType`.
+const TIME: Of = Of::Fields(&[
+    (1, Of::Bool),
+    (2, Of::Fields(&[(1, EMPTY), (2, EMPTY), (3, EMPTY)])),
+]);
+const LOGICAL_TYPE: Of = Of::Fields(&[
+    (1, EMPTY),
+    (2, EMPTY),
+    (3, EMPTY),
+    (4, EMPTY),
+    (5, Of::Fields(&[(1, Of::Number), (2, Of::Number)])),
+    (6, EMPTY),
+    (7, TIME),
+    (8, TIME),
+    (10, Of::Fields(&[(1, Of::Byte), (2, Of::Bool)])),
+    (11, EMPTY),
+    (12, EMPTY),
+    (13, EMPTY),
+    (14, EMPTY),
+    (15, EMPTY),
+    (16, Of::Fields(&[(1, Of::Byte)])),
+    (17, Of::Fields(&[(1, Of::Bytes)])),
+    (18, Of::Fields(&[(1, Of::Bytes), (2, Of::Number)])),
+    (19, EMPTY),
+]);
+const SCHEMA_ELEMENT: Of = Of::Fields(&[
+    (1, Of::Number),
+    (2, Of::Number),
+    (3, Of::Number),
+    (4, Of::Bytes),
+    (5, Of::Number),
+    (6, Of::Number),
+    (7, Of::Number),
+    (8, Of::Number),
+    (9, Of::Number),
+    (10, LOGICAL_TYPE),
+]);
+const KEY_VALUE: Of = Of::Fields(&[(1, Of::Bytes), (2, Of::Bytes)]);
+const ENCODING_STATISTICS: Of = Of::Fields(&[(1, Of::Number), (2, Of::Number), (3, Of::Number)]);
+const BOUNDING_BOX: Of = Of::Fields(&[
+    (1, Of::Double),
+    (2, Of::Double),
+    (3, Of::Double),
+    (4, Of::Double),
+    (5, Of::Double),
+    (6, Of::Double),
+    (7, Of::Double),
+    (8, Of::Double),
+]);
+const COLUMN: Of = Of::Fields(&[
+    (1, Of::Number),
+    (2, Of::List(&Of::Number)),
+    (3, Of::List(&Of::Bytes)),
+    (4, Of::Number),
+    (5, Of::Number),
+    (6, Of::Number),
+    (7, Of::Number),
+    (8, Of::List(&KEY_VALUE)),
+    (9, Of::Number),
+    (10, Of::Number),
+    (11, Of::Number),
+    (12, STATISTICS),
+    (13, Of::List(&ENCODING_STATISTICS)),
+    (14, Of::Number),
+    (15, Of::Number),
+    (
+        16,
+        Of::Fields(&[
+            (1, Of::Number),
+            (2, Of::List(&Of::Number)),
+            (3, Of::List(&Of::Number)),
+        ]),
+    ),
+    (
+        17,
+        Of::Fields(&[(1, BOUNDING_BOX), (2, Of::List(&Of::Number))]),
+    ),
+]);
+const CHUNK: Of = Of::Fields(&[
+    (1, Of::Bytes),
+    (2, Of::Number),
+    (3, COLUMN),
+    (4, Of::Number),
+    (5, Of::Number),
+    (6, Of::Number),
+    (7, Of::Number),
+]);
+const ROW_GROUP: Of = Of::Fields(&[
+    (1, Of::List(&CHUNK)),
+    (2, Of::Number),
+    (3, Of::Number),
+    (
+        4,
+        Of::List(&Of::Fields(&[
+            (1, Of::Number),
+            (2, Of::Bool),
+            (3, Of::Bool),
+        ])),
+    ),
+    (5, Of::Number),
+    (6, Of::Number),
+    (7, Of::Number),
+]);
+/// `FileMetaData`.
+const FILE: Fields = &[
+    (1, Of::Number),
+    (2, Of::List(&SCHEMA_ELEMENT)),
+    (3, Of::Number),
+    (4, Of::List(&ROW_GROUP)),
+    (5, Of::List(&KEY_VALUE)),
+    (6, Of::Bytes),
+    (
+        7,
+        Of::List(&Of::Fields(&[(1, EMPTY), (2, EMPTY), (3, EMPTY)])),
+    ),
+];
+
+impl Of {
+    /// Whether values of a type in the file are read as this.
+    fn is(self, wire: u8) -> bool {
+        match self {
+            Self::Bool => matches!(wire, 1 | 2),
+            Self::Byte => wire == 3,
+            Self::Number | Self::PageBytes => matches!(wire, 4..=6),
+            Self::Double => wire == 7,
+            Self::Bytes => wire == 8,
+            Self::List(_) => wire == 9,
+            Self::Fields(_) => wire == 12,
+        }
+    }
+}
+
 /// What is wrong with a structure.
 #[derive(Debug, PartialEq)]
 enum Fault {
@@ -93,13 +292,13 @@ enum Fault {
     Impossible,
 }
 
-/// Whether bytes begin with a structure that is possible.
-fn is_possible(bytes: &[u8]) -> Result<(), Fault> {
+/// Whether bytes begin with a structure of these fields that is possible.
+fn is_possible(bytes: &[u8], fields: Fields) -> Result<(), Fault> {
     let mut walk = Walk {
         bytes,
         elements_left: bytes.len() as u64,
     };
-    walk.structure(0, true)
+    walk.structure(fields, 0)
 }
 
 /// A walk through a structure, as the library skips what it does not know.
@@ -142,37 +341,41 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn structure(&mut self, level: u32, is_page: bool) -> Result<(), Fault> {
-        let mut id = 0;
+    fn structure(&mut self, fields: Fields, level: u32) -> Result<(), Fault> {
+        let mut id = 0_i16;
         loop {
             let head = self.byte()?;
-            if head & 15 == 0 {
+            let wire = head & 15;
+            if wire == 0 {
                 return Ok(());
             }
             id = match head >> 4 {
-                0 => self.number()? >> 1,
-                step => id + u64::from(step),
-            };
-            let of = head & 15;
-            if is_page && id == 2 && of == 5 {
-                // Its size, unpacked.
-                if self.number()? >> 1 > MAX_PAGE_BYTES {
-                    return Err(Fault::Impossible);
+                0 => {
+                    let number = self.number()?;
+                    ((number >> 1) as i64 ^ -((number & 1) as i64)) as i16
                 }
-            } else {
-                self.value(of, level)?;
-            }
+                step => id.checked_add(step.into()).ok_or(Fault::Impossible)?,
+            };
+            let known = fields.iter().find(|(known, _)| *known == id);
+            self.value(wire, known.map(|(_, of)| *of), level + 1)?;
         }
     }
 
-    fn value(&mut self, of: u8, level: u32) -> Result<(), Fault> {
-        if level > MOST_LEVELS {
+    /// A value of a type of the file, of a field that the library knows, or skips.
+    fn value(&mut self, wire: u8, known: Option<Of>, level: u32) -> Result<(), Fault> {
+        if level > MOST_LEVELS || known.is_some_and(|of| !of.is(wire)) {
             return Err(Fault::Impossible);
         }
-        match of {
+        match wire {
             1 | 2 => Ok(()),
             3 => self.skip(1),
-            4..=6 => self.number().map(|_| ()),
+            4..=6 => {
+                let bytes = self.number()? >> 1;
+                match known {
+                    Some(Of::PageBytes) if bytes > MAX_PAGE_BYTES => Err(Fault::Impossible),
+                    _ => Ok(()),
+                }
+            }
             7 => self.skip(8),
             8 => {
                 let length = self.number()?;
@@ -185,18 +388,28 @@ impl Walk<'_> {
                     count => u64::from(count),
                 };
                 self.elements(count)?;
-                (0..count).try_for_each(|_| self.value(head & 15, level + 1))
+                let of = match known {
+                    Some(Of::List(of)) => Some(*of),
+                    _ => None,
+                };
+                (0..count).try_for_each(|_| self.value(head & 15, of, level + 1))
             }
             11 => {
                 let count = self.number()?;
                 self.elements(count)?;
                 let of = if count > 0 { self.byte()? } else { 0 };
                 (0..count).try_for_each(|_| {
-                    self.value(of >> 4, level + 1)?;
-                    self.value(of & 15, level + 1)
+                    self.value(of >> 4, None, level + 1)?;
+                    self.value(of & 15, None, level + 1)
                 })
             }
-            12 => self.structure(level + 1, false),
+            12 => {
+                let fields = match known {
+                    Some(Of::Fields(fields)) => fields,
+                    _ => &[],
+                };
+                self.structure(fields, level)
+            }
             13 => self.skip(16),
             _ => Err(Fault::Impossible),
         }
@@ -209,25 +422,27 @@ mod tests {
 
     #[test]
     fn headers_with_impossible_counts_are_refused() {
-        // A page of 5 bytes (type 0, sizes 5 and 5) with a list of numbers and an empty structure.
-        let page = [0x15, 0, 0x15, 10, 0x15, 10, 0x19, 0x25, 2, 4, 0x1c, 0, 0];
-        assert_eq!(is_possible(&page), Ok(()));
+        // A page of 5 bytes (type 0, sizes 5 and 5) with an unknown list of numbers and structure.
+        let page = [0x15, 0, 0x15, 10, 0x15, 10, 0xd9, 0x25, 2, 4, 0x1c, 0, 0];
+        assert_eq!(is_possible(&page, PAGE), Ok(()));
         for end in 0..page.len() {
-            assert_eq!(is_possible(&page[..end]), Err(Fault::Ends), "{end}");
+            assert_eq!(is_possible(&page[..end], PAGE), Err(Fault::Ends), "{end}");
         }
         let billion = [0x80, 0x94, 0xeb, 0xdc, 3];
         for impossible in [
             // A billion of what has no bytes: as a list, a set, and a map.
-            &[&[0x19, 0xf1][..], &billion].concat(),
-            &[&[0x1a, 0xf2][..], &billion].concat(),
-            &[&[0x1b][..], &billion, &[0x11]].concat(),
+            &[&[0xd9, 0xf1][..], &billion].concat(),
+            &[&[0xda, 0xf2][..], &billion].concat(),
+            &[&[0xdb][..], &billion, &[0x11]].concat(),
             // A page of half a billion bytes.
             &[&[0x15, 0, 0x15][..], &billion, &[0]].concat(),
             // Lists in lists.
-            &[&[0x19][..], &[0x19; 100]].concat(),
+            &[&[0xd9][..], &[0x19; 100]].concat(),
+            // A list in the place of the size of a page.
+            &[0x15, 0, 0x19, 0x15, 10, 0].to_vec(),
         ] {
             assert_eq!(
-                is_possible(impossible),
+                is_possible(impossible, PAGE),
                 Err(Fault::Impossible),
                 "{impossible:?}"
             );
