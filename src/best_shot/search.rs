@@ -431,8 +431,8 @@ impl<'a> BestShotSearch<'a> {
             let replicate = u64::MAX - 1;
             let fresh = self.sampler.scramble(ScrambleKey { seed, replicate });
             let points = NEIGHBOURHOOD_FACTOR * self.points();
-            let [straight, found] =
-                [straight, *nominal].map(|shot| self.made_with(&fresh, &[shot], points)[0] as f64);
+            let [straight, found] = [straight, *nominal]
+                .map(|shot| made_with((&self.sampler, &fresh), &[shot], points)[0] as f64);
             found - straight <= standard_error * f64::from(points)
         };
         let goes_straight = is_other
@@ -474,12 +474,15 @@ impl<'a> BestShotSearch<'a> {
         let few = (points / CLIMB_PART).max(CLIMB_LEAST);
         if let Some(draft) = draft {
             let nominals: Vec<Nominal> = starts.iter().map(|start| start.nominal).collect();
-            draft(&self.drafts(&self.by_kind(starts, &nominals)));
+            // The count of shots in an answer does not depend on a draft.
+            let apart = self.profile.counting_apart();
+            let made = made_with((&Sampler::new(&apart), &self.scramble), &nominals, points);
+            draft(&self.drafts(&by_kind(starts, &nominals, &made)));
         }
         self.progress.begin("climbing", starts.len() as u64);
         let nominals = self.climb(starts, few);
         self.progress.end();
-        let optima = self.by_kind(starts, &nominals);
+        let optima = by_kind(starts, &nominals, &self.made(&nominals, points));
         if let Some(draft) = draft {
             draft(&self.drafts(&optima));
         }
@@ -496,19 +499,6 @@ impl<'a> BestShotSearch<'a> {
             followed: tops.chain(climbed).collect(),
             highest,
         }
-    }
-
-    /// The shots that some starts led to, by kind, the best first.
-    fn by_kind(&self, starts: &[Start], nominals: &[Nominal]) -> [Vec<Optimum>; 2] {
-        let made = self.made(nominals, self.points());
-        ShotKind::ALL.map(|kind| {
-            let mut optima: Vec<Optimum> = (starts.iter().zip(made.iter().zip(nominals)))
-                .filter_map(|(start, (&m, &n))| (start.kind == kind).then_some((m, n)))
-                .collect();
-            // (Sorting is stable: of two that are level the first start's.)
-            optima.sort_by_key(|(made, _)| std::cmp::Reverse(*made));
-            optima
-        })
     }
 
     fn drafts(&self, optima: &[Vec<Optimum>; 2]) -> Vec<DraftShot> {
@@ -686,13 +676,7 @@ impl<'a> BestShotSearch<'a> {
 
     /// The numbers of made shots under the first points of the search's scramble.
     fn made(&self, nominals: &[Nominal], points: u32) -> Vec<u64> {
-        self.made_with(&self.scramble, nominals, points)
-    }
-
-    fn made_with(&self, scramble: &Scramble, nominals: &[Nominal], points: u32) -> Vec<u64> {
-        let shots: Vec<_> = nominals.iter().map(|n| (n, scramble)).collect();
-        let counts = self.sampler.counts(&shots, (0, points), &Silent);
-        counts.iter().map(Counts::made).collect()
+        made_with((&self.sampler, &self.scramble), nominals, points)
     }
 
     fn pattern_search(&self) -> PatternSearch<'_> {
@@ -781,4 +765,27 @@ impl<'a> BestShotSearch<'a> {
         .filter_map(|(limit, is_reached)| is_reached.then_some(limit))
         .collect()
     }
+}
+
+/// The numbers of made shots under the first points of a scramble.
+fn made_with(
+    (sampler, scramble): (&Sampler<'_>, &Scramble),
+    nominals: &[Nominal],
+    points: u32,
+) -> Vec<u64> {
+    let shots: Vec<_> = nominals.iter().map(|n| (n, scramble)).collect();
+    let counts = sampler.counts(&shots, (0, points), &Silent);
+    counts.iter().map(Counts::made).collect()
+}
+
+/// The shots that some starts led to, with their numbers of made ones, by kind, the best first.
+fn by_kind(starts: &[Start], nominals: &[Nominal], made: &[u64]) -> [Vec<Optimum>; 2] {
+    ShotKind::ALL.map(|kind| {
+        let mut optima: Vec<Optimum> = (starts.iter().zip(made.iter().zip(nominals)))
+            .filter_map(|(start, (&m, &n))| (start.kind == kind).then_some((m, n)))
+            .collect();
+        // (Sorting is stable: of two that are level the first start's.)
+        optima.sort_by_key(|(made, _)| std::cmp::Reverse(*made));
+        optima
+    })
 }

@@ -295,6 +295,14 @@ impl Simulator {
         }
     }
 
+    /// The same simulator, its shots counted apart.
+    pub(crate) fn counting_apart(self) -> Self {
+        Self {
+            simulated: Arc::default(),
+            ..self
+        }
+    }
+
     fn count(&self, shots: usize) {
         self.simulated.fetch_add(shots as u64, Ordering::Relaxed);
     }

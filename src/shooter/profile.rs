@@ -385,6 +385,14 @@ impl Profile {
         }
     }
 
+    /// The same profile, its shots counted apart.
+    pub(crate) fn counting_apart(&self) -> Self {
+        Self {
+            simulator: self.simulator.clone().counting_apart(),
+            ..self.clone()
+        }
+    }
+
     /// The same profile with its batches on other vector instructions. No result depends on them.
     #[must_use]
     pub fn with_instructions(mut self, instructions: InstructionSet) -> Self {
