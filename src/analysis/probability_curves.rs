@@ -38,8 +38,8 @@ pub struct ProbabilityCurve {
     pub points: Vec<CurvePoint>,
 }
 
-/// Curves about a nominal shot, twice as far as a window about it. Values near it are told by one
-/// weighted sample; those far from it, as the errors go, have shots of their own.
+/// Curves around a nominal shot, twice as far as its window. Values within [`FARTHEST`] standard
+/// deviations come from one weighted sample, the others have shots of their own.
 pub(crate) fn about(
     profile: &Profile,
     (sampler, scramble): (&Sampler<'_>, &Scramble),

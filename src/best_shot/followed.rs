@@ -89,7 +89,7 @@ mod tests {
 
     /// The fastest direct and the slowest bank shot, from 2.6 m at 65 degrees.
     #[test]
-    fn shots_at_the_border_stay_of_their_kind() {
+    fn contract_shots_at_the_border_stay_of_their_kind() {
         let from = launcher(2.6);
         let at = |speed_m_s| Nominal {
             speed_m_s,

@@ -421,7 +421,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_with_impossible_counts_are_refused() {
+    fn contract_headers_with_impossible_counts_are_refused() {
         // A page of 5 bytes (type 0, sizes 5 and 5) with an unknown list of numbers and structure.
         let page = [0x15, 0, 0x15, 10, 0x15, 10, 0xd9, 0x25, 2, 4, 0x1c, 0, 0];
         assert_eq!(is_possible(&page, PAGE), Ok(()));
