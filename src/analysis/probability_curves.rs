@@ -9,11 +9,9 @@ use serde::{Deserialize, Serialize};
 
 /// Values of a curve.
 const VALUES: usize = 17;
-/// Points of the sample, and how much greater its errors are than the shooter's. It tells P of
-/// shots within so many standard deviations.
+/// Points of the sample, and how much greater its errors are than the shooter's.
 const POINTS: u32 = 32_768;
 const WIDENING: f64 = 1.6;
-const FARTHEST: f64 = 2.5;
 /// Shots of a value that the sample does not tell.
 const SAMPLES: u64 = 16384;
 
@@ -38,8 +36,8 @@ pub struct ProbabilityCurve {
     pub points: Vec<CurvePoint>,
 }
 
-/// Curves around a nominal shot, twice as far as its window. Values within [`FARTHEST`] standard
-/// deviations come from one weighted sample, the others have shots of their own.
+/// Curves around a nominal shot, twice as far as its window. Values nearby come from one weighted
+/// sample, the others have shots of their own.
 pub(crate) fn about(
     profile: &Profile,
     (sampler, scramble): (&Sampler<'_>, &Scramble),
@@ -73,19 +71,14 @@ pub(crate) fn about(
         .map(|(variable, (low, high))| {
             let values = Linspace::new(low, high, VALUES).values();
             let seed = profile.search().seed;
-            let sigma = profile
-                .shooter()
-                .dispersion
-                .sigma(variable.as_release_variable(), nominal);
             let points = values.map(|value| {
                 let shot = nominal.with(variable, value);
-                let is_near = (value - nominal.get(variable)).abs() < FARTHEST * sigma;
-                let (probability, standard_error) = if is_near {
-                    let weighed = near.probability(&shot);
-                    (weighed.probability, weighed.standard_error)
-                } else {
-                    let estimate = sampler.estimate_within(&shot, 0.0, SAMPLES, seed, &Silent);
-                    (estimate.probability, estimate.standard_error)
+                let (probability, standard_error) = match near.probability(&shot) {
+                    Some(weighed) => (weighed.probability, weighed.standard_error),
+                    None => {
+                        let estimate = sampler.estimate_within(&shot, 0.0, SAMPLES, seed, &Silent);
+                        (estimate.probability, estimate.standard_error)
+                    }
                 };
                 CurvePoint {
                     value,

@@ -6,10 +6,11 @@
 //! it does not resolve the P of a very accurate shooter.) From the best optima, parabolas along
 //! each variable lead to the top, through P of all nominal shots nearby from one weighted sample of
 //! shots ([`Neighbourhood`]). About the highest top this is done again with more shots. While the
-//! top is far from the middle of the sample, the next sample is about the top. Weights tell nothing
-//! of a variable that has no error: where such a one is searched, P of each shot is counted. P of
-//! the winner is computed again with independent scrambles, so it is not the largest of many noisy
-//! values.
+//! top is far from the middle of the sample, the next sample is about the top. Shots that the
+//! sample does not tell P of are counted: where a variable is searched that has no error, and where
+//! a move leads farther than the errors do (one in pitch moves the speed, too, which may hardly
+//! err). P of the winner is computed again with independent scrambles, so it is not the largest of
+//! many noisy values.
 
 use super::followed::Starts;
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
@@ -558,7 +559,7 @@ impl<'a> BestShotSearch<'a> {
             .map(|start| {
                 let top = self.top_near(start, NEIGHBOURHOOD_FACTOR * points);
                 self.progress.advance(1);
-                self.unless_worse(top.nominal, start.nominal, points)
+                self.unless_worse(top, start.nominal, points).nominal
             })
             .collect();
         self.progress.end();
@@ -579,11 +580,14 @@ impl<'a> BestShotSearch<'a> {
 
     /// The top of parabolas; but the shot that they were taken about, where that is better by more
     /// than the points err: P of a very accurate shooter is no parabola.
-    fn unless_worse(&self, top: Nominal, optimum: Nominal, points: u32) -> Nominal {
-        let made = self.made(&[top, optimum], points);
+    fn unless_worse(&self, top: Top, optimum: Nominal, points: u32) -> Top {
+        let made = self.made(&[top.nominal, optimum], points);
         let lost = made[1] as f64 - made[0] as f64;
         if lost > LEAST_LOSS * f64::from(points) {
-            optimum
+            Top {
+                nominal: optimum,
+                probability: None,
+            }
         } else {
             top
         }
@@ -631,11 +635,11 @@ impl<'a> BestShotSearch<'a> {
     /// The top near a shot, by samples of so many points.
     fn top_near(&self, start: &Start, points: u32) -> Top {
         let search = self.pattern_search();
+        let counted = |nominals: &[Nominal]| {
+            let made = self.made(nominals, points / NEIGHBOURHOOD_FACTOR);
+            made.into_iter().map(|made| made as f64).collect()
+        };
         if !self.has_all_errors(&start.nominal) {
-            let counted = |nominals: &[Nominal]| {
-                let made = self.made(nominals, points / NEIGHBOURHOOD_FACTOR);
-                made.into_iter().map(|made| made as f64).collect()
-            };
             let once = search.top_of_parabolas(start, first_step, counted);
             return Top {
                 nominal: search.top_of_parabolas(&once, first_step, counted).nominal,
@@ -643,23 +647,25 @@ impl<'a> BestShotSearch<'a> {
             };
         }
         let mut top = *start;
-        let mut probability = 0.0;
+        let mut probability = None;
         for _ in 0..MOST_NEIGHBOURHOODS {
             let centre = top.nominal;
             let spread = |variable| self.spread(variable, &centre);
             let sample = (&self.scramble, points);
             let near = Neighbourhood::simulate(self.profile, &centre, sample, WIDENING);
-            let weighed = |nominals: &[Nominal]| {
+            let values = |nominals: &[Nominal]| {
                 let each = nominals.iter();
-                each.map(|nominal| near.probability(nominal).probability)
-                    .collect()
+                let told: Option<Vec<f64>> = each
+                    .map(|nominal| Some(near.probability(nominal)?.probability))
+                    .collect();
+                told.unwrap_or_else(|| counted(nominals))
             };
             for part in PARABOLA_REACHES {
                 let reach = |variable| part * spread(variable);
-                top = search.top_of_parabolas(&top, reach, weighed);
-                top = search.best_beside_other_kind(&top, reach, weighed);
+                top = search.top_of_parabolas(&top, reach, values);
+                top = search.best_beside_other_kind(&top, reach, values);
             }
-            probability = near.probability(&top.nominal).probability;
+            probability = near.probability(&top.nominal).map(|told| told.probability);
             let is_near = |variable: NominalVariable| {
                 let moved = top.nominal.get(variable) - centre.get(variable);
                 moved.abs() < NEIGHBOURHOOD * spread(variable)
@@ -670,7 +676,7 @@ impl<'a> BestShotSearch<'a> {
         }
         Top {
             nominal: top.nominal,
-            probability: Some(probability),
+            probability,
         }
     }
 
@@ -690,25 +696,26 @@ impl<'a> BestShotSearch<'a> {
             nominal: optimum,
         };
         if self.has_all_errors(&optimum) {
-            return Ok(self.top_near(&start, LAST_FACTOR * self.points()));
+            let top = self.top_near(&start, LAST_FACTOR * self.points());
+            return Ok(self.unless_worse(top, optimum, self.points()));
         }
+        let points = self.compared_points();
         let plan = self.plan.window(self.profile, &optimum)?;
         let reach = |variable| {
             let axis = plan.nominal.axis(variable);
             COUNTED_PARABOLA_REACH * 0.5 * (axis.high - axis.low)
         };
-        let points = self.compared_points();
         let counted = |nominals: &[Nominal]| {
             let made = self.made(nominals, points);
             made.into_iter().map(|made| made as f64).collect()
         };
         let search = self.pattern_search();
         let near = search.top_of_parabolas(&start, first_step, counted);
-        let top = search.top_of_parabolas(&near, reach, counted).nominal;
-        Ok(Top {
-            nominal: self.unless_worse(top, optimum, points),
+        let top = Top {
+            nominal: search.top_of_parabolas(&near, reach, counted).nominal,
             probability: None,
-        })
+        };
+        Ok(self.unless_worse(top, optimum, points))
     }
 
     /// P along each variable of a shot, if that is asked for.

@@ -20,6 +20,10 @@ const N: usize = ReleaseVariable::COUNT;
 const BLOCK: usize = 4096;
 /// Shots that are weighed at a time.
 const LANES: usize = 8;
+/// The weights of a sample tell P of a shot where the shots that count are at least this part of it
+/// (its effective size; Owen, section 9.3). With fewer, a handful of them decides, and their
+/// standard error misleads as well.
+const LEAST_EFFECTIVE_PART: f64 = 1.0 / 64.0;
 
 /// The simulated shots.
 pub(crate) struct Neighbourhood<'a> {
@@ -87,8 +91,9 @@ impl<'a> Neighbourhood<'a> {
         }
     }
 
-    /// P of a nominal shot. Not a number where a variable without an error differs.
-    pub(crate) fn probability(&self, nominal: &Nominal) -> WeighedProbability {
+    /// P of a nominal shot; `None` where the sample does not tell it: too far away for the errors
+    /// of the shooter, all of them together, or in a variable without one.
+    pub(crate) fn probability(&self, nominal: &Nominal) -> Option<WeighedProbability> {
         let other = ReleaseDistribution::new(self.profile, nominal);
         let density = Density::new(&other.normals_from(&self.distribution));
         let level = Level::new();
@@ -102,13 +107,18 @@ impl<'a> Neighbourhood<'a> {
             }
         }
         let [made, all, made_squares, squares] = total;
+        let points: usize = self.blocks.iter().map(|block| block.made.len()).sum();
+        let is_told = all * all >= LEAST_EFFECTIVE_PART * points as f64 * squares;
+        if !(is_told && all > 0.0) {
+            return None;
+        }
         let p = made / all;
         // The sum of the squares of w (made - p).
         let spread = (1.0 - 2.0 * p) * made_squares + p * p * squares;
-        WeighedProbability {
+        Some(WeighedProbability {
             probability: p,
             standard_error: spread.max(0.0).sqrt() / all,
-        }
+        })
     }
 }
 
@@ -166,5 +176,83 @@ impl Block {
                 })
             },
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::sobol::ScrambleKey;
+    use crate::probability::{Sampler, Silent};
+    use crate::shooter::{Location, NominalVariable, ProfileSettings, ReleaseDispersion, Shooter};
+
+    /// A free throw with this error of the speed, and a shot of it.
+    fn free_throw(c10_m_s: f64) -> (Profile, Nominal) {
+        let settings = ProfileSettings::new(Shooter {
+            name: "test".to_owned(),
+            release_height_m: 2.1,
+            max_backspin_rad_s: 20.0,
+            max_side_spin_rad_s: 0.0,
+            dispersion: ReleaseDispersion {
+                c10_m_s,
+                c20_rad: 0.02,
+                c30_rad: 0.01,
+                c40_rad_s: 2.0,
+                ..ReleaseDispersion::NONE
+            },
+        });
+        let profile = settings.at(Location {
+            distance_m: 4.19,
+            angle_rad: 0.0,
+        });
+        let nominal = Nominal {
+            speed_m_s: 6.9,
+            pitch_rad: 0.9,
+            backspin_rad_s: 10.0,
+            ..Nominal::default()
+        };
+        (profile.unwrap(), nominal)
+    }
+
+    /// P of shots beside one by its sample, within the errors of both: 6 standard errors, as those
+    /// of weights have tails. How many of them the sample tells.
+    fn told(c10_m_s: f64) -> usize {
+        let (profile, nominal) = free_throw(c10_m_s);
+        let sampler = Sampler::new(&profile);
+        let scramble = sampler.scramble(ScrambleKey {
+            seed: 1,
+            replicate: 0,
+        });
+        let near = Neighbourhood::simulate(&profile, &nominal, (&scramble, 16_384), 1.4);
+        let mut told = 0;
+        for step in -8..=8 {
+            // The speed goes with the pitch angle, as along a ridge of P.
+            let by = 0.005 * f64::from(step);
+            let shot = nominal
+                .with(NominalVariable::Pitch, nominal.pitch_rad + by)
+                .with(NominalVariable::Speed, nominal.speed_m_s - 0.7 * by);
+            let Some(weighed) = near.probability(&shot) else {
+                continue;
+            };
+            told += 1;
+            let counted = sampler.estimate(&shot, 0.001, 2, &Silent);
+            let error = libm::hypot(weighed.standard_error, counted.standard_error);
+            let difference = (weighed.probability - counted.probability).abs();
+            assert!(
+                difference < 6.0 * error,
+                "step {step}: {weighed:?} {counted:?}"
+            );
+        }
+        told
+    }
+
+    #[test]
+    fn a_sample_tells_p_of_shots_nearby_and_of_no_others() {
+        assert_eq!(told(0.08), 17);
+        let of_steady_speed = told(0.003);
+        assert!(
+            (3..17).contains(&of_steady_speed),
+            "{of_steady_speed} of 17"
+        );
     }
 }
