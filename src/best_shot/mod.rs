@@ -6,6 +6,7 @@ mod found_shots;
 mod pattern_search;
 mod physics_comparison;
 mod search;
+mod search_starts;
 mod shot_table;
 mod table_maxima;
 

@@ -5,7 +5,7 @@ use crate::probability::Progress;
 use crate::search_space::Bracket;
 use crate::shooter::{Nominal, NominalVariable, Profile, ShotKind};
 
-/// About the greatest number of shots that are tried from one start, with all steps together.
+/// About the greatest number of shots that are tried from one start.
 const MAX_TRIALS: u32 = 200;
 
 /// Two shots whose variables differ by less are the same but for rounding, SI units.
@@ -16,12 +16,9 @@ const BORDER_STEPS: i32 = 8;
 /// The border itself is found by so many halvings of a step.
 const BORDER_HALVINGS: u32 = 5;
 
-/// The steps of a climb, as multiples of the first step of each variable.
-const SCALES: &[f64] = &[1.0, 0.5];
-
-/// First step along a variable, SI units. That of the speed is relative to the parabola through the
-/// hoop's centre.
-pub(super) fn first_step(variable: NominalVariable) -> f64 {
+/// Step of a climb along a variable, SI units. That of the speed is relative to the parabola
+/// through the hoop's centre.
+pub(super) fn step(variable: NominalVariable) -> f64 {
     match variable {
         NominalVariable::Speed => 0.06,
         NominalVariable::Pitch => 0.03,
@@ -52,8 +49,8 @@ struct Climb {
     best: (u64, Nominal),
     /// Where the last move came from.
     previous: Option<Nominal>,
-    /// The steps that are left; the first of them is tried now.
-    scales: &'static [f64],
+    /// Part of the step of each variable.
+    scale: f64,
     /// The next move: each variable is moved up (even numbers), then down.
     next_move: usize,
     /// The variables that were tried since the last move was taken.
@@ -62,12 +59,12 @@ struct Climb {
 }
 
 impl Climb {
-    fn new(start: Start, value: u64) -> Self {
+    fn new(start: Start, value: u64, scale: f64) -> Self {
         Self {
             kind: start.kind,
             best: (value, start.nominal),
             previous: None,
-            scales: SCALES,
+            scale,
             next_move: 0,
             unmoved: 0,
             trials: 0,
@@ -78,20 +75,15 @@ impl Climb {
     fn next_trial(&mut self, search: &PatternSearch<'_>) -> Option<Nominal> {
         let variables = &search.variables;
         loop {
-            let scale = *self.scales.first()?;
             let moves_up = self.next_move.is_multiple_of(2);
             if moves_up && (self.unmoved == variables.len() || self.trials >= MAX_TRIALS) {
-                self.scales = &self.scales[1..];
-                self.previous = None;
-                self.next_move = 0;
-                self.unmoved = 0;
-                continue;
+                return None;
             }
             if moves_up {
                 self.unmoved += 1;
             }
             let variable = variables[self.next_move / 2];
-            let step = scale * first_step(variable);
+            let step = self.scale * step(variable);
             let by = if moves_up { step } else { -step };
             let next = search.moved(&self.best.1, variable, by);
             let is_same = |known: &Nominal| search.is_same(&next, known);
@@ -129,20 +121,22 @@ impl<'a> PatternSearch<'a> {
         }
     }
 
-    /// Climbs from each start on `values`, the numbers of made shots of some shots; returns the
-    /// local optima. The climbs go side by side, so that each call of `values` has a trial of every
-    /// climb: one alone has too few shots for all threads and lanes.
+    /// Climbs from each start on `values`, the numbers of made shots of some shots, by a part of the
+    /// usual steps; returns the local optima and their values. The climbs go side by side, so that
+    /// each call of `values` has a trial of every climb: one alone has too few shots for all threads
+    /// and lanes.
     pub(super) fn climb(
         &self,
         starts: &[Start],
+        scale: f64,
         values: impl Fn(&[Nominal]) -> Vec<u64>,
         progress: &dyn Progress,
-    ) -> Vec<Nominal> {
+    ) -> (Vec<Nominal>, Vec<u64>) {
         let nominals: Vec<Nominal> = starts.iter().map(|start| start.nominal).collect();
         let mut climbs: Vec<Climb> = starts
             .iter()
             .zip(values(&nominals))
-            .map(|(&start, value)| Climb::new(start, value))
+            .map(|(&start, value)| Climb::new(start, value, scale))
             .collect();
         let mut in_progress = climbs.len();
         loop {
@@ -154,7 +148,8 @@ impl<'a> PatternSearch<'a> {
             progress.advance((in_progress - trials.len()) as u64);
             in_progress = trials.len();
             if trials.is_empty() {
-                return climbs.into_iter().map(|climb| climb.best.1).collect();
+                let best = climbs.into_iter().map(|climb| (climb.best.1, climb.best.0));
+                return best.unzip();
             }
             for ((i, &trial), value) in asking.into_iter().zip(&trials).zip(values(&trials)) {
                 climbs[i].take(trial, value, self);

@@ -2,20 +2,20 @@
 //!
 //! For each kind, a coarse table of everything the shooter can intend gives some starts, far apart.
 //! From each of them a pattern search climbs on P itself, integrated with few Sobol points that are
-//! the same everywhere (common random numbers). (The table alone does not tell which start is best:
-//! it does not resolve the P of a very accurate shooter.) From the best optima, parabolas along
-//! each variable lead to the top, through P of all nominal shots nearby from one weighted sample of
-//! shots ([`Neighbourhood`]). About the highest top this is done again with more shots. While the
-//! top is far from the middle of the sample, the next sample is about the top. Shots that the
-//! sample does not tell P of are counted: where a variable is searched that has no error, and where
-//! a move leads farther than the errors do (one in pitch moves the speed, too, which may hardly
-//! err). P of the winner is computed again with independent scrambles, so it is not the largest of
-//! many noisy values.
+//! the same everywhere (common random numbers); where climbs meet, the highest goes on with smaller
+//! steps. (The table alone does not tell which start is best: it does not resolve the P of a very
+//! accurate shooter.) From the best optima, parabolas along each variable lead to the top, through P
+//! of all nominal shots nearby from one weighted sample of shots ([`Neighbourhood`]). About the
+//! highest top this is done again with more shots. While the top is far from the middle of the
+//! sample, the next sample is about the top. Shots that the sample does not tell P of are counted:
+//! where a variable is searched that has no error, and where a move leads farther than the errors
+//! do (one in pitch moves the speed, too, which may hardly err). P of the winner is computed again
+//! with independent scrambles, so it is not the largest of many noisy values.
 
 use super::followed::Starts;
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
-use super::pattern_search::{PatternSearch, Start, first_step};
-use super::table_maxima::{Candidate, maxima_by_pitch, maxima_by_speed, separated};
+use super::pattern_search::{PatternSearch, Start, step};
+use super::table_maxima::Candidate;
 use crate::analysis::aim_past_hoop::aim_past_centre_m;
 use crate::analysis::probability_curves::{self, ProbabilityCurve};
 use crate::analysis::sensitivity::{self, SensitivityTopics};
@@ -32,6 +32,10 @@ use rayon::prelude::*;
 const CLIMB_PART: u32 = 4;
 /// See [`CLIMB_PART`].
 const CLIMB_LEAST: u32 = 256;
+/// Parts of the usual steps that climbs take first, and those of them that go on.
+const STEPS: [f64; 2] = [1.0, 0.5];
+/// Climbs go on that reach P of the best one but for this.
+const CLIMBING_MARGIN: f64 = 0.15;
 /// Most optima of each kind that parabolas are taken about.
 const MOST_OPTIMA: usize = 3;
 /// Parabolas are taken about an optimum that reaches P of the best one but for this: so much may
@@ -227,18 +231,6 @@ pub(super) fn climb_from_shots(
     Ok(optimum.map(|nominal| (nominal, search.estimate(&nominal, &Silent))))
 }
 
-/// The side spins from which the search starts: the fixed one; or none and the limits. One limit is
-/// enough if the other is its mirror image.
-fn start_side_spins(profile: &Profile, plan: &TablePlan) -> Vec<f64> {
-    let most = profile.shooter().max_side_spin_rad_s;
-    let is_searched = profile.search().choice.includes(NominalVariable::SideSpin);
-    match (is_searched, plan.mirrored) {
-        (false, _) => vec![plan.nominal.side_spin_rad_s],
-        (true, true) => vec![0.0, most],
-        (true, false) => vec![0.0, most, -most],
-    }
-}
-
 /// The refined optimum of a kind.
 struct Top {
     nominal: Nominal,
@@ -257,9 +249,9 @@ struct LocalOptima {
     followed: Vec<Nominal>,
 }
 
-struct BestShotSearch<'a> {
-    profile: &'a Profile,
-    plan: &'a TablePlan,
+pub(super) struct BestShotSearch<'a> {
+    pub(super) profile: &'a Profile,
+    pub(super) plan: &'a TablePlan,
     topics: SensitivityTopics,
     progress: &'a dyn Progress,
     sampler: Sampler<'a>,
@@ -289,67 +281,23 @@ impl<'a> BestShotSearch<'a> {
         }
     }
 
-    /// The starts of the climbs of some kinds.
-    fn starts(&self, kinds: &[ShotKind], from: Starts) -> Result<Vec<Start>, PlanError> {
-        let known = match from {
-            Starts::Table => Vec::new(),
-            Starts::Optima(shots) => self.starts_among(shots),
-        };
-        let is_known = |kind: &ShotKind| known.iter().any(|start| start.kind == *kind);
-        let new: Vec<ShotKind> = kinds
-            .iter()
-            .copied()
-            .filter(|kind| !is_known(kind))
-            .collect();
-        let mut starts = self.starts_of_table(&new)?;
-        starts.extend(
-            known
-                .into_iter()
-                .filter(|start| kinds.contains(&start.kind)),
-        );
-        Ok(starts)
-    }
-
-    /// Starts at those of some shots that are not the same optimum as one before, each of its kind.
-    fn starts_among(&self, shots: &[Nominal]) -> Vec<Start> {
-        let search = self.pattern_search();
-        let mut starts: Vec<Start> = Vec::new();
-        for shot in shots {
-            let nominal = search.within_limits(shot);
-            let kind = ShotKind::of(self.profile, &nominal);
-            let is_other =
-                |start: &Start| start.kind != kind || self.are_apart(&start.nominal, &nominal);
-            if starts.iter().all(is_other) {
-                starts.push(Start { kind, nominal });
-            }
-        }
-        starts
-    }
-
-    /// The best shots of the coarse table, far apart.
-    fn starts_of_table(&self, kinds: &[ShotKind]) -> Result<Vec<Start>, PlanError> {
-        let mut starts = Vec::new();
-        if kinds.is_empty() {
-            return Ok(starts);
-        }
-        for side_spin_rad_s in start_side_spins(self.profile, self.plan) {
-            let plan = TablePlan::for_search_with_side_spin(self.profile, side_spin_rad_s)?;
-            let table = self.table(&plan);
-            let maxima = if table.pitch_rad.len() == 1 {
-                maxima_by_speed(self.profile, &table)
-            } else {
-                maxima_by_pitch(self.profile, &table)
-            };
-            for &kind in kinds {
-                let separated = separated(&maxima[kind.index()]).into_iter();
-                starts.extend(separated.map(|(_, nominal)| Start { kind, nominal }));
-            }
-        }
-        Ok(starts)
-    }
-
-    fn table(&self, plan: &TablePlan) -> NominalProbabilities {
+    pub(super) fn table(&self, plan: &TablePlan) -> NominalProbabilities {
         NominalTable::simulate(self.profile, plan, self.progress).probabilities(self.profile)
+    }
+
+    fn is_made(&self, nominal: &Nominal) -> bool {
+        let start = self.profile.release(nominal).state();
+        self.profile.simulator().verdict(start).made
+    }
+
+    /// The most probable nominal shot near a top that is made without errors, and its P.
+    fn best_clean(&self, kind: ShotKind, top: &Nominal) -> Result<Option<Candidate>, PlanError> {
+        let table = self.table(&self.plan.window(self.profile, top)?);
+        let mut shots: Vec<Candidate> = table.shots().filter(|(p, _)| *p > 0.0).collect();
+        shots.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Ok(shots.into_iter().find(|(_, nominal)| {
+            ShotKind::of(self.profile, nominal) == kind && self.is_made(nominal)
+        }))
     }
 
     /// P of a nominal shot with independent scrambles.
@@ -373,8 +321,7 @@ impl<'a> BestShotSearch<'a> {
         let mut probable = None;
         if !self.is_made(&top.nominal) {
             // The most probable shot goes in only with errors: take the best one that needs none.
-            let table = self.table(&self.plan.window(self.profile, &top.nominal)?);
-            if let Some((p, clean)) = self.best_clean(kind, &table) {
+            if let Some((p, clean)) = self.best_clean(kind, &top.nominal)? {
                 probable = Some(top.nominal);
                 top = Top {
                     nominal: clean,
@@ -444,31 +391,6 @@ impl<'a> BestShotSearch<'a> {
         (nominal, self.estimate(&nominal, self.progress))
     }
 
-    fn is_made(&self, nominal: &Nominal) -> bool {
-        let start = self.profile.release(nominal).state();
-        self.profile.simulator().verdict(start).made
-    }
-
-    /// The most probable nominal shot of a table that is made without errors.
-    fn best_clean(&self, kind: ShotKind, table: &NominalProbabilities) -> Option<Candidate> {
-        let mut shots: Vec<Candidate> = Vec::new();
-        for pitch in 0..table.pitch_rad.len() {
-            for polar in 0..table.polar_rad.len() {
-                for spin in 0..table.backspin_rad_s.len() {
-                    let speeds = 0..table.speed_m_s.len();
-                    shots.extend(speeds.map(|speed| table.at([pitch, polar, spin, speed])));
-                }
-            }
-        }
-        shots.sort_by(|a, b| b.0.total_cmp(&a.0));
-        shots
-            .into_iter()
-            .take_while(|(p, _)| *p > 0.0)
-            .find(|(_, nominal)| {
-                ShotKind::of(self.profile, nominal) == kind && self.is_made(nominal)
-            })
-    }
-
     /// The optima that are reached from some starts.
     fn optima(&self, starts: &[Start], draft: Draft<'_>) -> LocalOptima {
         let points = self.points();
@@ -481,18 +403,20 @@ impl<'a> BestShotSearch<'a> {
             draft(&self.drafts(&by_kind(starts, &nominals, &made)));
         }
         self.progress.begin("climbing", starts.len() as u64);
-        let nominals = self.climb(starts, few);
+        let optima = self.climb(starts, few);
         self.progress.end();
-        let optima = by_kind(starts, &nominals, &self.made(&nominals, points));
+        let nominals: Vec<Nominal> = optima.iter().map(|optimum| optimum.nominal).collect();
+        let optima = by_kind(&optima, &nominals, &self.made(&nominals, points));
         if let Some(draft) = draft {
             draft(&self.drafts(&optima));
         }
         let mut promising: Vec<Start> = Vec::new();
         let mut climbed: Vec<Nominal> = Vec::new();
         for (kind, optima) in ShotKind::ALL.into_iter().zip(&optima) {
-            let near = self.apart(optima, PROMISING_MARGIN, MOST_OPTIMA);
+            let margin = |margin| margin * f64::from(points);
+            let near = self.apart(optima, margin(PROMISING_MARGIN), MOST_OPTIMA);
             promising.extend(near.into_iter().map(|nominal| Start { kind, nominal }));
-            climbed.extend(self.apart(optima, FOLLOWED_MARGIN, MOST_FOLLOWED));
+            climbed.extend(self.apart(optima, margin(FOLLOWED_MARGIN), MOST_FOLLOWED));
         }
         let highest = self.highest_tops(&promising);
         let tops = highest.iter().flatten().copied();
@@ -517,10 +441,10 @@ impl<'a> BestShotSearch<'a> {
             .collect()
     }
 
-    /// At most so many of some optima, the best first, that reach P of the first but for a margin
-    /// and are far from each other.
+    /// At most so many of some optima, the best first, that are made as often as the first but for
+    /// a margin and are far from each other.
     fn apart(&self, optima: &[Optimum], margin: f64, most: usize) -> Vec<Nominal> {
-        let least = |best: &Optimum| best.0 as f64 - margin * f64::from(self.points());
+        let least = |best: &Optimum| best.0 as f64 - margin;
         let least = optima.first().map_or(0.0, least);
         let mut chosen: Vec<Nominal> = Vec::new();
         for (_, optimum) in optima.iter().filter(|(made, _)| *made as f64 >= least) {
@@ -533,7 +457,7 @@ impl<'a> BestShotSearch<'a> {
 
     /// Whether two optima are not the same one: apart in side spin, or in pitch; where the pitch
     /// angle is fixed, in direction or speed.
-    fn are_apart(&self, a: &Nominal, b: &Nominal) -> bool {
+    pub(super) fn are_apart(&self, a: &Nominal, b: &Nominal) -> bool {
         let choice = self.profile.search().choice;
         let relative_speed = a.speed_m_s / b.speed_m_s - 1.0;
         let apart = if choice.includes(NominalVariable::Pitch) {
@@ -604,9 +528,24 @@ impl<'a> BestShotSearch<'a> {
     }
 
     /// The optima that climbs with so many points reach.
-    fn climb(&self, starts: &[Start], points: u32) -> Vec<Nominal> {
+    fn climb(&self, starts: &[Start], points: u32) -> Vec<Start> {
         let values = |nominals: &[Nominal]| self.made(nominals, points);
-        self.pattern_search().climb(starts, values, self.progress)
+        let search = self.pattern_search();
+        let [first, then] = STEPS;
+        let (nominals, made) = search.climb(starts, first, values, self.progress);
+        let margin = CLIMBING_MARGIN * f64::from(points);
+        let mut going_on: Vec<Start> = Vec::new();
+        for (kind, optima) in ShotKind::ALL
+            .into_iter()
+            .zip(by_kind(starts, &nominals, &made))
+        {
+            let apart = self.apart(&optima, margin, usize::MAX).into_iter();
+            going_on.extend(apart.map(|nominal| Start { kind, nominal }));
+        }
+        let (nominals, _) = search.climb(&going_on, then, values, &Silent);
+        let each = going_on.iter().zip(nominals);
+        each.map(|(start, nominal)| Start { nominal, ..*start })
+            .collect()
     }
 
     /// Whether every variable that is searched has an error: then the shots of a sample also tell P
@@ -640,9 +579,9 @@ impl<'a> BestShotSearch<'a> {
             made.into_iter().map(|made| made as f64).collect()
         };
         if !self.has_all_errors(&start.nominal) {
-            let once = search.top_of_parabolas(start, first_step, counted);
+            let once = search.top_of_parabolas(start, step, counted);
             return Top {
-                nominal: search.top_of_parabolas(&once, first_step, counted).nominal,
+                nominal: search.top_of_parabolas(&once, step, counted).nominal,
                 probability: None,
             };
         }
@@ -685,7 +624,7 @@ impl<'a> BestShotSearch<'a> {
         made_with((&self.sampler, &self.scramble), nominals, points)
     }
 
-    fn pattern_search(&self) -> PatternSearch<'_> {
+    pub(super) fn pattern_search(&self) -> PatternSearch<'_> {
         PatternSearch::new(self.profile, &self.plan.bracket)
     }
 
@@ -710,7 +649,7 @@ impl<'a> BestShotSearch<'a> {
             made.into_iter().map(|made| made as f64).collect()
         };
         let search = self.pattern_search();
-        let near = search.top_of_parabolas(&start, first_step, counted);
+        let near = search.top_of_parabolas(&start, step, counted);
         let top = Top {
             nominal: search.top_of_parabolas(&near, reach, counted).nominal,
             probability: None,

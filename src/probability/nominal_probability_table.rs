@@ -114,6 +114,18 @@ impl NominalProbabilities {
         };
         (self.values[index], nominal)
     }
+
+    /// P and the nominal shot at every index, in their order.
+    pub(crate) fn shots(&self) -> impl Iterator<Item = (f64, Nominal)> {
+        let counts = self.counts();
+        (0..self.values.len()).map(move |index| {
+            let speed = index % counts[3];
+            let line = index / counts[3];
+            let backspin = line % counts[2];
+            let plane = line / counts[2];
+            self.at([plane / counts[1], plane % counts[1], backspin, speed])
+        })
+    }
 }
 
 impl NominalTable {

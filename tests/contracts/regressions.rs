@@ -31,18 +31,18 @@ const PROBABILITIES: [u64; 3] = [
 /// Speed, pitch angle, polar angle, backspin and P: direct, bank.
 const BEST_SHOTS: [[u64; 5]; 2] = [
     [
-        0x401b_8122_ae0b_304a,
-        0x3fef_81c9_5ed4_8f23,
-        0x3feb_eead_d8bf_6086,
+        0x401b_86ab_bfb6_c065,
+        0x3fef_a564_81f9_4696,
+        0x3feb_efb7_8146_177b,
         0x4032_d97c_7f33_21d2,
-        0x3fe6_c400_0000_0000,
+        0x3fe6_bd00_0000_0000,
     ],
     [
-        0x401c_ba48_6411_f0bd,
-        0x3fee_a7c9_4040_4dcf,
-        0x3fe8_f24b_a46b_bac4,
+        0x401c_b575_2086_767b,
+        0x3fee_772e_36a9_b2fd,
+        0x3fe8_f104_4794_b9e7,
         0x4032_d97c_7f33_21d2,
-        0x3fe7_a980_0000_0000,
+        0x3fe7_9280_0000_0000,
     ],
 ];
 
