@@ -121,10 +121,10 @@ impl<'a> PatternSearch<'a> {
         }
     }
 
-    /// Climbs from each start on `values`, the numbers of made shots of some shots, by a part of the
-    /// usual steps; returns the local optima and their values. The climbs go side by side, so that
-    /// each call of `values` has a trial of every climb: one alone has too few shots for all threads
-    /// and lanes.
+    /// Climbs from each start on `values`, the numbers of made shots of some shots, by a part of
+    /// the usual steps; returns the local optima and their values. The climbs go side by side, so
+    /// that each call of `values` has a trial of every climb: one alone has too few shots for all
+    /// threads and lanes.
     pub(super) fn climb(
         &self,
         starts: &[Start],

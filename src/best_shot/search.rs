@@ -4,8 +4,8 @@
 //! From each of them a pattern search climbs on P itself, integrated with few Sobol points that are
 //! the same everywhere (common random numbers); where climbs meet, the highest goes on with smaller
 //! steps. (The table alone does not tell which start is best: it does not resolve the P of a very
-//! accurate shooter.) From the best optima, parabolas along each variable lead to the top, through P
-//! of all nominal shots nearby from one weighted sample of shots ([`Neighbourhood`]). About the
+//! accurate shooter.) From the best optima, parabolas along each variable lead to the top, through
+//! P of all nominal shots nearby from one weighted sample of shots ([`Neighbourhood`]). About the
 //! highest top this is done again with more shots. While the top is far from the middle of the
 //! sample, the next sample is about the top. Shots that the sample does not tell P of are counted:
 //! where a variable is searched that has no error, and where a move leads farther than the errors
