@@ -7,10 +7,10 @@
 //! accurate shooter.) From the best optima, parabolas along each variable lead to the top, through
 //! P of all nominal shots nearby from one weighted sample of shots ([`Neighbourhood`]). About the
 //! highest top this is done again with more shots. While the top is far from the middle of the
-//! sample, the next sample is about the top. Shots that the sample does not tell P of are counted:
-//! where a variable is searched that has no error, and where a move leads farther than the errors
-//! do (one in pitch moves the speed, too, which may hardly err). P of the winner is computed again
-//! with independent scrambles, so it is not the largest of many noisy values.
+//! sample, the next sample is about the top. A shot too far from it has P counted from shots of its
+//! own: where a variable is searched that has no error, and where a move leads farther than the
+//! errors do (one in pitch moves the speed, too, which may hardly err). P of the winner is computed
+//! again with independent scrambles, so it is not the largest of many noisy values.
 
 use super::followed::Starts;
 use super::found_shots::{BestShot, BestShotError, BestShots, Limit, NoShot, NotCleanShot};
@@ -594,17 +594,17 @@ impl<'a> BestShotSearch<'a> {
             let near = Neighbourhood::simulate(self.profile, &centre, sample, WIDENING);
             let values = |nominals: &[Nominal]| {
                 let each = nominals.iter();
-                let told: Option<Vec<f64>> = each
+                let weighed: Option<Vec<f64>> = each
                     .map(|nominal| Some(near.probability(nominal)?.probability))
                     .collect();
-                told.unwrap_or_else(|| counted(nominals))
+                weighed.unwrap_or_else(|| counted(nominals))
             };
             for part in PARABOLA_REACHES {
                 let reach = |variable| part * spread(variable);
                 top = search.top_of_parabolas(&top, reach, values);
                 top = search.best_beside_other_kind(&top, reach, values);
             }
-            probability = near.probability(&top.nominal).map(|told| told.probability);
+            probability = near.probability(&top.nominal).map(|p| p.probability);
             let is_near = |variable: NominalVariable| {
                 let moved = top.nominal.get(variable) - centre.get(variable);
                 moved.abs() < NEIGHBOURHOOD * spread(variable)

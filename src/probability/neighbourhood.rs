@@ -20,9 +20,8 @@ const N: usize = ReleaseVariable::COUNT;
 const BLOCK: usize = 4096;
 /// Shots that are weighed at a time.
 const LANES: usize = 8;
-/// The weights of a sample tell P of a shot where the shots that count are at least this part of it
-/// (its effective size; Owen, section 9.3). With fewer, a handful of them decides, and their
-/// standard error misleads as well.
+/// Least effective size of the weighted sample, as a part of its shots (Owen, section 9.3). Below
+/// it a handful of shots decides P, and the standard error misleads as well.
 const LEAST_EFFECTIVE_PART: f64 = 1.0 / 64.0;
 
 /// The simulated shots.
@@ -91,8 +90,8 @@ impl<'a> Neighbourhood<'a> {
         }
     }
 
-    /// P of a nominal shot; `None` where the sample does not tell it: too far away for the errors
-    /// of the shooter, all of them together, or in a variable without one.
+    /// P of a nominal shot; `None` where it is too far away: too few shots of the sample count for
+    /// it, or it differs in a variable without an error.
     pub(crate) fn probability(&self, nominal: &Nominal) -> Option<WeighedProbability> {
         let other = ReleaseDistribution::new(self.profile, nominal);
         let density = Density::new(&other.normals_from(&self.distribution));
@@ -108,8 +107,8 @@ impl<'a> Neighbourhood<'a> {
         }
         let [made, all, made_squares, squares] = total;
         let points: usize = self.blocks.iter().map(|block| block.made.len()).sum();
-        let is_told = all * all >= LEAST_EFFECTIVE_PART * points as f64 * squares;
-        if !(is_told && all > 0.0) {
+        let is_near = all * all >= LEAST_EFFECTIVE_PART * points as f64 * squares;
+        if !(is_near && all > 0.0) {
             return None;
         }
         let p = made / all;
@@ -214,9 +213,9 @@ mod tests {
         (profile.unwrap(), nominal)
     }
 
-    /// P of shots beside one by its sample, within the errors of both: 6 standard errors, as those
-    /// of weights have tails. How many of them the sample tells.
-    fn told(c10_m_s: f64) -> usize {
+    /// P of 17 shots beside one by its sample is that of fresh shots, within the errors of both: 6
+    /// standard errors, as those of weights have tails. How many of them are near enough.
+    fn agreeing_shots(c10_m_s: f64) -> usize {
         let (profile, nominal) = free_throw(c10_m_s);
         let sampler = Sampler::new(&profile);
         let scramble = sampler.scramble(ScrambleKey {
@@ -224,7 +223,7 @@ mod tests {
             replicate: 0,
         });
         let near = Neighbourhood::simulate(&profile, &nominal, (&scramble, 16_384), 1.4);
-        let mut told = 0;
+        let mut near_enough = 0;
         for step in -8..=8 {
             // The speed goes with the pitch angle, as along a ridge of P.
             let by = 0.005 * f64::from(step);
@@ -234,7 +233,7 @@ mod tests {
             let Some(weighed) = near.probability(&shot) else {
                 continue;
             };
-            told += 1;
+            near_enough += 1;
             let counted = sampler.estimate(&shot, 0.001, 2, &Silent);
             let error = libm::hypot(weighed.standard_error, counted.standard_error);
             let difference = (weighed.probability - counted.probability).abs();
@@ -243,13 +242,13 @@ mod tests {
                 "step {step}: {weighed:?} {counted:?}"
             );
         }
-        told
+        near_enough
     }
 
     #[test]
-    fn a_sample_tells_p_of_shots_nearby_and_of_no_others() {
-        assert_eq!(told(0.08), 17);
-        let of_steady_speed = told(0.003);
+    fn a_sample_has_p_of_shots_nearby_and_of_no_others() {
+        assert_eq!(agreeing_shots(0.08), 17);
+        let of_steady_speed = agreeing_shots(0.003);
         assert!(
             (3..17).contains(&of_steady_speed),
             "{of_steady_speed} of 17"
