@@ -3,12 +3,13 @@
 use crate::common::{at, grid, load};
 use bankshot::analysis::sensitivity::SensitivityTopics;
 use bankshot::best_shot::{
-    self, PhysicsOf, ShotKind, TableKind, best_by_pitch, compare_physics, physics_variants,
+    self, BestShot, PhysicsOf, ShotKind, TableKind, best_by_pitch, compare_physics,
+    physics_variants,
 };
 use bankshot::model::{Physics, Preset};
 use bankshot::probability::{NominalTable, Sampler, Silent};
 use bankshot::search_space::{TablePlan, sample_wide};
-use bankshot::shooter::{Correlation, Nominal, ReleaseVariable, SearchSettings};
+use bankshot::shooter::{Correlation, Nominal, Profile, ReleaseVariable, SearchSettings};
 use bankshot::units::FOOT_M;
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
@@ -206,23 +207,69 @@ fn campaign_no_made_shot_lies_outside_the_range_of_a_search() {
     assert_eq!(found, 0);
 }
 
-/// By how much P of shots that were followed from neighbours exceeds that of full searches: of
-/// some kinds at some pitch angles, and of both under every so many changes of the physics.
+/// By how much P of shots exceeds that of full searches.
+#[derive(Default)]
+struct Gains {
+    /// Of shots that were followed from neighbours.
+    followed: Vec<f64>,
+    /// Of shots that full searches with another seed find: the luck of a search on a flat top.
+    other_seed: Vec<f64>,
+}
+
+impl Gains {
+    /// Takes the followed shot and that of a full search of the profile. P of all shots is
+    /// estimated with the seed of the profile.
+    fn take(
+        &mut self,
+        profile: &Profile,
+        followed: Option<Nominal>,
+        search: impl Fn(&Profile) -> Option<Nominal>,
+        other_seed: Option<u64>,
+    ) {
+        let settings = profile.search();
+        let sampler = Sampler::new(profile);
+        let probability = |shot: Option<Nominal>| {
+            shot.map_or(0.0, |shot| {
+                let error = settings.standard_error;
+                let estimate = sampler.estimate(&shot, error, settings.seed, &Silent);
+                estimate.probability
+            })
+        };
+        let full = probability(search(profile));
+        self.followed.push(probability(followed) - full);
+        if let Some(seed) = other_seed {
+            let other = profile.with(|settings| settings.search.seed = Some(seed));
+            let other = probability(search(&other.unwrap()));
+            self.other_seed.push(other - full);
+        }
+    }
+}
+
+/// The gains of some kinds at some pitch angles, and of both under every so many changes of the
+/// physics.
 fn gains_of_following(
     name: &str,
     (kinds, pitches_deg): (&[ShotKind], &[f64]),
     physics_steps: usize,
-) -> Vec<f64> {
+    other_seed: Option<u64>,
+) -> Gains {
     let profile = load(name);
-    let mut gains = Vec::new();
+    let mut gains = Gains::default();
     let pitches: Vec<f64> = pitches_deg.iter().map(|pitch| pitch.to_radians()).collect();
     for kind in kinds {
         let kind = TableKind::One(*kind);
-        let followed = best_by_pitch(&profile, kind, &pitches, &Silent).unwrap();
-        for (pitch, row) in pitches.iter().zip(followed) {
+        let rows = |profile: &Profile, pitches: &[f64]| {
+            let rows = best_by_pitch(profile, kind, pitches, &Silent).unwrap();
+            let shots = rows.into_iter().map(|row| {
+                let clean = row.shot.map(|shot| shot.nominal);
+                clean.or(row.not_clean.map(|shot| shot.nominal))
+            });
+            shots.collect::<Vec<Option<Nominal>>>()
+        };
+        for (pitch, followed) in pitches.iter().zip(rows(&profile, &pitches)) {
             // Of one angle alone all shots are searched.
-            let full = best_by_pitch(&profile, kind, &[*pitch], &Silent).unwrap();
-            gains.push(row.probability() - full[0].probability());
+            let search = |profile: &Profile| rows(profile, &[*pitch])[0];
+            gains.take(&profile, followed, search, other_seed);
         }
     }
     let variants = physics_variants(profile.physics(), PhysicsOf::Profile);
@@ -230,13 +277,16 @@ fn gains_of_following(
     let rows = compare_physics(&profile, &variants, &Silent).unwrap().rows;
     for row in rows {
         let other = profile.with(|settings| settings.physics = row.physics.clone());
-        let topics = SensitivityTopics::NONE;
-        let found =
-            best_shot::find_kinds(&other.unwrap(), &ShotKind::ALL, topics, &Silent).unwrap();
-        for (followed, full) in [row.direct, row.bank].into_iter().zip(found.1) {
-            let [followed, full] =
-                [followed, full].map(|shot| shot.map_or(0.0, |shot| shot.estimate.probability));
-            gains.push(followed - full);
+        let other = other.unwrap();
+        for (kind, followed) in ShotKind::ALL.into_iter().zip([row.direct, row.bank]) {
+            let search = |profile: &Profile| {
+                let topics = SensitivityTopics::NONE;
+                let found = best_shot::find_kinds(profile, &[kind], topics, &Silent).unwrap();
+                let [shot] = found.1.try_into().unwrap();
+                shot.ok().map(|shot: BestShot| shot.nominal)
+            };
+            let followed = followed.ok().map(|shot| shot.nominal);
+            gains.take(&other, followed, search, other_seed);
         }
     }
     gains
@@ -247,7 +297,8 @@ fn gains_of_following(
 #[test]
 fn val_optima_that_are_followed_are_those_of_full_searches() {
     let pitches = [45.0, 50.0, 55.0, 60.0];
-    let gains = gains_of_following("free_throw", (&[ShotKind::Direct], &pitches), 12);
+    let kinds = [ShotKind::Direct];
+    let gains = gains_of_following("free_throw", (&kinds, &pitches), 12, None).followed;
     let least = gains.iter().copied().fold(0.0, f64::min);
     println!("{} shots, least gain {least:.4}", gains.len());
     assert!(least > -0.005, "{gains:?}");
@@ -277,12 +328,34 @@ fn contract_followed_shots_keep_the_limits() {
     assert!(speeds[2] > 0.999 * most_m_s, "{speeds:?}");
 }
 
-/// As the optima above, for nine shooters, all pitch angles and every change of the physics.
+/// As the optima above, for nine shooters, all pitch angles and every change of the physics. On a
+/// flat top a search ends up here or there by luck: with another seed, full searches are lower, too.
+/// Followed shots are lower by more than 0.003 no more often, but for three standard deviations of
+/// the two counts. All seeds are fixed: no false alarm.
 #[test]
-#[ignore = "six minutes: cargo test --test validation campaign_followed -- --ignored --nocapture"]
+#[ignore = "20 minutes: cargo test --test validation campaign_followed -- --ignored --nocapture"]
 fn campaign_followed_optima_are_those_of_full_searches() {
+    const LOSS: f64 = 0.003;
     let pitches: Vec<f64> = (0..13).map(|k| 42.0 + 2.0 * f64::from(k)).collect();
-    let mut all = Vec::new();
+    let mut all = Gains::default();
+    let say = |name: &str, gains: &Gains| {
+        [
+            ("followed", &gains.followed),
+            ("other seed", &gains.other_seed),
+        ]
+        .map(|(which, gains)| {
+            let mean = gains.iter().sum::<f64>() / gains.len() as f64;
+            let least = gains.iter().copied().fold(0.0, f64::min);
+            let lower = gains.iter().filter(|gain| **gain < -LOSS).count();
+            let higher = gains.iter().filter(|gain| **gain > LOSS).count();
+            println!(
+                "{name}, {which}: {} shots, mean {mean:+.5}, least {least:+.4}, \
+                 {lower} lower and {higher} higher by more than {LOSS}",
+                gains.len()
+            );
+            (mean, least, lower as f64)
+        })
+    };
     for name in [
         "free_throw",
         "bank_wing",
@@ -294,22 +367,14 @@ fn campaign_followed_optima_are_those_of_full_searches() {
         "underhand",
         "youth",
     ] {
-        let gains = gains_of_following(name, (&ShotKind::ALL, &pitches), 1);
-        let least = gains.iter().copied().fold(0.0, f64::min);
-        let mean = gains.iter().sum::<f64>() / gains.len() as f64;
-        println!(
-            "{name}: {} shots, mean {mean:+.5}, least {least:+.4}",
-            gains.len()
-        );
-        all.extend(gains);
+        let gains = gains_of_following(name, (&ShotKind::ALL, &pitches), 1, Some(2));
+        say(name, &gains);
+        all.followed.extend(gains.followed);
+        all.other_seed.extend(gains.other_seed);
     }
-    let mean = all.iter().sum::<f64>() / all.len() as f64;
-    let below = all.iter().filter(|gain| **gain < -0.003).count();
-    println!(
-        "{} shots, mean {mean:+.5}, {below} lower by more than 0.003",
-        all.len()
-    );
+    let [(mean, least, lower), (_, _, lower_by_luck)] = say("all", &all);
     assert!(mean > -0.0005, "{mean}");
-    assert!(all.iter().all(|gain| *gain > -0.01), "{all:?}");
-    assert!(below <= all.len() / 100, "{below}");
+    assert!(least > -0.01, "{least}");
+    let luck = lower_by_luck + 3.0 * (lower + lower_by_luck).sqrt();
+    assert!(lower <= luck, "{lower}, {lower_by_luck} with another seed");
 }
