@@ -87,14 +87,23 @@ impl ConfigError {
         renderer.render(&[group])
     }
 
-    /// Line and column of a diagnostic in the text, from 1.
+    /// Line and column of each diagnostic in the text, from 1. One walk through the text finds all:
+    /// they are in its order.
     #[must_use]
-    pub fn line_and_column(&self, diagnostic: &Diagnostic) -> (usize, usize) {
-        let (start, _) = self.boundaries(&diagnostic.span);
-        let before = &self.text[..start];
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        let line = 1 + before.bytes().filter(|&byte| byte == b'\n').count();
-        (line, 1 + before[line_start..].chars().count())
+    pub fn lines_and_columns(&self) -> Vec<(usize, usize)> {
+        let (mut at, mut line, mut column) = (0, 1, 1);
+        let mut place = |diagnostic: &Diagnostic| {
+            let start = self.boundaries(&diagnostic.span).0.max(at);
+            for letter in self.text[at..start].chars() {
+                (line, column) = match letter {
+                    '\n' => (line + 1, 1),
+                    _ => (line, column + 1),
+                };
+            }
+            at = start;
+            (line, column)
+        };
+        self.diagnostics.iter().map(&mut place).collect()
     }
 
     /// The start and the end of a span, moved to boundaries of characters of the text.

@@ -246,6 +246,6 @@ angle = \"0 deg\"
         // A value out of range is marked where it stands.
         let text = PROFILE.replace("polar = \"1.2", "polar = \"-1.2");
         let error = parse_profile(&text, "a").unwrap_err();
-        assert_eq!(error.line_and_column(&error.diagnostics[0]).0, 7, "{error}");
+        assert_eq!(error.lines_and_columns()[0].0, 7, "{error}");
     }
 }

@@ -2,6 +2,7 @@
 
 use super::diagnostics::{ConfigError, Diagnostic, Problem};
 use crate::units::{Dimension, PERCENT, meant_by, parse};
+use std::collections::HashSet;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -402,14 +403,15 @@ impl<'t, 'i> TableReader<'t, 'i> {
         } else {
             known.join(", ")
         };
-        for (key, _) in table.iter() {
-            let name: &str = key.get_ref();
-            let full_name = self.full_name(name);
-            // What is said of a key already says more than that it is unknown.
-            let is_refused = diagnostics.iter().any(|other| other.key == full_name);
-            if is_refused || known.binary_search(&name).is_ok() {
-                continue;
-            }
+        // What is said of a key already says more than that it is unknown.
+        let refused: HashSet<&str> = diagnostics.iter().map(|other| &*other.key).collect();
+        let unknown: Vec<_> = (table.iter().map(|(key, _)| (&**key.get_ref(), key.span())))
+            .filter(|(name, _)| {
+                known.binary_search(name).is_err() && !refused.contains(&*self.full_name(name))
+            })
+            .collect();
+        let mut all_meant: HashSet<&str> = HashSet::new();
+        for (name, span) in unknown {
             let radius = name.replace("diameter", "radius");
             let is_known = |name: &str| known.binary_search(&name).is_ok();
             let other_word = OTHER_WORDS
@@ -422,28 +424,27 @@ impl<'t, 'i> TableReader<'t, 'i> {
             let hint = match meant {
                 _ if is_known(&radius) => format!("; did you mean \"{radius}\", half of it?"),
                 Some(meant) => {
-                    // The key that was meant, or those below it, are then not missing.
-                    let meant = self.full_name(meant);
-                    let below = format!("{meant}.");
-                    diagnostics.retain(|diagnostic| {
-                        let is_meant =
-                            diagnostic.key == meant || diagnostic.key.starts_with(&below);
-                        !(is_meant && diagnostic.problem == Problem::Missing)
-                    });
-                    format!(
-                        "; did you mean \"{}\"?",
-                        meant.rsplit('.').next().unwrap_or_default()
-                    )
+                    all_meant.insert(meant);
+                    format!("; did you mean \"{meant}\"?")
                 }
                 None => format!("; known are {known_names}"),
             };
             let message = format!("is an unknown key{hint}");
             let shown: String = name.chars().take(60).collect();
             diagnostics.push(Diagnostic {
-                span: key.span(),
+                span,
                 key: self.full_name(&shown),
                 message,
                 problem: Problem::Other,
+            });
+        }
+        // The keys that were meant, and those below them, are then not missing.
+        for meant in all_meant {
+            let meant = self.full_name(meant);
+            let below = format!("{meant}.");
+            diagnostics.retain(|diagnostic| {
+                let is_meant = diagnostic.key == meant || diagnostic.key.starts_with(&below);
+                !(is_meant && diagnostic.problem == Problem::Missing)
             });
         }
     }

@@ -107,14 +107,13 @@ fn checked(
         });
     }
     if let Err(error) = parse_profile(&text, &origin) {
-        let faults = error.diagnostics.iter().map(|diagnostic| {
-            let (line, column) = error.line_and_column(diagnostic);
-            Fault {
-                key: Some(diagnostic.key.clone()),
-                message: diagnostic.message.clone(),
-                line: Some(line),
-                column: Some(column),
-            }
+        let places = error.lines_and_columns();
+        let each = error.diagnostics.into_iter().zip(places);
+        let faults = each.map(|(diagnostic, (line, column))| Fault {
+            key: Some(diagnostic.key),
+            message: diagnostic.message,
+            line: Some(line),
+            column: Some(column),
         });
         return Ok((faults.collect(), None, code::USAGE));
     }

@@ -23,6 +23,7 @@ use crate::store::fit::FIT_FILE;
 use crate::store::shooters::{ShooterPlace, Shooters, fits_within};
 use crate::units::{DEGREE_RAD, UnitSystem};
 use rayon::prelude::*;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Fits several shooters side by side: one folder for each, and one table.
@@ -99,18 +100,24 @@ pub(crate) fn fit_each(
 
 /// A folder for each shooter. Different names can be the same as folders.
 fn folders_of(file: &MeasuredFile, out: &Path) -> Vec<PathBuf> {
-    let mut folders: Vec<PathBuf> = Vec::new();
-    for shots in &file.shooters {
+    let mut taken: HashSet<String> = HashSet::new();
+    let mut numbers: HashMap<String, usize> = HashMap::new();
+    let each = file.shooters.iter().map(|shots| {
         let name = file_name(&file.name_of(shots));
-        let mut folder = out.join(&name);
-        let mut number = 1;
-        while folders.contains(&folder) {
-            number += 1;
-            folder = out.join(format!("{name}-{number}"));
-        }
-        folders.push(folder);
-    }
-    folders
+        let number = numbers.entry(name.clone()).or_default();
+        let folder = loop {
+            *number += 1;
+            let folder = match number {
+                1 => name.clone(),
+                _ => format!("{name}-{number}"),
+            };
+            if taken.insert(folder.clone()) {
+                break folder;
+            }
+        };
+        out.join(folder)
+    });
+    each.collect()
 }
 
 /// What the shots tell where no shooter could be fitted: flights still tell the drag.
