@@ -329,9 +329,10 @@ fn contract_followed_shots_keep_the_limits() {
 }
 
 /// As the optima above, for nine shooters, all pitch angles and every change of the physics. On a
-/// flat top a search ends up here or there by luck: with another seed, full searches are lower, too.
-/// Followed shots are lower by more than 0.003 no more often, but for three standard deviations of
-/// the two counts. All seeds are fixed: no false alarm.
+/// flat top a search ends up here or there by luck: with another seed, full searches are lower, too,
+/// which is printed beside. At most 1 % of the followed shots may be lower by more than 0.003, and
+/// no more often than with another seed, but for three standard deviations of the two counts. All
+/// seeds are fixed: no false alarm.
 #[test]
 #[ignore = "20 minutes: cargo test --test validation campaign_followed -- --ignored --nocapture"]
 fn campaign_followed_optima_are_those_of_full_searches() {
@@ -375,6 +376,7 @@ fn campaign_followed_optima_are_those_of_full_searches() {
     let [(mean, least, lower), (_, _, lower_by_luck)] = say("all", &all);
     assert!(mean > -0.0005, "{mean}");
     assert!(least > -0.01, "{least}");
+    assert!(lower <= all.followed.len() as f64 / 100.0, "{lower}");
     let luck = lower_by_luck + 3.0 * (lower + lower_by_luck).sqrt();
     assert!(lower <= luck, "{lower}, {lower_by_luck} with another seed");
 }
