@@ -16,6 +16,7 @@ use crate::measured_shots::table::Table;
 use crate::model::league_courts::League;
 use crate::model::named_places::{place_named, place_names_in_words};
 use crate::model::{DEFAULT_PRESET, Preset};
+use crate::probability::Silent;
 use crate::shooter::Location;
 use crate::units::{self, Dimension};
 use serde::{Deserialize, Serialize};
@@ -296,7 +297,7 @@ impl ShotFileRequest {
             backspin_rad_s: None,
             noise: tracker.noise,
         };
-        read(table, columns, &options, &simulator)
+        read(table, columns, &options, &simulator, &Silent)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::config_files::{load_physics, read_text};
 use super::failure::{Failure, refuse_missing};
 use super::profile_flags::{court, location_named};
+use super::progress_bars::ProgressBars;
 use super::terminal::{confirm, is_quiet, print_remark};
 use super::value_parsers::UnitsArg;
 use crate::answers::fit::FitSource;
@@ -23,6 +24,7 @@ use crate::measured_shots::source::Source;
 use crate::measured_shots::table::Table;
 use crate::model::league_courts::League;
 use crate::model::{DEFAULT_PRESET, Physics, SolidId};
+use crate::probability::{Progress, Pulse};
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
 use std::collections::BTreeSet;
@@ -426,7 +428,8 @@ impl MeasuredShotsOptions {
                 "estimated from the flights".to_owned(),
             );
         }
-        let shooters = read(&table, &columns, &options, &simulator).map_err(refuse)?;
+        let bars = ProgressBars::new();
+        let shooters = read(&table, &columns, &options, &simulator, &bars).map_err(refuse)?;
         let bytes = std::fs::read(path).map_err(|error| Failure::io(path.display(), &error))?;
         Ok(MeasuredFile {
             shooters,
@@ -740,18 +743,17 @@ impl MeasuredFile {
     pub(crate) fn fit(
         &self,
         shots: &ShooterShots,
-        physics: &Physics,
+        progress: &dyn Progress,
     ) -> Result<ShooterFit, ShooterFitError> {
-        let mut fits = self.fit_all(std::slice::from_ref(shots), physics, &|| ());
+        let mut fits = self.fit_all(std::slice::from_ref(shots), progress);
         fits.swap_remove(0)
     }
 
-    /// Fits shooters, who shot at one ring. `done` is called after each.
+    /// Fits shooters, who shot at one ring.
     pub(crate) fn fit_all(
         &self,
         shooters: &[ShooterShots],
-        physics: &Physics,
-        done: &(dyn Fn() + Sync),
+        progress: &dyn Progress,
     ) -> Vec<Result<ShooterFit, ShooterFitError>> {
         // Two fits of one file must not have one title.
         let title = |shots| {
@@ -773,31 +775,42 @@ impl MeasuredFile {
                 (test, self.fit_options(shots), self.unseen_prior(shots))
             })
             .collect();
-        let mut fits = fit_shooters(&tests, physics, done);
-        // Under another physics it is known that the drag is another one.
-        if *physics == self.physics {
-            for (fit, shots) in fits.iter_mut().zip(shooters) {
-                if let Ok(fit) = fit {
-                    fit.notes.extend(self.drag_note(shots));
-                }
-            }
+        let mut fits = fit_shooters(&tests, &self.physics, progress);
+        let tracked = fits.iter_mut().zip(shooters);
+        let mut tracked: Vec<(&mut ShooterFit, &ShooterShots)> = tracked
+            .filter_map(|(fit, shots)| Some((fit.as_mut().ok()?, shots)))
+            .filter(|(_, shots)| !shots.tracks.is_empty())
+            .collect();
+        if let [(fit, shots)] = &mut tracked[..] {
+            fit.notes.extend(self.drag_note(shots, progress));
+            return fits;
         }
+        progress.begin("finding the drag", tracked.len() as u64);
+        for (fit, shots) in tracked {
+            fit.notes.extend(self.drag_note(shots, &Pulse(progress)));
+            progress.advance(1);
+        }
+        progress.end();
         fits
     }
 
     /// The drag coefficient that the flights of shooters fit best; `None` where they do not tell
     /// it.
-    pub(crate) fn drag_of_flights(&self, shooters: &[&ShooterShots]) -> Option<DragEstimate> {
+    pub(crate) fn drag_of_flights(
+        &self,
+        shooters: &[&ShooterShots],
+        progress: &dyn Progress,
+    ) -> Option<DragEstimate> {
         let tracks = shooters.iter().flat_map(|shots| &shots.tracks);
         let tracks: Vec<&[TrackedPoint]> = tracks.map(Vec::as_slice).collect();
         let backspin = self.backspin_rad_s.unwrap_or(0.0);
-        fit_drag_coefficient(&self.physics, &tracks, &self.noise, backspin)
+        fit_drag_coefficient(&self.physics, &tracks, &self.noise, backspin, progress)
     }
 
-    fn drag_note(&self, shots: &ShooterShots) -> Option<FitNote> {
+    fn drag_note(&self, shots: &ShooterShots, progress: &dyn Progress) -> Option<FitNote> {
         /// So many standard errors are worth a warning: 3 in 1000 of right drags.
         const FAR: f64 = 3.0;
-        let found = self.drag_of_flights(&[shots])?;
+        let found = self.drag_of_flights(&[shots], progress)?;
         let own = self.physics.air.drag_coefficient;
         let is_far = (found.best - own).abs() > FAR * found.standard_error;
         is_far.then_some(FitNote::OtherDrag {

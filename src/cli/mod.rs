@@ -68,6 +68,7 @@ pub fn main_with(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone
         }
     };
     signals::handle();
+    progress_bars::begin_log();
     run_caught(&arguments)
 }
 

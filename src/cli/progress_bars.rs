@@ -7,7 +7,7 @@ use indicatif::{
     HumanCount, HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle,
 };
 use std::io::IsTerminal;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 /// The rate in whole units, such as `1,234/s`; below 10 with one decimal.
@@ -46,13 +46,16 @@ struct SharedBar {
 struct LogLines {
     began: Instant,
     due: Instant,
+    /// When nothing was told for too long.
+    late: Instant,
 }
 
 impl LogLines {
     const SHORTEST_PAUSE: Duration = Duration::from_secs(5);
     const LONGEST_PAUSE: Duration = Duration::from_secs(600);
-    /// A stage is told after this time.
+    /// A stage is told after this time, unless nothing was told for so long.
     const LEAST_STAGE: Duration = Duration::from_secs(2);
+    const LONGEST_SILENCE: Duration = Duration::from_secs(8);
     /// A pause is the time that has passed divided by this.
     const PART: u32 = 6;
 
@@ -61,6 +64,7 @@ impl LogLines {
         Self {
             began,
             due: began + Self::SHORTEST_PAUSE,
+            late: began + Self::LONGEST_SILENCE,
         }
     }
 
@@ -68,21 +72,33 @@ impl LogLines {
     fn wait(&mut self, now: Instant) {
         let pause = (now - self.began) / Self::PART;
         self.due = now + pause.clamp(Self::SHORTEST_PAUSE, Self::LONGEST_PAUSE);
+        self.late = self.due + (Self::LONGEST_SILENCE - Self::SHORTEST_PAUSE);
+    }
+}
+
+/// One for the whole program: each command has several [`ProgressBars`] in turn.
+static LOG: LazyLock<Mutex<LogLines>> = LazyLock::new(|| Mutex::new(LogLines::new()));
+
+/// The time of a command begins.
+pub(super) fn begin_log() {
+    if let Ok(mut log) = LOG.lock() {
+        *log = LogLines::new();
     }
 }
 
 /// How far a bar is, as a line of a log, such as `finding shots: 12 of 40, about 35 seconds left of
 /// this step`.
-fn log_line(shared: &SharedBar, now: Instant) -> Option<String> {
+fn log_line(shared: &SharedBar, now: Instant, is_late: bool) -> Option<String> {
     let stage = shared.bar.message();
     let (done, total) = (shared.bar.position(), shared.bar.length()?);
-    // A stage that has just begun tells nothing yet, and one that ends nothing more.
-    if now - shared.began < LogLines::LEAST_STAGE || done >= total {
+    // A stage that has just begun tells little yet, and one that ends nothing more.
+    let is_young = now - shared.began < LogLines::LEAST_STAGE;
+    if (is_young && !is_late) || done >= total {
         return None;
     }
     let share = done as f64 / total.max(1) as f64;
     // Stages that overlap count different things.
-    if shared.stages > 1 || done == 0 {
+    if shared.stages > 1 || done == 0 || is_young {
         return Some(format!("{stage}: {:.0} %", 100.0 * share));
     }
     let left_s = (now - shared.began).as_secs_f64() * (1.0 / share - 1.0);
@@ -99,7 +115,7 @@ pub(crate) struct ProgressBars {
     is_shown: bool,
     bar: Mutex<Option<SharedBar>>,
     /// Where standard error is a file or a pipe.
-    log: Option<Mutex<LogLines>>,
+    is_log: bool,
     /// Of a command that runs inside another program.
     embedded: Option<Arc<dyn Progress + Send>>,
 }
@@ -119,8 +135,7 @@ impl ProgressBars {
         Self {
             is_shown,
             bar: Mutex::new(None),
-            log: (is_shown && !std::io::stderr().is_terminal())
-                .then(|| Mutex::new(LogLines::new())),
+            is_log: is_shown && !std::io::stderr().is_terminal(),
             embedded: embedded_session::progress(),
         }
     }
@@ -137,11 +152,13 @@ impl ProgressBars {
     }
 
     fn log_progress(&self, shared: &SharedBar) {
-        let Some(log) = &self.log else { return };
+        if !self.is_log {
+            return;
+        }
         let now = Instant::now();
-        if let Ok(mut log) = log.lock()
+        if let Ok(mut log) = LOG.lock()
             && now >= log.due
-            && let Some(line) = log_line(shared, now)
+            && let Some(line) = log_line(shared, now, now >= log.late)
         {
             log.wait(now);
             print_remark(&line);

@@ -1,6 +1,6 @@
 //! Shots that resemble the shot before them tell less of the aim than independent ones.
 
-use super::measured_release::MeasuredRelease;
+use super::measured_release::{MeasuredRelease, by_place};
 use super::posterior::Posterior;
 use crate::math::normal_distribution::quantile;
 use rand::rngs::ChaCha12Rng;
@@ -15,11 +15,11 @@ const MOST: f64 = 0.8;
 /// the number of such pairs.
 fn correlation(shots: &[MeasuredRelease], sessions: &[String], value: usize) -> (f64, f64) {
     let places = shots.iter().map(|shot| shot.place + 1).max().unwrap_or(0);
-    let means: Vec<f64> = (0..places)
-        .map(|place| {
-            let here = shots.iter().filter(|shot| shot.place == place);
-            let count = here.clone().count().max(1) as f64;
-            here.map(|shot| shot.values[value]).sum::<f64>() / count
+    let means: Vec<f64> = by_place(shots, places)
+        .iter()
+        .map(|here| {
+            let count = here.len().max(1) as f64;
+            here.iter().map(|shot| shot.values[value]).sum::<f64>() / count
         })
         .collect();
     let deviation = |shot: &MeasuredRelease| shot.values[value] - means[shot.place];

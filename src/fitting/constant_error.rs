@@ -17,9 +17,22 @@ const NODES: [f64; 5] = [-4.0, -2.0, 0.0, 2.0, 4.0];
 /// An error beyond this, in scales, is taken as this.
 const MOST: f64 = 5.0;
 
-/// The weight of each node in a value between them.
-fn weights(t: f64) -> [f64; NODES.len()] {
-    lagrange(&NODES, t.clamp(-MOST, MOST))
+/// Constant errors of depth, left and right, and entry angle, or of speed, pitch and polar angle,
+/// in scales of their prior.
+#[derive(Clone, Debug)]
+pub(super) struct ConstantErrors {
+    pub(super) scales: Vector3<f64>,
+    /// The weight of each node in the last of them: the same for all shots.
+    weights: [f64; NODES.len()],
+}
+
+impl From<Vector3<f64>> for ConstantErrors {
+    fn from(scales: Vector3<f64>) -> Self {
+        Self {
+            scales,
+            weights: lagrange(&NODES, scales.z.clamp(-MOST, MOST)),
+        }
+    }
 }
 
 /// How speed, pitch and polar angle of a measured release change when a constant error is taken
@@ -88,18 +101,18 @@ impl Correction {
     }
 
     /// The change for errors of so many scales.
-    pub(super) fn change(&self, errors: &Vector3<f64>) -> Vector3<f64> {
+    pub(super) fn change(&self, errors: &ConstantErrors) -> Vector3<f64> {
         let along = self.of_entry_angle.map_or_else(Vector3::zeros, |nodes| {
-            let each = nodes.iter().zip(weights(errors.z));
+            let each = nodes.iter().zip(errors.weights);
             each.map(|(change, weight)| change * weight).sum()
         });
-        self.linear * errors + along
+        self.linear * errors.scales + along
     }
 
     /// How deviations from the release turn for errors of so many scales.
-    pub(super) fn turn(&self, errors: &Vector3<f64>) -> Matrix3<f64> {
+    pub(super) fn turn(&self, errors: &ConstantErrors) -> Matrix3<f64> {
         self.turns.map_or_else(Matrix3::identity, |nodes| {
-            let each = nodes.iter().zip(weights(errors.z));
+            let each = nodes.iter().zip(errors.weights);
             each.map(|(turn, weight)| turn * weight).sum()
         })
     }
@@ -129,7 +142,7 @@ mod tests {
             let values = [24.1 * FOOT_M, pitch_deg * DEGREE_RAD, 0.01, 14.0];
             let prior = Some(ConstantErrorPrior::Landing(scales));
             let correction = Correction::new(&simulator, &place, &values, prior);
-            let change = correction.change(&errors.into());
+            let change = correction.change(&Vector3::from(errors).into());
             let corrected =
                 std::array::from_fn(|i| values[i] + if i < 3 { change[i] } else { 0.0 });
             let [seen, true_one] =

@@ -6,6 +6,7 @@ use super::posterior::Draw;
 use crate::dynamics::OutcomeKind;
 use crate::math::normal_distribution::quantile;
 use crate::math::sobol::{ScrambleKey, Sobol};
+use crate::probability::Progress;
 use crate::shooter::Profile;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -274,13 +275,15 @@ pub fn made_z_of_releases(
 pub fn expected_makes(
     profiles: &[Profile],
     shots: &[MeasuredRelease],
-    typical: &Draw,
-    measured_values: usize,
+    (typical, measured_values): (&Draw, usize),
+    progress: &dyn Progress,
 ) -> ExpectedMakes {
     let normals = common_normals(RELEASES, 1);
+    progress.begin("chances of shots", shots.len() as u64);
     let shots: Vec<ShotChance> = shots
         .par_iter()
         .filter_map(|shot| {
+            progress.advance(1);
             let (mean, covariance) = release_given(shot, typical, measured_values)?;
             let factor = factor_of(&covariance);
             let profile = &profiles[shot.place];
@@ -308,6 +311,7 @@ pub fn expected_makes(
             })
         })
         .collect();
+    progress.end();
     summary(shots)
 }
 

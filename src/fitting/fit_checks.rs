@@ -2,7 +2,7 @@
 //! holds.
 
 use super::fit_note::FitNote;
-use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values};
+use super::measured_release::{MeasuredRelease, Place, VALUE_NAMES, Values, by_place};
 use super::posterior::{Draw, SpinSource, Tails};
 use super::session_trends::SessionTrend;
 use crate::math::normal_distribution::cdf;
@@ -124,12 +124,12 @@ pub fn check_releases(
         });
     }
     check_speed_unit(physics, places, shots, speed_unit)?;
-    for index in 0..places.len() {
-        let of_place = || shots.iter().filter(move |shot| shot.place == index);
+    for of_place in by_place(shots, places.len()) {
         for (i, name) in VALUE_NAMES.iter().enumerate().take(values) {
-            let first = of_place().next().map_or(0.0, |shot| shot.values[i]);
-            let differs = of_place().any(|shot| (shot.values[i] - first).abs() > 1e-9);
-            if !differs && of_place().count() > 1 {
+            let first = of_place.first().map_or(0.0, |shot| shot.values[i]);
+            let mut others = of_place.iter();
+            let differs = others.any(|shot| (shot.values[i] - first).abs() > 1e-9);
+            if !differs && of_place.len() > 1 {
                 return Err(TestError::NoSpread(name));
             }
         }
@@ -148,9 +148,8 @@ pub fn check_speed_unit(
     shots: &[MeasuredRelease],
     speed_unit: (&'static str, f64),
 ) -> Result<(), TestError> {
-    for (index, place) in places.iter().enumerate() {
-        let of_place = || shots.iter().filter(move |shot| shot.place == index);
-        let speed = median(of_place().map(|shot| shot.values[0]).collect());
+    for (place, of_place) in places.iter().zip(by_place(shots, places.len())) {
+        let speed = median(of_place.iter().map(|shot| shot.values[0]).collect());
         let least = least_speed_m_s(physics, place);
         if speed < 0.9 * least || speed > 2.5 * least {
             const UNITS: [(&str, &str, f64); 4] = [
@@ -187,10 +186,11 @@ pub fn check_speed_unit(
 #[must_use]
 pub fn far_shots(shots: &[MeasuredRelease], places: usize, values: usize, most: f64) -> Vec<bool> {
     let mut is_far = vec![false; shots.len()];
-    for place in 0..places {
-        let of_place: Vec<usize> = (0..shots.len())
-            .filter(|&i| shots[i].place == place)
-            .collect();
+    let mut of_places = vec![Vec::new(); places];
+    for (index, shot) in shots.iter().enumerate() {
+        of_places[shot.place].push(index);
+    }
+    for of_place in of_places {
         for k in 0..values {
             let column = |i: &usize| shots[*i].values[k];
             let centre = median(of_place.iter().map(column).collect());
@@ -254,23 +254,24 @@ pub fn shape_test(shots: &[MeasuredRelease], places: usize) -> ShapeTest {
         .map(|d| d * d.transpose())
         .sum::<SMatrix<f64, 3, 3>>()
         / count;
-    let Some(inverse) = covariance.try_inverse() else {
+    let Some(cholesky) = covariance.cholesky() else {
         return ShapeTest {
             skewness_p: 1.0,
             kurtosis_p: 1.0,
             kurtosis_ratio: 1.0,
         };
     };
-    let (mut skewness, mut kurtosis) = (0.0, 0.0);
-    for a in &deviations {
-        let along = inverse * a;
-        for b in &deviations {
-            let product = along.dot(b);
-            skewness += product * product * product;
+    // The cubes of the products of all pairs add up to the squares of the third moments.
+    let (mut third, mut kurtosis) = ([0.0; 27], 0.0);
+    for deviation in &deviations {
+        let mut z = *deviation;
+        cholesky.l_dirty().solve_lower_triangular_mut(&mut z);
+        for (index, moment) in third.iter_mut().enumerate() {
+            *moment += z[index / 9] * z[index / 3 % 3] * z[index % 3];
         }
-        let square = along.dot(a);
-        kurtosis += square * square;
+        kurtosis += z.norm_squared() * z.norm_squared();
     }
+    let skewness: f64 = third.iter().map(|moment| moment * moment).sum();
     // n b1/6 is about chi-square with d (d + 1) (d + 2)/6 = 10 degrees of freedom (Wilson and
     // Hilferty's cube root), with Mardia's correction for few shots.
     let correction =

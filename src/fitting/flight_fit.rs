@@ -12,6 +12,7 @@ use super::tracker_noise::TrackerNoise;
 use crate::dynamics::Simulator;
 use crate::math::vector::Vec3;
 use crate::model::{BallState, Physics};
+use crate::probability::Progress;
 use crate::shooter::Location;
 use nalgebra::{Matrix3, SMatrix, SVector};
 use rayon::prelude::*;
@@ -557,6 +558,20 @@ pub fn fit_drag_coefficient(
     tracks: &[&[TrackedPoint]],
     noise: &TrackerNoise,
     backspin_rad_s: f64,
+    progress: &dyn Progress,
+) -> Option<DragEstimate> {
+    progress.begin("finding the drag", 12 * tracks.len() as u64);
+    let found = best_drag_coefficient(physics, tracks, (noise, backspin_rad_s), progress);
+    progress.end();
+    found
+}
+
+/// [`fit_drag_coefficient`] within its stage: twelve coefficients are tried on each flight.
+fn best_drag_coefficient(
+    physics: &Physics,
+    tracks: &[&[TrackedPoint]],
+    (noise, backspin_rad_s): (&TrackerNoise, f64),
+    progress: &dyn Progress,
 ) -> Option<DragEstimate> {
     let flights: Vec<&[TrackedPoint]> = tracks
         .iter()
@@ -574,6 +589,7 @@ pub fn fit_drag_coefficient(
         changed.air.drag_coefficient = coefficient;
         let simulator = Simulator::new(&changed).ok()?;
         let loss = |points: &&[TrackedPoint]| {
+            progress.advance(1);
             let middle = points.len() / 2;
             let track = Track {
                 simulator: &simulator,
@@ -652,6 +668,7 @@ mod tests {
     use super::*;
     use crate::math::normal_distribution::quantile;
     use crate::model::Preset;
+    use crate::probability::Silent;
     use crate::units::{DEGREE_RAD, FOOT_M};
     use rand::rngs::ChaCha12Rng;
     use rand::{RngExt, SeedableRng};
@@ -768,7 +785,7 @@ mod tests {
             best,
             interval: [low, high],
             ..
-        } = fit_drag_coefficient(&physics, &tracks, &noise, 0.0).unwrap();
+        } = fit_drag_coefficient(&physics, &tracks, &noise, 0.0, &Silent).unwrap();
         let truth = physics.air.drag_coefficient;
         assert!(low < truth && truth < high, "{best} {low} {high}");
         assert!(high - low < 0.6, "{low} {high}");

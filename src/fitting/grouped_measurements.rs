@@ -1,7 +1,7 @@
 //! Measurements in groups of one place and one covariance of their errors, and the means of the
 //! places as parameters of a model.
 
-use super::measured_release::MeasuredRelease;
+use super::measured_release::{MeasuredRelease, by_place};
 use super::prior::Spread;
 use nalgebra::{SMatrix, SVector};
 
@@ -43,21 +43,24 @@ impl<const D: usize> GroupedMeasurements<D> {
                 }),
             }
         }
-        let mean_of = |place: usize, i: usize| {
-            let of_place = || shots.iter().filter(|shot| shot.place == place);
-            let count = of_place().count() as f64;
-            let mean = of_place().map(|shot| shot.values[i]).sum::<f64>() / count;
+        let mean_of = |of_place: &[&MeasuredRelease], i: usize| {
+            let count = of_place.len() as f64;
+            let mean = of_place.iter().map(|shot| shot.values[i]).sum::<f64>() / count;
             let deviation = |shot: &MeasuredRelease| shot.values[i] - mean;
-            let squares: f64 = of_place().map(|s| deviation(s) * deviation(s)).sum();
+            let squares = of_place.iter().map(|s| deviation(s) * deviation(s));
+            let squares: f64 = squares.sum();
             Spread {
                 mean,
                 sd: (squares / (count - 1.0).max(1.0) / count).sqrt(),
             }
         };
-        let of_place = |place| std::array::from_fn(|i| mean_of(place, i));
+        let of_places = by_place(shots, places);
+        let means = of_places
+            .iter()
+            .map(|of_place| std::array::from_fn(|i| mean_of(of_place, i)));
         Self {
             groups,
-            means: (0..places).map(of_place).collect(),
+            means: means.collect(),
         }
     }
 

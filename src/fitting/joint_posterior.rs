@@ -22,6 +22,7 @@ use super::posterior::{Draw, FitOptions, Posterior, SpinSource};
 use super::prior::{AimPrior, PriorOf, PriorOfDraws, UnseenPrior};
 use super::prior_sensitivity::{log_prior_of_scatter, log_student};
 use crate::model::Physics;
+use crate::probability::Progress;
 use crate::shooter::{Profile, ProfileError};
 use nalgebra::Vector3;
 use rand::rngs::ChaCha12Rng;
@@ -35,6 +36,7 @@ const STAGES: Stages = Stages {
     count: 4,
     more: 0,
 };
+const POINTS: u64 = STAGES.points as u64 * STAGES.count as u64;
 /// Draws of the flights that the aims of a point are averaged over.
 const AVERAGED: usize = 250;
 /// A draw of the sample takes one of every so many of the flights.
@@ -89,7 +91,7 @@ impl Model<'_> {
         Unseen {
             ring: ring.map(|(ring, t)| ring.middle + ring.scale * t),
             more_backspin: self.backspin_sd * at(Unknown::Backspin).unwrap_or(0.0),
-            constant_errors: errors,
+            constant_errors: errors.into(),
         }
     }
 
@@ -191,20 +193,25 @@ impl Model<'_> {
         sampled: &WeightedPoints,
         flights: &FlightsOf<'_>,
         profiles: &[Profile],
-        options: &FitOptions,
+        (options, progress): (&FitOptions, &dyn Progress),
     ) -> (Vec<Draw>, Vec<PriorOfDraws>) {
         let typical = flights.posterior.typical();
-        let promised = promised_makes(&flights.posterior, profiles);
+        let promised = promised_makes(&flights.posterior, profiles, progress);
         let draws = in_order(&flights.posterior.draws, &promised);
         let unseen: Vec<Unseen> = sampled
             .points
             .iter()
             .map(|point| self.unseen(point))
             .collect();
+        progress.begin("counting makes", POINTS);
         let expected: Vec<f64> = unseen
             .par_iter()
-            .map(|unseen| self.makes.expected(unseen))
+            .map(|unseen| {
+                progress.advance(1);
+                self.makes.expected(unseen)
+            })
             .collect();
+        progress.end();
         let points: Vec<(&Unseen, f64)> =
             unseen.iter().zip(sampled.weights.iter().copied()).collect();
         let points = in_order(&points, &expected);
@@ -276,7 +283,7 @@ impl Model<'_> {
             priors.push((PriorOf::Backspin, -0.5 * z * z));
         }
         if self.unknowns.contains(&Unknown::ConstantError(0)) {
-            let errors = log_student(unseen.constant_errors.as_slice());
+            let errors = log_student(unseen.constant_errors.scales.as_slice());
             priors.push((PriorOf::ConstantError, errors));
         }
         priors
@@ -289,12 +296,15 @@ const GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
 const ORDER_SHOTS: usize = 4096;
 
 /// P of draws of the flights, over all places.
-fn promised_makes(flights: &Posterior, profiles: &[Profile]) -> Vec<f64> {
+fn promised_makes(flights: &Posterior, profiles: &[Profile], progress: &dyn Progress) -> Vec<f64> {
+    progress.begin("chances of places", profiles.len() as u64);
     let mut sums = vec![0.0; flights.draws.len()];
     for (place, profile) in profiles.iter().enumerate() {
         let of_draws = usual_probabilities(profile, flights, place, ORDER_SHOTS).of_draws;
         sums.iter_mut().zip(of_draws).for_each(|(sum, p)| *sum += p);
+        progress.advance(1);
     }
+    progress.end();
     sums
 }
 
@@ -326,6 +336,7 @@ pub(super) fn with_unseen(
     flights: &FlightsOf<'_>,
     prior: &UnseenPrior,
     options: &FitOptions,
+    progress: &dyn Progress,
 ) -> Result<Posterior, ProfileError> {
     let typical = flights.posterior.typical();
     let profiles = flights
@@ -333,9 +344,11 @@ pub(super) fn with_unseen(
         .iter()
         .map(|place| fitted_profile(flights.name, &flights.physics, &typical, place))
         .collect::<Result<Vec<Profile>, ProfileError>>()?;
-    let model = model(flights, &profiles, &typical, prior, options);
+    let model = model(flights, &profiles, (&typical, prior), (options, progress));
     let draws = &flights.posterior.draws;
+    progress.begin("weighing makes", POINTS);
     let log_density = |point: &[f64]| {
+        progress.advance(1);
         let unseen = model.unseen(point);
         let log_prior = model.log_prior(point, &unseen);
         if log_prior == f64::NEG_INFINITY {
@@ -355,7 +368,8 @@ pub(super) fn with_unseen(
             weights: vec![1.0],
         },
     };
-    let (joint, priors) = model.joint_draws(&sampled, flights, &profiles, options);
+    progress.end();
+    let (joint, priors) = model.joint_draws(&sampled, flights, &profiles, (options, progress));
     Ok(Posterior {
         unseen: Some(UnseenSample {
             effective_sample_size: effective_size(&sampled.weights),
@@ -370,9 +384,8 @@ pub(super) fn with_unseen(
 fn model<'a>(
     flights: &'a FlightsOf<'_>,
     profiles: &'a [Profile],
-    typical: &Draw,
-    prior: &'a UnseenPrior,
-    options: &FitOptions,
+    (typical, prior): (&Draw, &'a UnseenPrior),
+    (options, progress): (&FitOptions, &dyn Progress),
 ) -> Model<'a> {
     let mut unknowns = Vec::new();
     if prior.ring.is_some() {
@@ -395,7 +408,11 @@ fn model<'a>(
         unknowns.extend((0..3).map(Unknown::ConstantError));
     }
     let measured = spin.measured_values();
-    let near = |place| BestAims::near(&profiles[place], typical, place);
+    let near = |place| {
+        let aims = BestAims::near(&profiles[place], typical, place);
+        progress.advance(1);
+        aims
+    };
     let is_unknown = unknowns.contains(&Unknown::Backspin);
     let backspin_sd = options.prior.backspin.sd;
     let scales = UnknownScales {
@@ -403,6 +420,12 @@ fn model<'a>(
         backspin_sd: if is_unknown { backspin_sd } else { 0.0 },
         constant_error: prior.constant_error,
     };
+    progress.begin("finding shots", profiles.len() as u64);
+    let aims = match prior.aim {
+        Some(_) => (0..profiles.len()).map(near).collect(),
+        None => Vec::new(),
+    };
+    progress.end();
     Model {
         unknowns,
         prior,
@@ -413,12 +436,9 @@ fn model<'a>(
             flights.shots,
             (typical, measured),
             &scales,
-            options.seed,
+            (options.seed, progress),
         ),
-        aims: match prior.aim {
-            Some(_) => (0..profiles.len()).map(near).collect(),
-            None => Vec::new(),
-        },
+        aims,
         spin,
         towards_hoop: flights
             .places

@@ -12,13 +12,14 @@ use super::importance::{
     Stages, UnseenSample, WeightedPoints, effective_size, pareto_shape, sample, student_log_density,
 };
 use super::landing::{CENTRE_DEPTH_M, Landing, release_of_landing};
-use super::measured_release::{MeasuredRelease, Place, Values, nominal_of};
+use super::measured_release::{MeasuredRelease, Place, Values, by_place, nominal_of};
 use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource};
 use super::prior::{AimPrior, PriorOf, PriorOfDraws, UnseenPrior};
 use crate::dynamics::BatchWorkspace;
 use crate::math::normal_distribution::quantile;
 use crate::math::sobol::{ScrambleKey, Sobol};
 use crate::model::Physics;
+use crate::probability::Progress;
 use crate::shooter::{Profile, ProfileError};
 use crate::units::{DEGREE_RAD, INCH_M};
 use nalgebra::{SMatrix, Vector4};
@@ -92,12 +93,13 @@ pub(super) fn posterior_of_makes(
     name: &str,
     (places, shots): (&[Place], &[MeasuredRelease]),
     physics: &Physics,
-    options: &FitOptions,
-    unseen: &UnseenPrior,
+    (options, unseen): (&FitOptions, &UnseenPrior),
+    progress: &dyn Progress,
 ) -> Result<Posterior, CountsError> {
+    let of_places = by_place(shots, places.len());
     let of_place = |(index, place): (usize, &Place)| {
-        let here = shots.iter().filter(|shot| shot.place == index);
-        let counted = here.filter_map(|shot| shot.made);
+        progress.advance(1);
+        let counted = of_places[index].iter().filter_map(|shot| shot.made);
         let (made, all) = counted.fold((0, 0), |(made, all), is_made| {
             (made + u32::from(is_made), all + 1)
         });
@@ -116,7 +118,10 @@ pub(super) fn posterior_of_makes(
         })
     };
     let counted = places.iter().enumerate().map(of_place);
-    let counted = counted.collect::<Result<Vec<_>, CountsError>>()?;
+    progress.begin("finding shots", places.len() as u64);
+    let counted: Result<Vec<CountedPlace>, CountsError> = counted.collect();
+    progress.end();
+    let counted = counted?;
     let of_aim = (SHOTS / AIMS / counted.len())
         .max(LEAST_SHOTS)
         .next_power_of_two() as u32;
@@ -135,8 +140,13 @@ pub(super) fn posterior_of_makes(
         options,
         unseen,
     };
-    let WeightedPoints { points, weights } =
-        sample::<UNKNOWNS>((STAGES, options.seed), |point| counts.log_density(point));
+    let most = STAGES.points as usize * (STAGES.count + STAGES.more);
+    progress.begin("weighing makes", most as u64);
+    let WeightedPoints { points, weights } = sample::<UNKNOWNS>((STAGES, options.seed), |point| {
+        progress.advance(1);
+        counts.log_density(point)
+    });
+    progress.end();
     let mut random = ChaCha12Rng::seed_from_u64(options.seed);
     random.set_stream(u64::MAX - 3);
     let first: f64 = random.random();

@@ -7,14 +7,15 @@
 //! measurement. Each chance is then looked up, so that the likelihood is smooth in the unknowns and
 //! in the data.
 
-use super::constant_error::Correction;
+use super::constant_error::{ConstantErrors, Correction};
 use super::draw_probabilities::{lagrange, under_ring};
 use super::expected_makes::release_given;
 use super::interval::Interval;
-use super::measured_release::{Covariance, MeasuredRelease, Place, Values, nominal_of};
+use super::measured_release::{Covariance, MeasuredRelease, Place, Values, by_place, nominal_of};
 use super::posterior::Draw;
 use super::prior::{ConstantErrorPrior, StudentSpread};
 use crate::dynamics::{BatchWorkspace, Simulator};
+use crate::probability::Progress;
 use crate::shooter::Profile;
 use nalgebra::Vector3;
 use rand::rngs::ChaCha12Rng;
@@ -49,8 +50,8 @@ pub(super) struct Unseen {
     pub(super) ring: Option<f64>,
     /// The mean backspin less that of the typical draw, rad/s.
     pub(super) more_backspin: f64,
-    /// The tracker's constant errors, in scales of their prior.
-    pub(super) constant_errors: Vector3<f64>,
+    /// The tracker's constant errors.
+    pub(super) constant_errors: ConstantErrors,
 }
 
 /// What the unknowns are known by beforehand; `None` for those that are known.
@@ -101,29 +102,30 @@ impl MakesLikelihood {
         shots: &[MeasuredRelease],
         (typical, measured_values): (&Draw, usize),
         scales: &UnknownScales,
-        seed: u64,
+        (seed, progress): (u64, &dyn Progress),
     ) -> Self {
+        progress.begin("simulating shots", shots.len() as u64);
         let part = libm::pow(places.len() as f64, -0.25);
         let sample = (NODES.map(|count| (count as f64 * part) as usize), seed);
+        let of_places = by_place(shots, places.len());
         let at_place = |(index, place): (usize, &Place)| {
             let profile = &profiles[index];
-            let mut covariance = Covariance::zeros();
-            let here = shots.iter().filter(|shot| shot.place == index);
-            let known: Vec<KnownShot> = here
-                .filter_map(|shot| {
-                    let made = shot.made?;
-                    let (likeliest, uncertainty) = release_given(shot, typical, measured_values)?;
-                    covariance += uncertainty;
-                    let simulator = profile.simulator();
-                    let errors = scales.constant_error;
-                    Some(KnownShot {
-                        correction: Correction::new(simulator, place, &likeliest, errors),
-                        likeliest,
-                        made,
-                    })
-                })
-                .collect();
-            let covariance = covariance / known.len().max(1) as f64;
+            let known = of_places[index].par_iter().filter_map(|shot| {
+                progress.advance(1);
+                let made = shot.made?;
+                let (likeliest, uncertainty) = release_given(shot, typical, measured_values)?;
+                let simulator = profile.simulator();
+                let errors = scales.constant_error;
+                let known = KnownShot {
+                    correction: Correction::new(simulator, place, &likeliest, errors),
+                    likeliest,
+                    made,
+                };
+                Some((known, uncertainty))
+            });
+            let (known, uncertainties): (Vec<KnownShot>, Vec<Covariance>) = known.unzip();
+            let sum = uncertainties.iter().sum::<Covariance>();
+            let covariance = sum / known.len().max(1) as f64;
             let middle = &typical.means[index];
             let table = ChanceTable::new(profile, (&known, middle), &covariance, scales, sample);
             table.map(|table| PlaceMakes {
@@ -132,9 +134,9 @@ impl MakesLikelihood {
             })
         };
         let places = places.iter().enumerate();
-        Self {
-            places: places.filter_map(at_place).collect(),
-        }
+        let places = places.filter_map(at_place).collect();
+        progress.end();
+        Self { places }
     }
 
     /// The logarithm of the likelihood.
@@ -210,7 +212,8 @@ struct ChanceTable {
     axes: [Axis; 3],
     backspins: [f64; BACKSPINS.len()],
     rings: Vec<f64>,
-    /// By ring, backspin, pitch angle, relative speed, polar angle.
+    /// By pitch angle, relative speed, polar angle, ring, backspin: those of a lookup stand
+    /// together.
     chances: Vec<f64>,
 }
 
@@ -340,9 +343,13 @@ impl ChanceTable {
                 under.iter().map(made_under).collect()
             })
             .collect();
-        for ring in 0..under.len() {
-            for plane in &planes {
-                self.chances.extend(&plane[ring]);
+        for pitch in 0..pitches.count {
+            for cell in 0..speeds.count * polars.count {
+                for ring in 0..under.len() {
+                    let of_backspins = planes.iter().skip(pitch).step_by(pitches.count);
+                    self.chances
+                        .extend(of_backspins.map(|plane| plane[ring][cell]));
+                }
             }
         }
     }
@@ -358,11 +365,13 @@ impl ChanceTable {
     fn at(&self, values: &Values, rings: [f64; RINGS.len()]) -> f64 {
         let of_values = [self.scale.relative(values), values[2], values[1]];
         let places: [(usize, f64); 3] = std::array::from_fn(|i| self.axes[i].place(of_values[i]));
-        let [speeds, polars, pitches] = self.axes.map(|axis| axis.count);
+        let [speeds, polars, _] = self.axes.map(|axis| axis.count);
         let (first, last) = (self.backspins[0], self.backspins[BACKSPINS.len() - 1]);
         let backspins: [f64; BACKSPINS.len()] =
             lagrange(&self.backspins, values[3].clamp(first, last));
-        let plane = speeds * polars;
+        let parts: [f64; RINGS.len() * BACKSPINS.len()] =
+            std::array::from_fn(|k| rings[k / BACKSPINS.len()] * backspins[k % BACKSPINS.len()]);
+        let of_cell = self.rings.len().max(1) * BACKSPINS.len();
         let mut chance = 0.0;
         for corner in 0..8 {
             let is_above = |i: usize| corner >> i & 1;
@@ -371,12 +380,9 @@ impl ChanceTable {
                 .product();
             let [speed, polar, pitch]: [usize; 3] =
                 std::array::from_fn(|i| places[i].0 + is_above(i));
-            let cell = pitch * plane + speed * polars + polar;
-            let each = self.chances[cell..].iter().step_by(pitches * plane);
-            let parts = rings
-                .iter()
-                .flat_map(|ring| backspins.iter().map(move |backspin| ring * backspin));
-            let of_corner = each.zip(parts).map(|(chance, part)| part * chance);
+            let cell = (pitch * speeds + speed) * polars + polar;
+            let each = self.chances[cell * of_cell..][..of_cell].iter();
+            let of_corner = each.zip(&parts).map(|(chance, part)| part * chance);
             chance += weight * of_corner.sum::<f64>();
         }
         // A parabola may leave the range.
@@ -434,7 +440,8 @@ fn reach(shots: &[KnownShot], scales: &UnknownScales) -> Vec<Values> {
                 shot.release(&Unseen {
                     ring: None,
                     more_backspin: 0.0,
-                    constant_errors: Vector3::from_fn(|k, _| if k == i { *error } else { 0.0 }),
+                    constant_errors: Vector3::from_fn(|k, _| if k == i { *error } else { 0.0 })
+                        .into(),
                 })
             }));
         }
@@ -483,6 +490,7 @@ mod tests {
     use super::*;
     use crate::fitting::expected_makes::{common_normals, factor_of};
     use crate::model::Preset;
+    use crate::probability::Silent;
     use crate::shooter::Location;
     use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
     use nalgebra::{SMatrix, Vector4};
@@ -536,14 +544,20 @@ mod tests {
             constant_error: None,
         };
         let place_of = [place];
-        let makes = MakesLikelihood::new((&profiles, &place_of), &shots, (&typical, 3), &scales, 1);
+        let makes = MakesLikelihood::new(
+            (&profiles, &place_of),
+            &shots,
+            (&typical, 3),
+            &scales,
+            (1, &Silent),
+        );
         let (mut square, mut bias) = (0.0, 0.0);
         let tries = [(0.65, 0.0), (0.5, 3.0), (0.78, -4.0)];
         for (ring, more_backspin) in tries {
             let unseen = Unseen {
                 ring: Some(ring),
                 more_backspin,
-                constant_errors: Vector3::zeros(),
+                constant_errors: Vector3::zeros().into(),
             };
             let simulator = under_ring(&profiles[0], Some(ring));
             let chances: Vec<f64> = makes.places[0].chances(&unseen).map(|(p, _)| p).collect();

@@ -63,6 +63,15 @@ pub struct MeasuredRelease {
     pub own: Option<OwnPath>,
 }
 
+/// The shots of each place, in their order.
+pub(super) fn by_place(shots: &[MeasuredRelease], places: usize) -> Vec<Vec<&MeasuredRelease>> {
+    let mut of_places = vec![Vec::new(); places];
+    for shot in shots {
+        of_places[shot.place].push(shot);
+    }
+    of_places
+}
+
 impl MeasuredRelease {
     /// The release on the shot's own path where that at its place has these values; `profile` is
     /// that of the place.

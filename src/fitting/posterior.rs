@@ -4,16 +4,18 @@ use super::chain_diagnostics::{Convergence, ParameterChains};
 use super::dispersion_posterior::{Dispersion, DispersionPosterior, ReleaseModel};
 use super::importance::UnseenSample;
 use super::interval::Interval;
-use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values};
+use super::measured_release::{MeasuredRelease, VALUE_NAMES, Values, by_place};
 use super::prior::{PopulationPrior, PriorOfDraws, Spread};
 use super::student_posterior::StudentPosterior;
 use crate::math::normal_distribution::quantile;
+use crate::probability::{Progress, Silent};
 use crate::shooter::{Correlation, ReleaseDispersion, ReleaseVariable};
-use hammer_and_sample::{MinChainLen, Move, Params, Serial, Stretch, sample};
+use hammer_and_sample::{MinChainLen, Move, Params, Schedule, Serial, Stretch, sample};
 use nalgebra::{Matrix3, SMatrix};
 use rand::rngs::ChaCha12Rng;
 use rand::{Rng, RngExt, SeedableRng};
 use rayon::prelude::*;
+use std::ops::ControlFlow;
 
 /// Ensembles, which are sampled one apart from the other.
 const CHAINS: usize = 4;
@@ -434,6 +436,32 @@ impl Move<Vec<f64>> for DifferenceOrStretch {
     }
 }
 
+/// The length of a chain, whose steps count as progress.
+struct Watched<'a> {
+    length: MinChainLen,
+    steps: usize,
+    progress: &'a dyn Progress,
+}
+
+impl Watched<'_> {
+    /// Progress is told after so many steps.
+    const TOLD: usize = 50;
+}
+
+impl Schedule<Vec<f64>> for Watched<'_> {
+    fn next_step(&mut self, chain: &[Vec<f64>]) -> ControlFlow<()> {
+        self.steps += 1;
+        if self.steps.is_multiple_of(Self::TOLD) {
+            self.progress.advance(Self::TOLD as u64);
+        }
+        self.length.next_step(chain)
+    }
+
+    fn iterations(&self, walkers: usize) -> Option<usize> {
+        Schedule::<Vec<f64>>::iterations(&self.length, walkers)
+    }
+}
+
 /// Fits a shooter's releases. `places` is the number of places, each with at least one shot.
 ///
 /// # Errors
@@ -443,18 +471,28 @@ pub fn fit(
     places: usize,
     options: &FitOptions,
 ) -> Result<Posterior, FitError> {
+    fit_watched((shots, places), options, &Silent)
+}
+
+/// [`fit`], with its progress.
+pub(super) fn fit_watched(
+    (shots, places): (&[MeasuredRelease], usize),
+    options: &FitOptions,
+    progress: &dyn Progress,
+) -> Result<Posterior, FitError> {
+    let releases = (shots, places);
     match options.spin {
-        SpinSource::Measured => fit_values::<4>(shots, places, options),
-        SpinSource::Given | SpinSource::Assumed => fit_values::<3>(shots, places, options),
-        SpinSource::AssumedWithDirection => fit_values::<2>(shots, places, options),
+        SpinSource::Measured => fit_values::<4>(releases, options, progress),
+        SpinSource::Given | SpinSource::Assumed => fit_values::<3>(releases, options, progress),
+        SpinSource::AssumedWithDirection => fit_values::<2>(releases, options, progress),
         SpinSource::NothingMeasured => Err(FitError::NoScatter),
     }
 }
 
 fn fit_values<const D: usize>(
-    shots: &[MeasuredRelease],
-    places: usize,
+    (shots, places): (&[MeasuredRelease], usize),
     options: &FitOptions,
+    progress: &dyn Progress,
 ) -> Result<Posterior, FitError> {
     let prior = options.prior;
     match options.tails {
@@ -462,11 +500,13 @@ fn fit_values<const D: usize>(
             &DispersionPosterior::<D>::new(shots, places, prior),
             shots,
             options,
+            progress,
         ),
         Tails::Student => sample_posterior(
             &StudentPosterior::<D>::new(shots, places, prior),
             shots,
             options,
+            progress,
         ),
     }
 }
@@ -534,6 +574,7 @@ pub(super) fn sampled<const D: usize, M: ReleaseModel<D>>(
     model: &M,
     shots: &[MeasuredRelease],
     (seed, least_effective_size): (u64, f64),
+    progress: &dyn Progress,
 ) -> Result<Sampled, FitError> {
     let priors = model.priors();
     let dimension = priors.len();
@@ -542,6 +583,7 @@ pub(super) fn sampled<const D: usize, M: ReleaseModel<D>>(
     let mut steps = FIRST_STEPS;
     for _ in 0..=DOUBLINGS {
         let burn_in = BURN_IN.max(steps / 4);
+        progress.begin("fitting releases", (CHAINS * (burn_in + steps)) as u64);
         let chains: Vec<Vec<Vec<f64>>> = (0..CHAINS)
             .into_par_iter()
             .map(|chain| {
@@ -559,12 +601,18 @@ pub(super) fn sampled<const D: usize, M: ReleaseModel<D>>(
                     stretch: Stretch::default(),
                 };
                 let length = MinChainLen((burn_in + steps) * walkers);
+                let length = Watched {
+                    length,
+                    steps: 0,
+                    progress,
+                };
                 let all = (0..walkers).map(walker);
                 let (mut chain, _) = sample(model, &proposal, all, length, Serial);
                 chain.drain(..burn_in * walkers);
                 chain
             })
             .collect();
+        progress.end();
         let convergence = Sampled::convergence_of(&chains, walkers);
         let Convergence {
             r_hat,
@@ -594,8 +642,10 @@ fn sample_posterior<const D: usize, M: ReleaseModel<D>>(
     model: &M,
     shots: &[MeasuredRelease],
     options: &FitOptions,
+    progress: &dyn Progress,
 ) -> Result<Posterior, FitError> {
-    let sampled = sampled(model, shots, (options.seed, LEAST_EFFECTIVE_SIZE))?;
+    let effort = (options.seed, LEAST_EFFECTIVE_SIZE);
+    let sampled = sampled(model, shots, effort, progress)?;
     let points = sampled.points();
     Ok(Posterior {
         draws: draws_of(model, &points, shots, options)?,
@@ -617,16 +667,14 @@ fn starting_point<const D: usize>(
     shots: &[MeasuredRelease],
     priors: &[Spread],
 ) -> Vec<Spread> {
-    let places = model.places();
+    let of_places = by_place(shots, model.places());
     let mut starts = priors.to_vec();
     for (i, start) in starts.iter_mut().enumerate().take(D) {
         let (mut squares, mut freedom, mut noise) = (0.0, 0.0, 0.0);
-        for place in 0..places {
-            let values: Vec<&MeasuredRelease> =
-                shots.iter().filter(|shot| shot.place == place).collect();
+        for values in &of_places {
             let count = values.len() as f64;
             let mean = values.iter().map(|shot| shot.values[i]).sum::<f64>() / count;
-            for shot in &values {
+            for shot in values {
                 squares += (shot.values[i] - mean) * (shot.values[i] - mean);
                 noise += shot.noise[(i, i)] / shots.len() as f64;
             }

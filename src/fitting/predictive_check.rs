@@ -11,6 +11,7 @@ use super::measured_release::{MeasuredRelease, Values};
 use super::posterior::{Draw, standard_normal};
 use super::predicted_bins::{PredictedBin, PredictiveCheck};
 use super::shooter_fit::ShooterFit;
+use crate::probability::Progress;
 use crate::units::INCH_M;
 use nalgebra::{SMatrix, Vector4};
 use rand::SeedableRng;
@@ -37,7 +38,11 @@ struct Fallen {
 
 /// Predicted against measured, of all places together. Nothing where no flight was measured.
 #[must_use]
-pub fn predictive_check(fit: &ShooterFit, shots: &[MeasuredRelease]) -> PredictiveCheck {
+pub fn predictive_check(
+    fit: &ShooterFit,
+    shots: &[MeasuredRelease],
+    progress: &dyn Progress,
+) -> PredictiveCheck {
     let measured = fit.posterior.spin.measured_values();
     let seen: Vec<Fallen> = shots
         .iter()
@@ -48,10 +53,16 @@ pub fn predictive_check(fit: &ShooterFit, shots: &[MeasuredRelease]) -> Predicti
     }
     let draws = &fit.posterior.draws;
     let count = (SHOTS / shots.len()).clamp(LEAST_DRAWS, MOST_DRAWS);
+    progress.begin("checking the fit", count as u64);
     let predicted: Vec<Vec<Fallen>> = (0..count)
         .into_par_iter()
-        .map(|number| shoot_again(fit, shots, &draws[number * draws.len() / count], number))
+        .map(|number| {
+            let again = shoot_again(fit, shots, &draws[number * draws.len() / count], number);
+            progress.advance(1);
+            again
+        })
         .collect();
+    progress.end();
     let inner = |middle: f64| -> Vec<f64> {
         let first = middle - 0.5 * INNER_BINS as f64 * BIN_M;
         (0..=INNER_BINS).map(|k| first + BIN_M * k as f64).collect()

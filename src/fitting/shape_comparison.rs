@@ -7,6 +7,7 @@ use super::measured_release::MeasuredRelease;
 use super::posterior::{FitError, FitOptions, SpinSource, sampled, standard_normal};
 use super::skew_posterior::SkewPosterior;
 use super::student_posterior::StudentPosterior;
+use crate::probability::Progress;
 use rand::SeedableRng;
 use rand::rngs::ChaCha12Rng;
 use rayon::prelude::*;
@@ -56,8 +57,9 @@ fn left_out<const D: usize, M: ReleaseModel<D>>(
     model: &M,
     shots: &[MeasuredRelease],
     seed: u64,
+    progress: &dyn Progress,
 ) -> Result<LeftOut, FitError> {
-    let sampled = sampled(model, shots, (seed, LEAST_EFFECTIVE_SIZE))?;
+    let sampled = sampled(model, shots, (seed, LEAST_EFFECTIVE_SIZE), progress)?;
     let points = sampled.points();
     let of_point = |number: usize| {
         let point = points[number * points.len() / POINTS];
@@ -92,19 +94,15 @@ fn compare<const D: usize>(
     shots: &[MeasuredRelease],
     places: usize,
     options: &FitOptions,
+    progress: &dyn Progress,
 ) -> Result<Vec<ShapeScore>, FitError> {
     let (prior, seed) = (options.prior, options.seed);
-    let normal = left_out(
-        &DispersionPosterior::<D>::new(shots, places, prior),
-        shots,
-        seed,
-    )?;
-    let heavier = left_out(
-        &StudentPosterior::<D>::new(shots, places, prior),
-        shots,
-        seed,
-    )?;
-    let skewed = left_out(&SkewPosterior::<D>::new(shots, places, prior), shots, seed)?;
+    let normal = DispersionPosterior::<D>::new(shots, places, prior);
+    let normal = left_out(&normal, shots, seed, progress)?;
+    let heavier = StudentPosterior::<D>::new(shots, places, prior);
+    let heavier = left_out(&heavier, shots, seed, progress)?;
+    let skewed = SkewPosterior::<D>::new(shots, places, prior);
+    let skewed = left_out(&skewed, shots, seed, progress)?;
     let count = shots.len() as f64;
     let score = |shape: Shape, left_out: &LeftOut| {
         let pairs = left_out.of_shots.iter().zip(&normal.of_shots);
@@ -136,11 +134,12 @@ pub fn compare_shapes(
     shots: &[MeasuredRelease],
     places: usize,
     options: &FitOptions,
+    progress: &dyn Progress,
 ) -> Result<Vec<ShapeScore>, FitError> {
     match options.spin {
-        SpinSource::Measured => compare::<4>(shots, places, options),
-        SpinSource::Given | SpinSource::Assumed => compare::<3>(shots, places, options),
-        SpinSource::AssumedWithDirection => compare::<2>(shots, places, options),
+        SpinSource::Measured => compare::<4>(shots, places, options, progress),
+        SpinSource::Given | SpinSource::Assumed => compare::<3>(shots, places, options, progress),
+        SpinSource::AssumedWithDirection => compare::<2>(shots, places, options, progress),
         SpinSource::NothingMeasured => Ok(Vec::new()),
     }
 }
@@ -149,6 +148,7 @@ pub fn compare_shapes(
 mod tests {
     use super::super::measured_release::Covariance;
     use super::*;
+    use crate::probability::Silent;
 
     fn shots(values: impl Fn(&mut dyn FnMut() -> f64) -> [f64; 3]) -> Vec<MeasuredRelease> {
         let mut random = ChaCha12Rng::seed_from_u64(1);
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn val_each_shape_predicts_its_own_shots_best() {
         let scores = |shots: &[MeasuredRelease]| {
-            let found = compare_shapes(shots, 1, &FitOptions::default()).unwrap();
+            let found = compare_shapes(shots, 1, &FitOptions::default(), &Silent).unwrap();
             assert_eq!(found[0].better_than_normal, 0.0);
             [1, 2].map(|k| found[k].better_than_normal / found[k].standard_error)
         };

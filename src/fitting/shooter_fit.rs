@@ -11,12 +11,13 @@ use super::fitted_profile::{fitted_profile, with_backspin_kept};
 use super::joint_posterior::{FlightsOf, with_unseen};
 use super::makes_alone::{CountsError, posterior_of_makes};
 use super::measured_release::{MeasuredRelease, Place, PlaceScatter, Values};
-use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit};
+use super::posterior::{Draw, FitError, FitOptions, Posterior, SpinSource, fit_watched};
 use super::predicted_bins::PredictiveCheck;
 use super::prior::{Spread, UnseenPrior};
 use super::session_trends::{SessionTrend, trends};
 use super::shape_comparison::ShapeScore;
 use crate::model::{Physics, SolidId};
+use crate::probability::{Progress, Pulse, Silent};
 use crate::shooter::{Profile, ProfileError};
 use rayon::prelude::*;
 
@@ -107,32 +108,48 @@ pub fn fit_shooter(
     options: &FitOptions,
     unseen: &UnseenPrior,
 ) -> Result<ShooterFit, ShooterFitError> {
-    let mut fits = fit_shooters(&[(*test, *options, *unseen)], physics, &|| ());
+    let mut fits = fit_shooters(&[(*test, *options, *unseen)], physics, &Silent);
     fits.swap_remove(0)
 }
 
 /// Fits shooters who shot at one ring: what the makes of each say of it counts for the others.
-/// `done` is called after each.
 pub fn fit_shooters(
     tests: &[(ShooterTest<'_>, FitOptions, UnseenPrior)],
     physics: &Physics,
-    done: &(dyn Fn() + Sync),
+    progress: &dyn Progress,
 ) -> Vec<Result<ShooterFit, ShooterFitError>> {
+    // Of several the progress is that of all; of one, that of its parts.
+    let (pulse, silent) = (Pulse(progress), Silent);
+    let (of_all, of_one): (&dyn Progress, &dyn Progress) = match tests {
+        [_] => (&silent, progress),
+        _ => (progress, &pulse),
+    };
+    let count = tests.len() as u64;
+    let finished = |_: &_| of_all.advance(1);
+    of_all.begin("fitting releases", count);
     let flights: Vec<Result<Option<FlightsOf<'_>>, ShooterFitError>> = tests
         .par_iter()
-        .map(|(test, options, unseen)| flights_of(test, physics, options, unseen))
+        .map(|(test, options, unseen)| flights_of(test, physics, (options, unseen), of_one))
+        .inspect(finished)
         .collect();
+    of_all.end();
     let ring_of = |number: usize| -> Option<Spread> {
         let (test, options, unseen) = &tests[number];
         let prior = unseen.ring?;
         let flights = flights[number].as_ref().ok()?.as_ref();
-        let alone = posterior_of(test, physics, flights, options, unseen).ok()?;
+        let alone = posterior_of((test, physics), flights, (options, unseen), of_one).ok()?;
         let ring = alone.summary(|draw| draw.ring_restitution.unwrap_or(prior.middle));
         prior.likelihood(ring.mean, ring.sd)
     };
     let rings: Vec<Option<Spread>> = match tests {
         [_] => vec![None],
-        _ => (0..tests.len()).into_par_iter().map(ring_of).collect(),
+        _ => {
+            of_all.begin("finding the ring", count);
+            let rings = (0..tests.len()).into_par_iter().map(ring_of);
+            let rings = rings.inspect(|_| of_all.advance(1)).collect();
+            of_all.end();
+            rings
+        }
     };
     let fit = |number: usize| {
         let (test, options, unseen) = &tests[number];
@@ -145,11 +162,18 @@ pub fn fit_shooters(
             ..*unseen
         };
         let flights = flights[number].as_ref().map_err(Clone::clone)?;
-        let fit = finish(test, physics, flights.as_ref(), options, &unseen);
-        done();
-        fit
+        finish(
+            (test, physics),
+            flights.as_ref(),
+            (options, &unseen),
+            of_one,
+        )
     };
-    (0..tests.len()).into_par_iter().map(fit).collect()
+    of_all.begin("fitting players", count);
+    let fits = (0..tests.len()).into_par_iter().map(fit);
+    let fits = fits.inspect(|_| of_all.advance(1)).collect();
+    of_all.end();
+    fits
 }
 
 /// What several normal likelihoods say together.
@@ -178,8 +202,8 @@ fn with_ring(physics: &Physics, restitution: Option<f64>) -> Physics {
 fn flights_of<'a>(
     test: &ShooterTest<'a>,
     physics: &Physics,
-    options: &FitOptions,
-    unseen: &UnseenPrior,
+    (options, unseen): (&FitOptions, &UnseenPrior),
+    progress: &dyn Progress,
 ) -> Result<Option<FlightsOf<'a>>, ShooterFitError> {
     if options.spin == SpinSource::NothingMeasured {
         return match test.shots.is_empty() {
@@ -201,7 +225,8 @@ fn flights_of<'a>(
         draws: FLIGHT_DRAWS.max(options.draws),
         ..*options
     };
-    let mut posterior = fit(test.shots, test.places.len(), &more_draws)?;
+    let releases = (test.shots, test.places.len());
+    let mut posterior = fit_watched(releases, &more_draws, progress)?;
     widen_means(&mut posterior, (test.shots, test.sessions), options.seed);
     Ok(Some(FlightsOf {
         name: test.name,
@@ -214,18 +239,17 @@ fn flights_of<'a>(
 
 /// The posterior of flights and makes, or of makes alone.
 fn posterior_of(
-    test: &ShooterTest<'_>,
-    physics: &Physics,
+    (test, physics): (&ShooterTest<'_>, &Physics),
     flights: Option<&FlightsOf<'_>>,
-    options: &FitOptions,
-    unseen: &UnseenPrior,
+    (options, unseen): (&FitOptions, &UnseenPrior),
+    progress: &dyn Progress,
 ) -> Result<Posterior, ShooterFitError> {
     if let Some(flights) = flights {
-        return Ok(with_unseen(flights, unseen, options)?);
+        return Ok(with_unseen(flights, unseen, options, progress)?);
     }
     let physics = with_ring(physics, unseen.ring.map(|ring| ring.middle));
     let shots = (test.places, test.shots);
-    let posterior = posterior_of_makes(test.name, shots, &physics, options, unseen);
+    let posterior = posterior_of_makes(test.name, shots, &physics, (options, unseen), progress);
     posterior.map_err(|error| match error {
         CountsError::Fit(error) => error.into(),
         CountsError::Profile(error) => error.into(),
@@ -233,14 +257,13 @@ fn posterior_of(
 }
 
 fn finish(
-    test: &ShooterTest<'_>,
-    physics: &Physics,
+    (test, physics): (&ShooterTest<'_>, &Physics),
     flights: Option<&FlightsOf<'_>>,
-    options: &FitOptions,
-    unseen: &UnseenPrior,
+    (options, unseen): (&FitOptions, &UnseenPrior),
+    progress: &dyn Progress,
 ) -> Result<ShooterFit, ShooterFitError> {
     let residuals = FlightResiduals::of(test.chi_squares);
-    let posterior = posterior_of(test, physics, flights, options, unseen)?;
+    let posterior = posterior_of((test, physics), flights, (options, unseen), progress)?;
     let typical = posterior.typical();
     let ring_restitution = typical
         .ring_restitution
@@ -258,9 +281,12 @@ fn finish(
             }
         })
         .collect::<Result<Vec<_>, ProfileError>>()?;
+    progress.begin("chances of places", test.places.len() as u64);
     let probabilities: Vec<DrawProbabilities> = (0..test.places.len())
         .map(|place| usual_probabilities(&profiles[place], &posterior, place, USUAL_SHOTS))
+        .inspect(|_| progress.advance(1))
         .collect();
+    progress.end();
     let values = options.spin.measured_values();
     let (makes, shape) = match options.spin {
         SpinSource::NothingMeasured => {
@@ -271,7 +297,7 @@ fn finish(
             )
         }
         _ => (
-            expected_makes(&profiles, test.shots, &typical, values),
+            expected_makes(&profiles, test.shots, (&typical, values), progress),
             shape_test(test.shots, test.places.len()),
         ),
     };
@@ -322,4 +348,113 @@ fn finish(
         predictive: PredictiveCheck::default(),
         shapes: Vec::new(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fitting::measured_release::Covariance;
+    use crate::fitting::posterior::standard_normal;
+    use crate::fitting::{AimPrior, RINGS_OF_GYMS};
+    use crate::model::Preset;
+    use crate::shooter::Location;
+    use crate::units::{DEGREE_RAD, FOOT_M, REV_RAD};
+    use rand::SeedableRng;
+    use rand::rngs::ChaCha12Rng;
+    use std::sync::Mutex;
+
+    /// Stages with their units, and what was done of them.
+    #[derive(Default)]
+    struct Told(Mutex<Vec<(String, u64, u64)>>);
+
+    impl Progress for Told {
+        fn begin(&self, stage: &str, total: u64) {
+            let mut told = self.0.lock().unwrap();
+            told.push((stage.to_owned(), total, 0));
+        }
+        fn advance(&self, units: u64) {
+            self.0.lock().unwrap().last_mut().unwrap().2 += units;
+        }
+        fn end(&self) {}
+    }
+
+    /// A file of a stranger may have any number of shots, places and players: each part whose time
+    /// grows with it tells how far it is, to its end.
+    #[test]
+    fn contract_a_fit_tells_its_progress() {
+        let at = |distance_ft: f64| Place {
+            location: Location {
+                distance_m: distance_ft * FOOT_M,
+                angle_rad: 0.0,
+            },
+            release_height_m: 7.0 * FOOT_M,
+        };
+        let places = [at(13.75), at(16.0)];
+        let mut random = ChaCha12Rng::seed_from_u64(1);
+        let mut normal = || standard_normal(&mut random);
+        let shots: Vec<MeasuredRelease> = (0..40)
+            .map(|row| MeasuredRelease {
+                row,
+                place: row as usize % 2,
+                values: [
+                    (24.2 + 1.6 * (row % 2) as f64 + 0.25 * normal()) * FOOT_M,
+                    (52.0 + 1.2 * normal()) * DEGREE_RAD,
+                    1.2 * normal() * DEGREE_RAD,
+                    2.25 * REV_RAD,
+                ],
+                noise: Covariance::identity() * 1e-6,
+                made: Some(row % 3 > 0),
+                own: None,
+            })
+            .collect();
+        let test = ShooterTest {
+            name: "Ann",
+            places: &places,
+            place_scatter: &[PlaceScatter::default(); 2],
+            shots: &shots,
+            sessions: &[],
+            speed_unit: ("ft/s", FOOT_M),
+            chi_squares: &[],
+        };
+        let options = FitOptions {
+            spin: SpinSource::Given,
+            ..FitOptions::default()
+        };
+        let unseen = UnseenPrior {
+            ring: Some(RINGS_OF_GYMS),
+            aim: Some(AimPrior::POPULATION),
+            ..UnseenPrior::NONE
+        };
+        let physics = Preset::named("ncaa").unwrap().physics();
+        let stages = |players: usize| {
+            let told = Told::default();
+            let tests = vec![(test, options, unseen); players];
+            for fit in fit_shooters(&tests, &physics, &told) {
+                fit.unwrap();
+            }
+            let told = told.0.into_inner().unwrap();
+            for (stage, total, done) in &told {
+                assert_eq!(done, total, "{stage}");
+            }
+            let mut stages: Vec<String> = told.into_iter().map(|(stage, ..)| stage).collect();
+            // Chains that have not converged are followed by longer ones.
+            stages.dedup();
+            stages
+        };
+        let of_one = [
+            "fitting releases",
+            "finding shots",
+            "simulating shots",
+            "weighing makes",
+            "chances of places",
+            "counting makes",
+            "chances of places",
+            "chances of shots",
+        ];
+        assert_eq!(stages(1), of_one);
+        assert_eq!(
+            stages(2),
+            ["fitting releases", "finding the ring", "fitting players"]
+        );
+    }
 }

@@ -5,6 +5,7 @@ use super::measured_release::MeasuredRelease;
 use super::posterior::Draw;
 use crate::dynamics::BatchWorkspace;
 use crate::model::SolidId;
+use crate::probability::Progress;
 use crate::shooter::{Profile, ProfileError};
 use crate::units::REV_RAD;
 use rayon::prelude::*;
@@ -100,7 +101,10 @@ pub struct FittedShooter<'a> {
 pub fn likelihood_curve(
     parameter: UnseenParameter,
     shooters: &[FittedShooter<'_>],
+    progress: &dyn Progress,
 ) -> Result<LikelihoodCurve, ProfileError> {
+    let shots: usize = shooters.iter().map(|shooter| shooter.shots.len()).sum();
+    progress.begin("weighing makes", (2 * VALUES * shots) as u64);
     let normals = common_normals(RELEASES, 1);
     let of_shooter = |shooter: &FittedShooter<'_>, value: f64| -> Result<f64, ProfileError> {
         let is_labelled = |shot: &&MeasuredRelease| shot.made.is_some();
@@ -129,6 +133,7 @@ pub fn likelihood_curve(
         let logarithms: Vec<f64> = labelled
             .par_iter()
             .map_init(BatchWorkspace::default, |workspace, shot| {
+                progress.advance(1);
                 let Some((mean, covariance)) = release_given(shot, &draw, measured_values) else {
                     return 0.0;
                 };
@@ -173,6 +178,7 @@ pub fn likelihood_curve(
     let step = (high - low) / (VALUES - 1) as f64;
     let [from, to] = coarse.interval;
     let fine = tabulate((from - step).max(low), (to + step).min(high))?;
+    progress.end();
     Ok(curve(parameter, fine))
 }
 

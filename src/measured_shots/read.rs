@@ -14,8 +14,12 @@ use crate::dynamics::Simulator;
 use crate::fitting::{
     Interval, MeasuredRelease, ReleaseDifference, SpinSource, TrackerNoise, check_speed_unit,
 };
+use crate::probability::{Progress, Silent};
 use crate::units::FOOT_M;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
+
+/// Places of one shooter, at most: each has its own aim, and its best shot is searched.
+const MOST_PLACES: usize = 1000;
 
 /// Reads the shots of a table.
 ///
@@ -26,6 +30,7 @@ pub fn read(
     columns: &Columns,
     options: &ReadOptions,
     simulator: &Simulator,
+    progress: &dyn Progress,
 ) -> Result<Vec<ShooterShots>, String> {
     let source = Source::of(columns)?;
     let reader = RowReader {
@@ -33,6 +38,7 @@ pub fn read(
         options,
         simulator,
         source,
+        progress,
     };
     check_options(&reader)?;
     check_place(&reader)?;
@@ -65,14 +71,16 @@ pub fn read(
         return Err(words);
     }
     check_named_heights(&reader, &by_shooter.keys().collect::<Vec<_>>())?;
-    let mut shooters = Vec::new();
-    for (name, rows) in by_shooter {
+    progress.begin("reading shots", all.len() as u64);
+    let read = by_shooter.into_iter().map(|(name, rows)| {
         let mut shooter = shooter(&reader, name, &rows)?;
         shooter.rejected.append(&mut rejected);
         shooter.rejected.sort();
-        shooters.push(shooter);
-    }
-    Ok(shooters)
+        Ok(shooter)
+    });
+    let shooters = read.collect();
+    progress.end();
+    shooters
 }
 
 /// The frame rate and the noise of the tracker of a file of trajectories, from its flights; `None`
@@ -90,6 +98,7 @@ pub fn tracker_by_flights(
         options,
         simulator,
         source,
+        progress: &Silent,
     };
     let rows = table
         .rows
@@ -212,6 +221,7 @@ fn shooter(
         Source::Trajectories => tracked_shots(reader, rows, &mut rejected).map_err(of_shooter)?,
         Source::Makes => {
             let shots = reader.counted_shots(rows, &mut rejected);
+            let shots = shots.map_err(of_shooter)?;
             too_many_absurd(rows.len(), &rejected).map_err(of_shooter)?;
             shots
         }
@@ -245,7 +255,7 @@ fn shooter(
             (shown, column.unit.1)
         });
     let mut shooter = ShooterShots {
-        name,
+        name: name.clone(),
         source: reader.source,
         places: Vec::new(),
         place_names: Vec::new(),
@@ -261,6 +271,12 @@ fn shooter(
         differences: Vec::new(),
     };
     group_by_place(reader, raw, &mut shooter);
+    let places = shooter.places.len();
+    if places > MOST_PLACES {
+        return Err(of_shooter(format!(
+            "has shots from {places} places; a fit takes at most {MOST_PLACES}. Round the distances and angles, so that the shots from one spot are one place"
+        )));
+    }
     if reader.source == Source::Releases {
         let (physics, places) = (reader.simulator.physics(), &shooter.places);
         check_speed_unit(physics, places, &shooter.shots, unit)
@@ -283,17 +299,17 @@ fn place_names(
     shooter: &ShooterShots,
 ) -> Vec<String> {
     let cells: BTreeMap<u64, &[String]> = rows.iter().copied().collect();
-    let names_of = |place: usize| {
-        let mut names: Vec<&str> = Vec::new();
-        for shot in shooter.shots.iter().filter(|shot| shot.place == place) {
-            let name = reader.label(cells[&shot.row], Label::Place);
-            if let Some(name) = name.filter(|name| !name.is_empty() && !names.contains(name)) {
-                names.push(name);
-            }
+    let mut known = HashSet::new();
+    let mut names: Vec<Vec<&str>> = vec![Vec::new(); shooter.places.len()];
+    for shot in &shooter.shots {
+        let name = reader.label(cells[&shot.row], Label::Place);
+        if let Some(name) = name.filter(|name| !name.is_empty())
+            && known.insert((shot.place, name))
+        {
+            names[shot.place].push(name);
         }
-        names.join(" or ")
-    };
-    (0..shooter.places.len()).map(names_of).collect()
+    }
+    names.iter().map(|names| names.join(" or ")).collect()
 }
 
 /// Compares the releases that the file holds beside landings with those that the landings give.

@@ -118,14 +118,18 @@ pub(super) fn reject_shots(simulator: &Simulator, shooter: &mut ShooterShots) {
     retain_by(&mut shooter.tracks, &keep);
     retain_by(&mut shooter.chi_squares, &keep);
     // A place that lost all its shots is none.
-    let used: Vec<usize> = (0..shooter.places.len())
-        .filter(|place| shooter.shots.iter().any(|shot| shot.place == *place))
+    let mut numbers: Vec<Option<usize>> = vec![None; shooter.places.len()];
+    for shot in &shooter.shots {
+        numbers[shot.place] = Some(0);
+    }
+    let used: Vec<usize> = (0..numbers.len())
+        .filter(|&place| numbers[place].is_some())
         .collect();
+    for (number, &place) in used.iter().enumerate() {
+        numbers[place] = Some(number);
+    }
     for shot in &mut shooter.shots {
-        shot.place = used
-            .iter()
-            .position(|place| *place == shot.place)
-            .unwrap_or(0);
+        shot.place = numbers[shot.place].unwrap_or(0);
     }
     shooter.place_scatter = used
         .iter()

@@ -7,11 +7,14 @@ use super::source::Source;
 use crate::dynamics::Simulator;
 use crate::fitting::{Landing, Place};
 use crate::model::named_places::{place_named, place_names_in_words};
+use crate::probability::Progress;
 use crate::shooter::Location;
 use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 
 /// Attempts in a row, at most.
 const MOST_ATTEMPTS: f64 = 10_000.0;
+/// And of one shooter: each is a shot in memory.
+const MOST_COUNTED: usize = 500_000;
 /// A shot that is farther than this from the hoop's centre where it falls through its height is not
 /// aimed at it, m.
 pub(super) const FARTHEST_LANDING_M: f64 = 1.5;
@@ -46,6 +49,8 @@ pub(super) struct RowReader<'a> {
     pub(super) options: &'a ReadOptions,
     pub(super) simulator: &'a Simulator,
     pub(super) source: Source,
+    /// Of the rows.
+    pub(super) progress: &'a dyn Progress,
 }
 
 impl RowReader<'_> {
@@ -241,11 +246,16 @@ impl RowReader<'_> {
         &self,
         rows: &[(u64, &[String])],
         rejected: &mut Vec<(u64, String)>,
-    ) -> Vec<RawShot> {
+    ) -> Result<Vec<RawShot>, String> {
         let mut raw = Vec::new();
         for &(row, cells) in rows {
             match (self.place(cells), self.counted(cells)) {
                 (Ok(place), Ok((made, attempts))) => {
+                    if raw.len() + attempts as usize > MOST_COUNTED {
+                        return Err(format!(
+                            "has more than {MOST_COUNTED} attempts; fit a season or two at a time"
+                        ));
+                    }
                     raw.extend((0..attempts).map(|number| {
                         RawShot {
                             row,
@@ -263,7 +273,7 @@ impl RowReader<'_> {
                 (Err(reason), _) | (_, Err(reason)) => rejected.push((row, reason)),
             }
         }
-        raw
+        Ok(raw)
     }
 
     /// The makes and the attempts of a row.

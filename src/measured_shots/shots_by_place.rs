@@ -8,6 +8,7 @@ use crate::fitting::{
     Covariance, FlightFit, Landing, LandingError, MeasuredRelease, OwnPath, Place, PlaceScatter,
     Values, landing_of, own_path, release_of_landing, release_of_uncertain_landing,
 };
+use rayon::prelude::*;
 
 /// What became of a shot, as a release from the place of its group.
 struct AtPlace {
@@ -24,7 +25,8 @@ pub(super) fn group_by_place(
     shooter: &mut ShooterShots,
 ) {
     let own_places: Vec<Place> = raw.iter().map(|shot| shot.place).collect();
-    let groups = shots_of_places(&own_places, reader.source != Source::Trajectories);
+    let is_stated = reader.source != Source::Trajectories;
+    let groups = shots_of_places(&own_places, is_stated, &|| reader.progress.advance(0));
     let mut group_of_shot = vec![0; raw.len()];
     for (group, shots) in groups.iter().enumerate() {
         for &shot in shots {
@@ -37,24 +39,27 @@ pub(super) fn group_by_place(
         .collect();
     shooter.place_scatter = groups.iter().map(|shots| scatter(&raw, shots)).collect();
     let noise = noise_of_landings(reader, &raw, &groups, shooter);
-    for (shot, group) in raw.into_iter().zip(group_of_shot) {
-        let place = shooter.places[group];
-        let from = shot.place;
-        let found = match shot.measured {
+    let at_place = |(shot, group): (&RawShot, &usize)| {
+        let (place, from) = (&shooter.places[*group], &shot.place);
+        // The rows of a flight were counted when it was fitted.
+        let is_flight = matches!(shot.measured, Raw::Flight(..));
+        reader.progress.advance(u64::from(!is_flight));
+        match &shot.measured {
             Raw::Nothing => Ok(AtPlace {
                 values: Values::default(),
                 noise: Covariance::zeros(),
                 own: None,
             }),
-            Raw::Release(values) => of_release(reader, (&from, &values), &place),
+            Raw::Release(values) => of_release(reader, (from, values), place),
             Raw::Landing(landing, backspin) => {
-                of_landing(reader, (&from, &landing), &place, (&noise[group], backspin))
+                of_landing(reader, (from, landing), place, (&noise[*group], *backspin))
             }
-            Raw::Flight(fit, points) => of_flight(reader, &fit, &place).inspect(|_| {
-                shooter.tracks.push(points);
-                shooter.chi_squares.push(fit.chi_square);
-            }),
-        };
+            Raw::Flight(fit, _) => of_flight(reader, fit, place),
+        }
+    };
+    let found = raw.par_iter().zip(&group_of_shot).map(at_place);
+    let found: Vec<Result<AtPlace, LandingError>> = found.collect();
+    for ((shot, group), found) in raw.into_iter().zip(group_of_shot).zip(found) {
         let found = match found {
             Ok(found) => found,
             Err(error) => {
@@ -62,6 +67,10 @@ pub(super) fn group_by_place(
                 continue;
             }
         };
+        if let Raw::Flight(fit, points) = shot.measured {
+            shooter.tracks.push(points);
+            shooter.chi_squares.push(fit.chi_square);
+        }
         shooter.sessions.push(shot.session);
         shooter.shot_names.push(shot.name);
         shooter.shots.push(MeasuredRelease {

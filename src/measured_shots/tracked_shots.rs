@@ -85,6 +85,7 @@ pub(super) fn tracked_shots(
         .unwrap_or_default();
     let height = reader.options.release_height_m(shooter).unwrap_or_else(|| {
         let begins = tracks.par_iter().filter_map(|shot| {
+            reader.progress.advance(0);
             let (points, _) = shot.track.as_ref().ok()?;
             let fit = fit_flight(reader.simulator, points, noise, LOW_RELEASE_M, backspin).ok()?;
             Some(fit.begins_at_m)
@@ -105,6 +106,7 @@ pub(super) fn tracked_shots(
                 track,
             } = shot;
             let (points, made) = track.map_err(|reason| (row, reason))?;
+            reader.progress.advance(points.len() as u64);
             let fit = fit_flight(reader.simulator, &points, noise, height, backspin)
                 .map_err(|error| (row, format!("trajectory: {error}")))?;
             let used = points[fit.points.clone()].to_vec();

@@ -321,8 +321,14 @@ pub(crate) fn meant_by<'a>(
     /// Names less alike than this, from 0 to 1, have nothing in common.
     const LEAST_LIKENESS: f64 = 0.75;
     let name: String = name.chars().take(60).collect::<String>().to_lowercase();
+    // The distance is at least the difference of the lengths.
+    let may_be_alike = |known: &&str| {
+        let (a, b) = (name.chars().count(), known.chars().count());
+        a.min(b) as f64 >= LEAST_LIKENESS * a.max(b) as f64
+    };
     known
         .into_iter()
+        .filter(may_be_alike)
         .map(|known| {
             let likeness = strsim::normalized_damerau_levenshtein(&name, &known.to_lowercase());
             (likeness, known)

@@ -45,6 +45,26 @@ fn contract_endless_and_hollow_files_are_refused_at_once() {
     refused(&write_file(&folder, "long.csv", long), "needs the columns");
 }
 
+/// Each place has an aim and a best shot of its own, and each attempt is a shot in memory.
+#[test]
+fn contract_more_places_or_attempts_than_a_player_has_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let refused = |name: &str, rows: String, words: &str| {
+        let text = format!("distance_ft,court_angle_deg,attempts,makes\n{rows}");
+        let mut command = bankshot();
+        command.args(["fit", "--release-height", "7 ft", "--output", "fit"]);
+        let command = command.arg(write_file(&folder, name, text));
+        let answer = Answer::of(command.current_dir(folder.path())).exits(2);
+        assert!(answer.stderr.contains(words), "{answer:?}");
+        assert!(!folder.path().join("fit").exists());
+    };
+    let places = (0..1200).map(|k| format!("{}.{},{},9,5\n", 10 + k / 100, k % 10, k / 10 % 10));
+    let words = "has shots from 1200 places; a fit takes at most 1000";
+    refused("places.csv", places.collect(), words);
+    let attempts = "15,0,10000,5000\n".repeat(51);
+    refused("attempts.csv", attempts, "has more than 500000 attempts");
+}
+
 /// A sheet with a cell in its last corner would have room for 17 billion cells.
 #[test]
 fn contract_a_sheet_with_a_far_cell_is_read_or_refused() {

@@ -579,7 +579,7 @@ fn campaign_unseen_backspin_is_told_by_made_and_missed() {
                 typical: &typical,
                 measured_values: 3,
             };
-            let curve = likelihood_curve(parameter, &[shooter]).unwrap();
+            let curve = likelihood_curve(parameter, &[shooter], &Silent).unwrap();
             (
                 curve.best / REV_RAD,
                 curve.interval.map(|end| end / REV_RAD),

@@ -17,6 +17,7 @@ use bankshot::measured_shots::shooter_shots::{ReadOptions, ShooterShots};
 use bankshot::measured_shots::table::Table;
 use bankshot::model::Preset;
 use bankshot::model::league_courts::League;
+use bankshot::probability::Silent;
 use bankshot::units::{DEGREE_RAD, FOOT_M, INCH_M};
 use rand::rngs::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
@@ -231,7 +232,7 @@ fn read_shots(text: &str, has_place: bool, height_m: Option<f64>) -> ShooterShot
     if let Some(noise) = tracker_by_flights(&table, &columns, &options, &simulator) {
         options.noise = noise;
     }
-    read(&table, &columns, &options, &simulator)
+    read(&table, &columns, &options, &simulator, &Silent)
         .unwrap()
         .remove(0)
 }
@@ -374,7 +375,7 @@ fn drag(seed: u64) -> (f64, [f64; 2]) {
         })
         .collect();
     let tracks: Vec<&[TrackedPoint]> = tracks.iter().map(Vec::as_slice).collect();
-    let found = fit_drag_coefficient(&physics, &tracks, &noise, 0.0).unwrap();
+    let found = fit_drag_coefficient(&physics, &tracks, &noise, 0.0, &Silent).unwrap();
     (found.best, found.interval)
 }
 

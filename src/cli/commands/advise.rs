@@ -59,7 +59,7 @@ pub(crate) fn run(options: &AdviseOptions) -> Result<u8, Failure> {
             worst = code::INCOMPLETE;
         }
         let fit = file
-            .fit(shots, &file.physics)
+            .fit(shots, &ProgressBars::new())
             .map_err(|error| failure(&options.shots.display().to_string(), &error))?;
         let fit = Fit::of(fit, shots, &file.tracker.0);
         answer(options, &fit, (number, file.shooters.len()))?;

@@ -12,7 +12,7 @@ use crate::fitting::{
 };
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::SolidId;
-use crate::probability::Progress;
+use crate::probability::{Progress, Pulse};
 use crate::shooter::Profile;
 use crate::store::fit::{Fit, SHOTS};
 use crate::units::UnitSystem;
@@ -86,7 +86,7 @@ pub(super) fn read(
     let shots = file.only_shooter()?;
     report_rejected(&file, shots, true);
     let fit = file
-        .fit(shots, &file.physics)
+        .fit(shots, &ProgressBars::new())
         .map_err(|error| failure(&name, &error))?;
     Session::of(name, Fit::of(fit, shots, &file.tracker.0), place)
 }
@@ -225,7 +225,7 @@ pub(super) fn fit_by_session(
     let fit = |session: &String, other: &String| -> Result<Session, Failure> {
         let kept = only_session(shots, session, other);
         let fit = file
-            .fit(&kept, &file.physics)
+            .fit(&kept, &Pulse(bars))
             .map_err(|error| failure(&place, &error))?;
         bars.advance(1);
         Ok(Session {

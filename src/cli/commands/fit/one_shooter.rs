@@ -12,6 +12,7 @@ use crate::answers::fit::FitAnswer;
 use crate::answers::json::{self, document};
 use crate::cli::failure::{Failure, code};
 use crate::cli::measured_shots_flags::MeasuredFile;
+use crate::cli::progress_bars::ProgressBars;
 use crate::cli::run_folder::{self, RunKind};
 use crate::cli::terminal::{
     is_quiet, print_answer, print_next, print_prose, print_remark, print_text,
@@ -20,6 +21,7 @@ use crate::escape::file_name;
 use crate::fitting::{ShooterFit, compare_shapes, predictive_check};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::present::fit_files::fit_text::fit_text;
+use crate::probability::Progress;
 use crate::shooter::implausible_values;
 use crate::store;
 use serde_json::json;
@@ -43,21 +45,22 @@ pub(super) fn fit(
     if options.out.is_none() && options.measured.shooter.is_some() {
         refuse_other_shooter(folder, &shots.name)?;
     }
-    let mut fit = match file.fit(shots, &file.physics) {
+    let bars = ProgressBars::new();
+    let mut fit = match file.fit(shots, &bars) {
         Ok(fit) => fit,
         // The drag needs no profile, and flights from many places make none.
         Err(error) if options.free.iter().any(|name| is_drag(name)) && !shots.tracks.is_empty() => {
-            answer_drag(file, &[shots], &error.to_string(), options)?;
+            answer_drag(file, &[shots], (&error.to_string(), &bars), options)?;
             return Ok(code::INCOMPLETE);
         }
         Err(error) => return Err(failure(&options.shots.display().to_string(), &error)),
     };
     check_shots(&options.free, shots, &fit)?;
-    add_checks(&mut fit, file, shots, options);
+    add_checks(&mut fit, file, (shots, &bars), options);
     let free = options
         .free
         .iter()
-        .map(|name| estimate(name, file, &[(shots, &fit)]))
+        .map(|name| estimate(name, file, &[(shots, &fit)], &bars))
         .collect::<Result<Vec<_>, _>>()?;
     write(folder, file, (shots, &fit, &free), options)?;
     renew_table(file, (shots, &fit), folder, options)?;
@@ -69,16 +72,16 @@ pub(super) fn fit(
 pub(super) fn add_checks(
     fit: &mut ShooterFit,
     file: &MeasuredFile,
-    shots: &ShooterShots,
+    (shots, progress): (&ShooterShots, &dyn Progress),
     options: &FitOptions,
 ) {
-    fit.predictive = predictive_check(fit, &shots.shots);
+    fit.predictive = predictive_check(fit, &shots.shots, progress);
     if !options.compare_shapes {
         return;
     }
     let places = shots.places.len();
     let name = file.name_of(shots);
-    match compare_shapes(&shots.shots, places, &file.fit_options(shots)) {
+    match compare_shapes(&shots.shots, places, &file.fit_options(shots), progress) {
         Ok(found) if found.is_empty() => print_remark(&format!(
             "{name}: --compare-shapes: no release was measured"
         )),
@@ -94,10 +97,10 @@ pub(super) fn add_checks(
 pub(super) fn answer_drag(
     file: &MeasuredFile,
     shooters: &[&ShooterShots],
-    why: &str,
+    (why, progress): (&str, &dyn Progress),
     options: &FitOptions,
 ) -> Result<(), Failure> {
-    let found = drag(file, shooters);
+    let found = drag(file, shooters, progress);
     if options.json {
         print_answer(&format!("{:#}\n", json!({ "free": [found.found] })))?;
     } else {

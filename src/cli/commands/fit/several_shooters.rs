@@ -18,7 +18,7 @@ use crate::present::fit_files::fit_checks_text::shapes_text;
 use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::present::layout::{Side, TextAnswer, TextTable};
 use crate::present::words::list;
-use crate::probability::Progress;
+use crate::probability::{Progress, Pulse};
 use crate::store::fit::FIT_FILE;
 use crate::store::shooters::{ShooterPlace, Shooters, fits_within};
 use crate::units::{DEGREE_RAD, UnitSystem};
@@ -65,11 +65,16 @@ fn fit_rows(
     options: &FitOptions,
 ) -> Result<Vec<ShooterRow>, Failure> {
     let bars = ProgressBars::new();
-    bars.begin("fitting shooters", file.shooters.len() as u64);
-    let fits = file.fit_all(&file.shooters, &file.physics, &|| bars.advance(1));
+    let fits = file.fit_all(&file.shooters, &bars);
+    bars.begin("writing fits", file.shooters.len() as u64);
     let rows = file.shooters.par_iter().zip(folders).zip(fits);
-    let rows = rows.map(|((shots, folder), fit)| row_of(file, (shots, fit), folder, options));
-    let rows = rows.collect();
+    let rows = rows
+        .map(|((shots, folder), fit)| {
+            let row = row_of(file, (shots, fit), (folder, &Pulse(&bars)), options);
+            bars.advance(1);
+            row
+        })
+        .collect();
     bars.end();
     rows
 }
@@ -134,12 +139,13 @@ fn answer_without_fit(file: &MeasuredFile, options: &FitOptions) -> Result<u8, F
         )));
     }
     let why = "each shooter has too few shots from a place";
-    answer_drag(file, &tracked, why, options)?;
+    answer_drag(file, &tracked, (why, &ProgressBars::new()), options)?;
     Ok(code::INCOMPLETE)
 }
 
 /// Removes an older fit of all shots together, and those of shooters who are no longer in the file.
 fn remove_older(out: &Path, folders: &[PathBuf]) -> Result<(), Failure> {
+    let folders: HashSet<&PathBuf> = folders.iter().collect();
     // A list that cannot be read is replaced now.
     for older in fits_within(out).unwrap_or_default() {
         if !folders.contains(&older) {
@@ -233,6 +239,7 @@ fn estimate_together(
     let fitted: Vec<_> = fitted
         .filter_map(|(shots, row)| Some((shots, row.fit.as_ref()?)))
         .collect();
+    let bars = ProgressBars::new();
     let names = options.free.iter();
     names
         .map(|name| {
@@ -242,7 +249,7 @@ fn estimate_together(
                 .filter(|shots| !shots.tracks.is_empty());
             let tracked: Vec<&ShooterShots> = tracked.collect();
             if is_drag(name) && !tracked.is_empty() {
-                return Ok(drag(file, &tracked));
+                return Ok(drag(file, &tracked, &bars));
             }
             let telling = fitted.iter().copied();
             let telling = telling
@@ -252,7 +259,7 @@ fn estimate_together(
                 let (shots, fit) = fitted[0];
                 check_shots(std::slice::from_ref(name), shots, fit)?;
             }
-            estimate(name, file, &telling)
+            estimate(name, file, &telling, &bars)
         })
         .collect()
 }
@@ -299,7 +306,7 @@ struct PlaceRow {
 fn row_of(
     file: &MeasuredFile,
     (shots, fit): (&ShooterShots, Result<ShooterFit, ShooterFitError>),
-    folder: &Path,
+    (folder, progress): (&Path, &dyn Progress),
     options: &FitOptions,
 ) -> Result<ShooterRow, Failure> {
     let name = file.name_of(shots);
@@ -321,7 +328,7 @@ fn row_of(
             });
         }
     };
-    add_checks(&mut fit, file, shots, options);
+    add_checks(&mut fit, file, (shots, progress), options);
     write(folder, file, (shots, &fit, &[]), options)?;
     let mut places = Vec::new();
     for (index, place) in fit.places.iter().enumerate() {

@@ -5,6 +5,7 @@ use crate::cli::measured_shots_flags::MeasuredFile;
 use crate::fitting::{FittedShooter, ShooterFit, SpinSource, UnseenParameter, likelihood_curve};
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::model::{Preset, SolidId};
+use crate::probability::Progress;
 use crate::store::free_parameters::{CurvePoint, FreeParameter};
 use crate::units::{REV_RAD, rounded};
 
@@ -61,10 +62,11 @@ pub(super) fn estimate(
     name: &str,
     file: &MeasuredFile,
     shooters: &[(&ShooterShots, &ShooterFit)],
+    progress: &dyn Progress,
 ) -> Result<UnmeasuredParameter, Failure> {
     let Some(parameter) = UnseenParameter::named(name) else {
         let shots: Vec<&ShooterShots> = shooters.iter().map(|(shots, _)| *shots).collect();
-        return Ok(drag(file, &shots));
+        return Ok(drag(file, &shots, progress));
     };
     let labelled: usize = shooters.iter().map(|(_, fit)| fit.makes.labelled).sum();
     let is_measured = |shots: &ShooterShots| shots.spin == SpinSource::Measured;
@@ -77,7 +79,7 @@ pub(super) fn estimate(
             measured_values: shots.spin.measured_values(),
         })
         .collect();
-    let curve = likelihood_curve(parameter, &fitted)?;
+    let curve = likelihood_curve(parameter, &fitted, progress)?;
     let is_measured = shooters.iter().any(|(shots, _)| is_measured(shots));
     let (unit, size) = match parameter {
         UnseenParameter::Backspin => (" rev/s", REV_RAD),
@@ -180,7 +182,11 @@ pub(super) fn is_drag(name: &str) -> bool {
 const DRAG: &str = "drag_coefficient";
 
 /// The drag coefficient by the flights of shooters.
-pub(super) fn drag(file: &MeasuredFile, shooters: &[&ShooterShots]) -> UnmeasuredParameter {
+pub(super) fn drag(
+    file: &MeasuredFile,
+    shooters: &[&ShooterShots],
+    progress: &dyn Progress,
+) -> UnmeasuredParameter {
     let own = file.physics.air.drag_coefficient;
     let none = FreeParameter {
         name: DRAG.to_owned(),
@@ -193,7 +199,7 @@ pub(super) fn drag(file: &MeasuredFile, shooters: &[&ShooterShots]) -> Unmeasure
         tells_more_than_sources: None,
         curve: None,
     };
-    let Some(found) = file.drag_of_flights(shooters) else {
+    let Some(found) = file.drag_of_flights(shooters, progress) else {
         return UnmeasuredParameter {
             text: "drag_coefficient  these flights cannot tell\n".to_owned(),
             found: none,

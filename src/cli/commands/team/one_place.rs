@@ -14,6 +14,7 @@ use crate::fitting::{Interval, shared_sd};
 use crate::plots::svg::shortened;
 use crate::present::layout::{Side, TextAnswer, TextTable};
 use crate::present::words::{likely, list, per_100};
+use crate::probability::{Progress, Pulse};
 use crate::shooter::{Location, Profile};
 use crate::sweep::probability_by_place::{Preference, SURE};
 use std::path::{Path, PathBuf};
@@ -114,8 +115,8 @@ struct PlayerShots {
 }
 
 impl PlayerShots {
-    fn find(path: &Path, profile: &Profile, bars: &ProgressBars) -> Result<Self, Failure> {
-        let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, bars)?;
+    fn find(path: &Path, profile: &Profile, progress: &dyn Progress) -> Result<Self, Failure> {
+        let (_, shots) = find_kinds(profile, &ShotKind::ALL, SensitivityTopics::NONE, progress)?;
         let fit = fit_folder::of_profile(path)?;
         let chance = |kind: ShotKind| {
             let shot = shots[kind.index()].as_ref().ok();
@@ -230,10 +231,15 @@ pub(super) fn run(
         );
     }
     let bars = ProgressBars::new();
+    bars.begin("players", profiles.len() as u64);
     let find = |(path, profile): (PathBuf, Profile)| {
-        PlayerShots::find(&path, &from.moved(profile)?, &bars)
+        let shots = PlayerShots::find(&path, &from.moved(profile)?, &Pulse(&bars));
+        bars.advance(1);
+        shots
     };
-    let mut players: Vec<PlayerShots> = profiles.into_iter().map(find).collect::<Result<_, _>>()?;
+    let players: Result<Vec<PlayerShots>, Failure> = profiles.into_iter().map(find).collect();
+    bars.end();
+    let mut players = players?;
     pool(&mut players);
     print_text(&team_text(&players))?;
     print_hint(

@@ -10,6 +10,7 @@ use crate::shooter::{Profile, implausible_values};
 use crate::store::fit::profile_file;
 use crate::store::shooters::fits_within;
 use crate::sweep::sweep_toml::is_sweep;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// The files of the profiles: in place of the folder of a fit its profile, and those of all
@@ -40,6 +41,7 @@ pub(super) fn load_players(
     place: Option<u32>,
 ) -> Result<Vec<(PathBuf, Profile)>, Failure> {
     let mut players: Vec<(PathBuf, Profile)> = Vec::new();
+    let mut folders = HashSet::new();
     for path in files_of_players(paths, place)? {
         if is_sweep(&read_text(&path)?) {
             return Err(Failure::usage(format!(
@@ -49,11 +51,7 @@ pub(super) fn load_players(
         }
         let player = LoadedProfile::read(&path, &PhysicsArg::default())?.profile;
         let name = &player.shooter().name;
-        let folder = file_name(name);
-        if players
-            .iter()
-            .any(|(_, other)| file_name(&other.shooter().name) == folder)
-        {
+        if !folders.insert(file_name(name)) {
             return Err(Failure::usage(format!(
                 "{}: two players have the name \"{name}\"; give each their own",
                 path.display()
