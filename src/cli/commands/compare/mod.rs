@@ -13,6 +13,7 @@ use crate::cli::progress_bars::ProgressBars;
 use crate::cli::terminal::{
     print_answer, print_hint, print_next, print_prose, print_remark, print_text,
 };
+use crate::fitting::ProbabilityChange;
 use crate::plots::session_changes;
 use crate::present::fit_files::fit_note_text::fit_note_text;
 use crate::present::fit_files::session_changes_text::session_changes_text;
@@ -79,11 +80,17 @@ pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
             "--plot: draws the sessions of one shooter; choose with --shooter NAME",
         ));
     }
+    let bars = ProgressBars::new();
+    bars.begin("comparing sessions", compared.pairs.len() as u64);
+    let mut causes_of_pairs = Vec::new();
     for sessions in &mut compared.pairs {
         let units = options.measured.units_or(sessions[0].units);
         share_what_no_sensor_sees(sessions)?;
         to_one_release_height(sessions, units);
+        causes_of_pairs.push(causes(sessions));
+        bars.advance(1);
     }
+    bars.end();
     if !options.json {
         print_several_places(options, &compared.pairs)?;
     }
@@ -93,12 +100,17 @@ pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
         );
     }
     let mut jsons = Vec::new();
-    for (number, sessions) in compared.pairs.iter().enumerate() {
+    let pairs = compared.pairs.iter().zip(&causes_of_pairs);
+    for (number, (sessions, causes)) in pairs.enumerate() {
         if compared.has_several_shooters && !options.json {
             let space = if number == 0 { "" } else { "\n" };
             print_prose(&format!("{space}{}\n", sessions[0].profile.shooter().name))?;
         }
-        jsons.extend(answer(options, sessions, compared.has_several_shooters)?);
+        jsons.extend(answer(
+            options,
+            (sessions, causes),
+            compared.has_several_shooters,
+        )?);
     }
     if options.json {
         let all = match compared.has_several_shooters {
@@ -211,7 +223,7 @@ fn print_several_places(options: &CompareOptions, pairs: &[[Session; 2]]) -> Res
 /// Compares two sessions: prints the answer, or returns it for programs.
 fn answer(
     options: &CompareOptions,
-    sessions: &[Session; 2],
+    (sessions, causes): (&[Session; 2], &ProbabilityChange),
     names_shooter: bool,
 ) -> Result<Option<Value>, Failure> {
     check_conditions(sessions)?;
@@ -227,7 +239,6 @@ fn answer(
     }
     let units = options.measured.units_or(sessions[0].units);
     let changes = planned(changes(sessions, units), &options.planned)?;
-    let causes = causes(sessions);
     if let Some(path) = &options.plot {
         let [first, second] = sessions.each_ref().map(|session| &session.profile);
         // The names of two fits may have their sessions.
@@ -239,7 +250,7 @@ fn answer(
             shooter,
             sessions.each_ref().map(|session| session.name.as_str()),
             &values_to_draw(&changes),
-            &causes_to_draw(&causes),
+            &causes_to_draw(causes),
         );
         plot_files::write_one(path, &plot)?;
         print_hint(&format!("plot written to {}", path.display()));
@@ -252,13 +263,11 @@ fn answer(
     });
     if options.json {
         let profile = &sessions[0].profile;
-        let answer = SessionsAnswer::new(profile, summaries, &changes, &causes);
+        let answer = SessionsAnswer::new(profile, summaries, &changes, causes);
         return Ok(Some(document(&answer, units)));
     }
     let profile = &sessions[0].profile;
-    print_text(&session_changes_text(
-        profile, &summaries, &changes, &causes,
-    ))?;
+    print_text(&session_changes_text(profile, &summaries, &changes, causes))?;
     print_next(None, "");
     Ok(None)
 }
