@@ -27,7 +27,7 @@ use crate::model::{DEFAULT_PRESET, Physics, SolidId};
 use crate::probability::{Progress, Pulse};
 use crate::units::{self, Dimension, UnitSystem};
 use clap::Args;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use toml_edit::DocumentMut;
 
@@ -226,10 +226,11 @@ fn keep_sessions(table: &mut Table, columns: &Columns, wanted: &[String]) -> Res
         "has no column session for --session; name it with --map 'session=COLUMN'".to_owned(),
     )?;
     let session = |cells: &[String]| cells.get(index).map_or("", |cell| cell.trim()).to_owned();
+    let mut is_known = HashSet::new();
     let mut known: Vec<String> = Vec::new();
     for (_, cells) in &table.rows {
         let name = session(cells);
-        if !known.contains(&name) {
+        if is_known.insert(name.clone()) {
             known.push(name);
         }
     }
@@ -749,7 +750,7 @@ impl MeasuredFile {
         fits.swap_remove(0)
     }
 
-    /// Fits shooters, who shot at one ring.
+    /// Fits shooters who shot at one ring.
     pub(crate) fn fit_all(
         &self,
         shooters: &[ShooterShots],
@@ -783,6 +784,8 @@ impl MeasuredFile {
             .collect();
         if let [(fit, shots)] = &mut tracked[..] {
             fit.notes.extend(self.drag_note(shots, progress));
+        }
+        if tracked.len() < 2 {
             return fits;
         }
         progress.begin("finding the drag", tracked.len() as u64);

@@ -560,6 +560,9 @@ pub fn fit_drag_coefficient(
     backspin_rad_s: f64,
     progress: &dyn Progress,
 ) -> Option<DragEstimate> {
+    if tracks.is_empty() {
+        return None;
+    }
     progress.begin("finding the drag", 12 * tracks.len() as u64);
     let found = best_drag_coefficient(physics, tracks, (noise, backspin_rad_s), progress);
     progress.end();

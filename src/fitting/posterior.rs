@@ -724,10 +724,11 @@ fn draws_of<const D: usize>(
     options: &FitOptions,
 ) -> Result<Vec<Draw>, FitError> {
     // Of a direction that was not measured: towards the hoop's centre.
-    let direction = |place: usize| {
-        let of_place = shots.iter().find(|shot| shot.place == place);
-        of_place.map_or(0.0, |shot| shot.values[2])
-    };
+    let directions: Vec<f64> = by_place(shots, model.normal().places())
+        .iter()
+        .map(|of_place| of_place.first().map_or(0.0, |shot| shot.values[2]))
+        .collect();
+    let direction = |place: usize| directions[place];
     let mut random = ChaCha12Rng::seed_from_u64(options.seed);
     random.set_stream(u64::MAX);
     (0..options.draws)

@@ -4,6 +4,7 @@
 use super::measured_release::{MeasuredRelease, Values};
 use crate::math::normal_distribution::cdf;
 use crate::shooter::ReleaseVariable;
+use std::collections::{HashMap, HashSet};
 
 /// How one value runs over the sessions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,12 +32,9 @@ pub struct SessionTrend {
 /// year first; else in the order in which they come.
 #[must_use]
 pub fn session_names(sessions: &[String]) -> Vec<&String> {
-    let mut names: Vec<&String> = Vec::new();
-    for session in sessions {
-        if !names.contains(&session) {
-            names.push(session);
-        }
-    }
+    let mut known = HashSet::new();
+    let different = sessions.iter().filter(|session| known.insert(*session));
+    let mut names: Vec<&String> = different.collect();
     let numbers: Option<Vec<Vec<u64>>> = names.iter().map(|name| numbers_of(name)).collect();
     if let Some(numbers) = numbers
         && numbers
@@ -64,16 +62,14 @@ fn numbers_of(name: &str) -> Option<Vec<u64>> {
 
 /// The shots of each session, in the order of the file. Without names all are of one session.
 fn by_session(shots: usize, sessions: &[String]) -> Vec<Vec<usize>> {
-    let mut names: Vec<&str> = Vec::new();
+    let mut numbers: HashMap<&str, usize> = HashMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for shot in 0..shots {
         let name = sessions.get(shot).map_or("", String::as_str);
-        let group = names.iter().position(|known| *known == name);
-        let group = group.unwrap_or_else(|| {
-            names.push(name);
+        let group = *numbers.entry(name).or_insert(groups.len());
+        if group == groups.len() {
             groups.push(Vec::new());
-            groups.len() - 1
-        });
+        }
         groups[group].push(shot);
     }
     groups

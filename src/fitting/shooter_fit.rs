@@ -126,7 +126,7 @@ pub fn fit_shooters(
     };
     let count = tests.len() as u64;
     let finished = |_: &_| of_all.advance(1);
-    of_all.begin("fitting releases", count);
+    of_all.begin("preparing players", count);
     let flights: Vec<Result<Option<FlightsOf<'_>>, ShooterFitError>> = tests
         .par_iter()
         .map(|(test, options, unseen)| flights_of(test, physics, (options, unseen), of_one))
@@ -141,27 +141,28 @@ pub fn fit_shooters(
         let ring = alone.summary(|draw| draw.ring_restitution.unwrap_or(prior.middle));
         prior.likelihood(ring.mean, ring.sd)
     };
-    let rings: Vec<Option<Spread>> = match tests {
-        [_] => vec![None],
+    let rings: Vec<(usize, Spread)> = match tests {
+        [_] => Vec::new(),
         _ => {
             of_all.begin("finding the ring", count);
-            let rings = (0..tests.len()).into_par_iter().map(ring_of);
-            let rings = rings.inspect(|_| of_all.advance(1)).collect();
+            let rings = (0..tests.len()).into_par_iter();
+            let rings = rings.filter_map(|number| {
+                of_all.advance(1);
+                Some((number, ring_of(number)?))
+            });
+            let rings = rings.collect();
             of_all.end();
             rings
         }
     };
     let fit = |number: usize| {
         let (test, options, unseen) = &tests[number];
-        let others = rings
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != number);
+        let flights = flights[number].as_ref().map_err(Clone::clone)?;
+        let others = rings.iter().filter(|(other, _)| *other != number);
         let unseen = UnseenPrior {
-            ring_of_others: together(others.filter_map(|(_, ring)| *ring)),
+            ring_of_others: together(others.map(|(_, ring)| *ring)),
             ..*unseen
         };
-        let flights = flights[number].as_ref().map_err(Clone::clone)?;
         finish(
             (test, physics),
             flights.as_ref(),
@@ -454,7 +455,7 @@ mod tests {
         assert_eq!(stages(1), of_one);
         assert_eq!(
             stages(2),
-            ["fitting releases", "finding the ring", "fitting players"]
+            ["preparing players", "finding the ring", "fitting players"]
         );
     }
 }

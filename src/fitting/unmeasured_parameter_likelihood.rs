@@ -103,8 +103,20 @@ pub fn likelihood_curve(
     shooters: &[FittedShooter<'_>],
     progress: &dyn Progress,
 ) -> Result<LikelihoodCurve, ProfileError> {
-    let shots: usize = shooters.iter().map(|shooter| shooter.shots.len()).sum();
-    progress.begin("weighing makes", (2 * VALUES * shots) as u64);
+    let shots = shooters.iter().flat_map(|shooter| shooter.shots);
+    let labelled = shots.filter(|shot| shot.made.is_some()).count();
+    progress.begin("weighing makes", (2 * VALUES * labelled) as u64);
+    let curve = tabulated_curve(parameter, shooters, progress);
+    progress.end();
+    curve
+}
+
+/// [`likelihood_curve`] within its stage.
+fn tabulated_curve(
+    parameter: UnseenParameter,
+    shooters: &[FittedShooter<'_>],
+    progress: &dyn Progress,
+) -> Result<LikelihoodCurve, ProfileError> {
     let normals = common_normals(RELEASES, 1);
     let of_shooter = |shooter: &FittedShooter<'_>, value: f64| -> Result<f64, ProfileError> {
         let is_labelled = |shot: &&MeasuredRelease| shot.made.is_some();
@@ -178,7 +190,6 @@ pub fn likelihood_curve(
     let step = (high - low) / (VALUES - 1) as f64;
     let [from, to] = coarse.interval;
     let fine = tabulate((from - step).max(low), (to + step).min(high))?;
-    progress.end();
     Ok(curve(parameter, fine))
 }
 

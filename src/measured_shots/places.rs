@@ -149,7 +149,7 @@ struct Pair {
     /// The bits of a number that is not negative are in its order.
     distance_bits: u64,
     groups: [usize; 2],
-    /// How many shots they had: a group that has grown has other pairs.
+    /// How many shots they had: if a group has grown since, the pair is out of date.
     shots: [usize; 2],
     /// Which of the two has no nearer one.
     owner: usize,
@@ -178,12 +178,22 @@ fn join_nearest(
     let nearest = |groups: &[Group], cells: &Cells<2>, index: usize| -> Option<Pair> {
         goes_on();
         let own = &groups[index];
-        let others = cells.around(own).filter(|&other| other != index);
-        let pairs = others.filter_map(|other| {
-            let distance_m = distance_to_join_m(own, &groups[other])?;
-            Some((distance_m.to_bits(), [index.min(other), index.max(other)]))
-        });
-        let (distance_bits, pair) = pairs.min()?;
+        let mut nearest: Option<(u64, [usize; 2])> = None;
+        let mut least_m = limit_m;
+        for other in cells.around(own).filter(|&other| other != index) {
+            // Most are farther along one axis alone, by more than rounding.
+            let enough_m = 1.000_001 * least_m;
+            let is_far = |k: usize| (own.middle[k] - groups[other].middle[k]).abs() > enough_m;
+            if is_far(0) || is_far(1) {
+                continue;
+            }
+            if let Some(distance_m) = distance_to_join_m(own, &groups[other]) {
+                let pair = (distance_m.to_bits(), [index.min(other), index.max(other)]);
+                nearest = Some(nearest.map_or(pair, |nearest| nearest.min(pair)));
+                least_m = least_m.min(distance_m);
+            }
+        }
+        let (distance_bits, pair) = nearest?;
         Some(Pair {
             distance_bits,
             groups: pair,
@@ -191,7 +201,7 @@ fn join_nearest(
             owner: usize::from(pair[1] == index),
         })
     };
-    // Each group has its nearest pair in the heap, or one of before that was nearer still.
+    // Of any two groups that may join, one has an entry in the heap that is no farther.
     let all = (0..groups.len()).filter_map(|index| nearest(groups, &cells, index));
     let mut pairs: BinaryHeap<Reverse<Pair>> = all.map(Reverse).collect();
     while let Some(Reverse(pair)) = pairs.pop() {

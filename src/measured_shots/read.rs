@@ -18,7 +18,7 @@ use crate::probability::{Progress, Silent};
 use crate::units::FOOT_M;
 use std::collections::{BTreeMap, HashSet};
 
-/// Places of one shooter, at most: each has its own aim, and its best shot is searched.
+/// Places of one shooter, at most: each has its own aim, and its best shot is searched for.
 const MOST_PLACES: usize = 1000;
 
 /// Reads the shots of a table.
@@ -274,7 +274,7 @@ fn shooter(
     let places = shooter.places.len();
     if places > MOST_PLACES {
         return Err(of_shooter(format!(
-            "has shots from {places} places; a fit takes at most {MOST_PLACES}. Round the distances and angles, so that the shots from one spot are one place"
+            "has shots from {places} places; a fit takes at most {MOST_PLACES}. Round distances, angles and release heights more coarsely (to about 3 ft, and half a foot of height), or fit some of the shots"
         )));
     }
     if reader.source == Source::Releases {

@@ -13,7 +13,7 @@ use crate::units::{DEGREE_RAD, FOOT_M, INCH_M, REV_RAD, parse};
 
 /// Attempts in a row, at most.
 const MOST_ATTEMPTS: f64 = 10_000.0;
-/// And of one shooter: each is a shot in memory.
+/// Attempts of one shooter, at most: each is a shot in memory.
 const MOST_COUNTED: usize = 500_000;
 /// A shot that is farther than this from the hoop's centre where it falls through its height is not
 /// aimed at it, m.
@@ -249,11 +249,12 @@ impl RowReader<'_> {
     ) -> Result<Vec<RawShot>, String> {
         let mut raw = Vec::new();
         for &(row, cells) in rows {
+            self.progress.advance(1);
             match (self.place(cells), self.counted(cells)) {
                 (Ok(place), Ok((made, attempts))) => {
                     if raw.len() + attempts as usize > MOST_COUNTED {
                         return Err(format!(
-                            "has more than {MOST_COUNTED} attempts; fit a season or two at a time"
+                            "has more than {MOST_COUNTED} attempts; fit some sessions at a time with --session NAME, or split the file"
                         ));
                     }
                     raw.extend((0..attempts).map(|number| {

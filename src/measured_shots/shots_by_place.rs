@@ -41,9 +41,9 @@ pub(super) fn group_by_place(
     let noise = noise_of_landings(reader, &raw, &groups, shooter);
     let at_place = |(shot, group): (&RawShot, &usize)| {
         let (place, from) = (&shooter.places[*group], &shot.place);
-        // The rows of a flight were counted when it was fitted.
-        let is_flight = matches!(shot.measured, Raw::Flight(..));
-        reader.progress.advance(u64::from(!is_flight));
+        // The rows of flights and of counted shots are done already.
+        let is_row = matches!(shot.measured, Raw::Release(_) | Raw::Landing(..));
+        reader.progress.advance(u64::from(is_row));
         match &shot.measured {
             Raw::Nothing => Ok(AtPlace {
                 values: Values::default(),

@@ -5,6 +5,7 @@ use super::fit::{self, AGAIN, FIT_FILE};
 use super::free_parameters::{FreeParameter, ring_of};
 use super::sealed::{Sealed, seal};
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// The file that lists the fits of a folder.
@@ -92,14 +93,11 @@ pub fn fits_within(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
         return refuse_unlisted(folder);
     };
     let listed = shooters.places;
-    let mut folders: Vec<PathBuf> = Vec::new();
-    for place in listed.iter().filter(|place| !place.folder.is_empty()) {
-        let path = folder.join(&place.folder);
-        if !folders.contains(&path) {
-            folders.push(path);
-        }
-    }
-    Ok(folders)
+    let named = listed.iter().map(|place| place.folder.as_str());
+    // Each place of a shooter has a line.
+    let mut known = HashSet::new();
+    let different = named.filter(|name| !name.is_empty() && known.insert(*name));
+    Ok(different.map(|name| folder.join(name)).collect())
 }
 
 /// Refuses the fits of an earlier version, which are listed in their table alone.

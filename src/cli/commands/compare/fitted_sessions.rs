@@ -111,14 +111,19 @@ pub(super) fn share_what_no_sensor_sees([before, after]: &mut [Session; 2]) -> R
     Ok(())
 }
 
-/// Fits of one physics can be compared, and P of one place.
-pub(super) fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Failure> {
+/// Fits of one physics can be compared. What no sensor sees is shared by then.
+pub(super) fn refuse_other_physics([before, after]: &[Session; 2]) -> Result<(), Failure> {
     if before.profile.physics() != after.profile.physics() {
         return Err(Failure::usage(format!(
             "{} and {} were fitted with different physics; fit both with the same --physics",
             before.name, after.name
         )));
     }
+    Ok(())
+}
+
+/// Warns where two shooters, or two places, are compared.
+pub(super) fn warn_of_differences([before, after]: &[Session; 2]) {
     if let (Some(first), Some(second)) = (&before.shooter, &after.shooter)
         && first != second
     {
@@ -140,7 +145,6 @@ pub(super) fn check_conditions([before, after]: &[Session; 2]) -> Result<(), Fai
             "warning: the sessions are from different places; speed, angle and makes per 100 are for each place",
         );
     }
-    Ok(())
 }
 
 /// Brings the means of the second session to the release height of the first, along its usual
@@ -251,7 +255,7 @@ fn only_session(shots: &ShooterShots, session: &str, other: &str) -> ShooterShot
     let mut places: Vec<usize> = (0..shots.places.len())
         .filter(|place| has(*place, session))
         .collect();
-    places.sort_by_key(|place| !has(*place, other));
+    places.sort_by_cached_key(|place| !has(*place, other));
     let kept = of_session.iter().filter(|(_, of)| *of == session);
     let kept = kept.map(|(shot, _)| {
         let place = places.iter().position(|place| *place == shot.place);

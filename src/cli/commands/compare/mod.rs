@@ -24,8 +24,8 @@ use std::path::PathBuf;
 
 use changed_values::{causes, causes_to_draw, changes, planned, values_to_draw};
 use fitted_sessions::{
-    Session, check_conditions, fit_by_session, read, share_what_no_sensor_sees,
-    to_one_release_height,
+    Session, fit_by_session, read, refuse_other_physics, share_what_no_sensor_sees,
+    to_one_release_height, warn_of_differences,
 };
 
 #[derive(Args, Debug)]
@@ -80,12 +80,17 @@ pub(crate) fn run(options: &CompareOptions) -> Result<u8, Failure> {
             "--plot: draws the sessions of one shooter; choose with --shooter NAME",
         ));
     }
-    let bars = ProgressBars::new();
+    let bars = match compared.pairs.len() {
+        // A few seconds.
+        1 => ProgressBars::hidden(),
+        _ => ProgressBars::new(),
+    };
     bars.begin("comparing sessions", compared.pairs.len() as u64);
     let mut causes_of_pairs = Vec::new();
     for sessions in &mut compared.pairs {
         let units = options.measured.units_or(sessions[0].units);
         share_what_no_sensor_sees(sessions)?;
+        refuse_other_physics(sessions)?;
         to_one_release_height(sessions, units);
         causes_of_pairs.push(causes(sessions));
         bars.advance(1);
@@ -226,7 +231,7 @@ fn answer(
     (sessions, causes): (&[Session; 2], &ProbabilityChange),
     names_shooter: bool,
 ) -> Result<Option<Value>, Failure> {
-    check_conditions(sessions)?;
+    warn_of_differences(sessions);
     for session in sessions {
         for note in &session.notes {
             let title = session.title();

@@ -5,6 +5,7 @@ use crate::cli::terminal::print_remark;
 use crate::measured_shots::rejected_shots::grouped_reasons;
 use crate::measured_shots::shooter_shots::ShooterShots;
 use crate::units::UnitSystem;
+use std::collections::HashSet;
 
 /// Rejected rows that are named.
 const MOST_NAMED: usize = 20;
@@ -56,13 +57,8 @@ pub(crate) fn print_sessions(file: &MeasuredFile) {
     if let Some(order) = &file.session_order {
         print_remark(order);
     }
-    let shooters = &file.shooters;
-    let mut names: Vec<&str> = Vec::new();
-    for name in shooters.iter().flat_map(|shots| &shots.sessions) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
+    let sessions = file.shooters.iter().flat_map(|shots| &shots.sessions);
+    let names: HashSet<&String> = sessions.collect();
     if names.len() > 1 {
         print_remark(&format!(
             "{} sessions are fitted as one; --session NAME fits one alone, `bankshot compare` compares two",
