@@ -46,14 +46,14 @@ struct SharedBar {
 struct LogLines {
     began: Instant,
     due: Instant,
-    /// From then on the silence is too long.
+    /// From then on a line is overdue.
     late: Instant,
 }
 
 impl LogLines {
     const SHORTEST_PAUSE: Duration = Duration::from_secs(5);
     const LONGEST_PAUSE: Duration = Duration::from_secs(600);
-    /// A younger stage is not told, unless the log has been silent for [`Self::LONGEST_SILENCE`].
+    /// A younger stage has no line, unless the log has had none for [`Self::LONGEST_SILENCE`].
     const LEAST_STAGE: Duration = Duration::from_secs(2);
     const LONGEST_SILENCE: Duration = Duration::from_secs(8);
     /// A pause is the time that has passed divided by this.

@@ -444,15 +444,15 @@ struct Watched<'a> {
 }
 
 impl Watched<'_> {
-    /// Progress is told after so many steps.
-    const TOLD: usize = 50;
+    /// Progress is reported after so many steps.
+    const STEPS: usize = 50;
 }
 
 impl Schedule<Vec<f64>> for Watched<'_> {
     fn next_step(&mut self, chain: &[Vec<f64>]) -> ControlFlow<()> {
         self.steps += 1;
-        if self.steps.is_multiple_of(Self::TOLD) {
-            self.progress.advance(Self::TOLD as u64);
+        if self.steps.is_multiple_of(Self::STEPS) {
+            self.progress.advance(Self::STEPS as u64);
         }
         self.length.next_step(chain)
     }

@@ -366,12 +366,12 @@ mod tests {
 
     /// Stages with their units, and what was done of them.
     #[derive(Default)]
-    struct Told(Mutex<Vec<(String, u64, u64)>>);
+    struct Stages(Mutex<Vec<(String, u64, u64)>>);
 
-    impl Progress for Told {
+    impl Progress for Stages {
         fn begin(&self, stage: &str, total: u64) {
-            let mut told = self.0.lock().unwrap();
-            told.push((stage.to_owned(), total, 0));
+            let mut stages = self.0.lock().unwrap();
+            stages.push((stage.to_owned(), total, 0));
         }
         fn advance(&self, units: u64) {
             self.0.lock().unwrap().last_mut().unwrap().2 += units;
@@ -380,9 +380,9 @@ mod tests {
     }
 
     /// A file of a stranger may have any number of shots, places and players: each part whose time
-    /// grows with it tells how far it is, to its end.
+    /// grows with it reports how far it is, to its end.
     #[test]
-    fn contract_a_fit_tells_its_progress() {
+    fn contract_a_fit_reports_its_progress() {
         let at = |distance_ft: f64| Place {
             location: Location {
                 distance_m: distance_ft * FOOT_M,
@@ -428,16 +428,16 @@ mod tests {
         };
         let physics = Preset::named("ncaa").unwrap().physics();
         let stages = |players: usize| {
-            let told = Told::default();
+            let reported = Stages::default();
             let tests = vec![(test, options, unseen); players];
-            for fit in fit_shooters(&tests, &physics, &told) {
+            for fit in fit_shooters(&tests, &physics, &reported) {
                 fit.unwrap();
             }
-            let told = told.0.into_inner().unwrap();
-            for (stage, total, done) in &told {
+            let reported = reported.0.into_inner().unwrap();
+            for (stage, total, done) in &reported {
                 assert_eq!(done, total, "{stage}");
             }
-            let mut stages: Vec<String> = told.into_iter().map(|(stage, ..)| stage).collect();
+            let mut stages: Vec<String> = reported.into_iter().map(|(stage, ..)| stage).collect();
             // Chains that have not converged are followed by longer ones.
             stages.dedup();
             stages
